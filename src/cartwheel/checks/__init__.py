@@ -1,4 +1,4 @@
-"""Checks files and workspaces as the command line does: settings, suppressions, a baseline."""
+"""Checks files and workspaces like the command line: with settings, suppressions and a baseline."""
 
 from cartwheel.checks.run import Result, check
 

@@ -1,7 +1,7 @@
-"""Findings that a project accepts for now: only new ones are reported.
+"""Accepted findings of a project, so that only new findings are reported.
 
-An entry is a file, a code and the names in the finding, with a count. It holds no line numbers,
-so that other changes of the file do not matter.
+An entry consists of a file, a code and the names in the finding, with a count. It contains no line
+numbers, so unrelated changes to the file have no effect.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ _Key = tuple[str, str, str]
 
 
 class Baseline:
-    """The accepted findings, each as often as it is accepted.
+    """The accepted findings with their counts.
 
     Args:
         counts: By file, code and names.
-        folder: That of the baseline's file; the files of findings are relative to it.
+        folder: Folder of the baseline file; files of findings are relative to it.
     """
 
     def __init__(self, counts: Counter[_Key], folder: Path) -> None:
@@ -36,10 +36,10 @@ class Baseline:
 
     @classmethod
     def read(cls, file: Path) -> Baseline:
-        """The baseline in a file.
+        """Reads a baseline file.
 
         Raises:
-            CartwheelError: It cannot be read, or is not a baseline.
+            CartwheelError: The file cannot be read, or is not a baseline.
         """
         try:
             content: Any = json.loads(read_regular_text(file, _MAX_BYTES))
@@ -59,7 +59,7 @@ class Baseline:
         return cls(counts, file.absolute().parent)
 
     def accepts(self, finding: Diagnostic) -> bool:
-        """Whether a finding is in the baseline; each entry accepts as many as it counts."""
+        """Whether a finding is in the baseline; an entry accepts as many findings as its count."""
         key = _key(finding, self._folder)
         if self._left[key] <= 0:
             return False
@@ -84,6 +84,6 @@ def _key(finding: Diagnostic, folder: Path) -> _Key:
     name = ""
     if finding.origin is not None:
         name = Path(os.path.relpath(Path(finding.origin.file).absolute(), folder)).as_posix()
-    # Numbers may change while the fault stays.
+    # Numbers are omitted, because they may change while the fault remains.
     names = [[key, value] for key, value in finding.values.items() if isinstance(value, str)]
     return (name, finding.code.number, json.dumps(sorted(names)))

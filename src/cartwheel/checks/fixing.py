@@ -1,7 +1,7 @@
-"""Writes the text that a finding suggests into its file, where that is beyond doubt.
+"""Applies suggested fixes to files where the fix is certain.
 
-Fixed are misspelt tags, degrees, inertias of a link's geometry and sizes of wheels, if the
-element is literally in the file: not made by a macro, and without an expression.
+Fixable are misspelt tags, degrees, inertias computed from a link's geometry, and wheel sizes, if
+the element is written literally in the file: not in a macro, and without an expression.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FIXABLE = frozenset({
     robot.ANGLE_IN_DEGREES, robot.INERTIA_IMPOSSIBLE, robot.INERTIA_GEOMETRY_MISMATCH,
     robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_DIAMETER_MISMATCH,
 })  # fmt: skip
-"""The codes whose suggestion is written."""
+"""The codes with fixable suggestions."""
 _MISSPELT = (tags.TAG_IGNORED, devices.PLUGIN_PARAMETER_UNKNOWN)
 _ATTRIBUTE = re.compile(rb"([\w:.-]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _START = re.compile(rb"<([\w:.-]+)((?:\s+[\w:.-]+\s*=\s*(?:\"[^\"]*\"|'[^']*'))*)\s*(/?)>")
@@ -38,11 +38,11 @@ class Fix:
     before: bytes
     after: bytes
     findings: tuple[Diagnostic, ...]
-    """Those that it fixes."""
+    """The findings that it fixes."""
 
     @property
     def diff(self) -> str:
-        """What changes, as a unified diff."""
+        """The changes as a unified diff."""
         old, new = (
             content.decode("utf-8").splitlines(keepends=True)
             for content in (self.before, self.after)
@@ -51,7 +51,7 @@ class Fix:
         return "".join(difflib.unified_diff(old, new, f"a/{name}", f"b/{name}"))
 
     def write(self) -> None:
-        """Replaces the file, whole or not at all."""
+        """Replaces the file atomically."""
         target = self.file.resolve()
         descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
         try:
@@ -65,11 +65,11 @@ class Fix:
 
 
 def fixes(findings: Iterable[Diagnostic], root: Path) -> list[Fix]:
-    """The fixes of all findings that can be fixed, one for each file.
+    """The fixes for all fixable findings, one per file.
 
     Args:
-        findings: Of a check.
-        root: Files elsewhere stay as they are: a description may include any file.
+        findings: Findings of a check.
+        root: Only files in this folder are fixed, because a description may include any file.
     """
     by_file: dict[str, list[Diagnostic]] = {}
     for finding in findings:
@@ -80,7 +80,7 @@ def fixes(findings: Iterable[Diagnostic], root: Path) -> list[Fix]:
 
 
 def project_of(path: Path) -> Path:
-    """The folder whose files may be fixed: a folder itself, a file's package, or its folder."""
+    """The folder with fixable files: the given folder, a file's package, or the file's folder."""
     start = path.absolute()
     if start.is_dir():
         return start
@@ -131,7 +131,7 @@ def _fix(file: Path, findings: list[Diagnostic], root: Path) -> Fix | None:
 
 
 def _element_starts(content: bytes) -> dict[int, list[int]]:
-    """By line, where its elements begin, in bytes."""
+    """Byte offsets of the elements on each line."""
     starts: dict[int, list[int]] = {}
     parser = expat.ParserCreate()
 
@@ -156,7 +156,7 @@ def _element_edits(
         if (match := _START.match(content, start)) is not None
         and (edits := _edits(content, match, finding))
     ]
-    # Of several elements on one line it is not certain which one is meant.
+    # With several elements on one line, it is unclear which one is meant.
     return candidates[0] if len(candidates) == 1 else []
 
 
@@ -199,7 +199,7 @@ def _attributes(tag: re.Match[bytes]) -> dict[bytes, bytes]:
 def _attribute_edits(
     source: re.Match[bytes], values: Mapping[bytes, bytes], *, required: bool = True
 ) -> list[tuple[int, int, bytes]]:
-    """Only the values that differ, so that the rest of the tag stays as it is written."""
+    """Edits only the values that differ, so that the rest of the tag is unchanged."""
     if b"$" in source[2]:
         return []
     written = {each[1]: each for each in _ATTRIBUTE.finditer(source[2])}

@@ -1,4 +1,4 @@
-"""What Cartwheel's own plugins and controllers know, for the rules about them."""
+"""Information about Cartwheel's plugins and controllers, for the rules that check them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cartwheel.errors import Diagnostic, PluginError
 
 
 def knowledge() -> PluginKnowledge:
-    """The knowledge of all plugins and controllers that Cartwheel simulates."""
+    """Information about all plugins and controllers that Cartwheel supports."""
     from cartwheel.plugins.catalogue import all_plugins
     from cartwheel.plugins.control.catalogue import controller_types
     from cartwheel.plugins.control.suggestion import files_for

@@ -1,4 +1,4 @@
-"""Checks a file or a workspace, with the settings, suppressions and baseline of its project."""
+"""Checks a file or workspace with its project's settings, suppressions and baseline."""
 
 from __future__ import annotations
 
@@ -20,30 +20,30 @@ from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Result:
-    """What a check of a file or a folder reports."""
+    """The result of checking a file or folder."""
 
     path: str
     """The file or the folder."""
     reports: tuple[Report, ...]
-    """Of each description, before anything is selected or suppressed."""
+    """Reports for each description, before selection and suppression."""
     findings: tuple[Diagnostic, ...]
-    """By file, and then by line; what several descriptions share is there once."""
+    """Sorted by file and line; findings shared by several descriptions are listed once."""
     ignored: int = 0
-    """Findings whose codes are ignored or not selected."""
+    """Number of findings with ignored or unselected codes."""
     suppressed: int = 0
-    """Findings that a comment suppresses."""
+    """Number of findings suppressed by comments."""
     accepted: int = 0
-    """Findings of the baseline."""
+    """Number of findings accepted by the baseline."""
     strict: bool = False
-    """Whether the project's settings make notes count."""
+    """Whether the project's settings treat notes as failures."""
 
     @property
     def complete(self) -> bool:
-        """False if something could not be read, so that some rules were not applied."""
+        """False if some rules were skipped because something could not be read."""
         return all(report.complete for report in self.reports)
 
     def count(self, severity: str) -> int:
-        """The number of findings of a severity: ``error``, ``warning`` or ``info``."""
+        """The number of findings with a severity: ``error``, ``warning`` or ``info``."""
         return sum(finding.severity == severity for finding in self.findings)
 
 
@@ -59,21 +59,21 @@ def check(
     settings: bool = True,
     use_baseline: bool = True,
 ) -> Result:
-    """Finds mistakes in a description, or in all descriptions of a folder.
+    """Finds mistakes in a description, or in all descriptions in a folder.
 
-    The findings are those of ``cartwheel check``, which calls this function.
+    ``cartwheel check`` calls this function, so the findings are the same.
 
     Args:
-        path: A xacro, URDF, SDF or world, a shipped one, or a folder with some.
-        arguments: Values of the xacro's arguments.
-        package_path: Folders in which packages are looked for first.
-        controllers: Controller files to check, in place of those near the robot.
-        select: Codes to report, in place of the settings': numbers, names, or the begin of a
-            number such as ``CW2``. Empty for the settings', or all.
-        ignore: Codes not to report, besides those of the settings.
-        baseline: A file of accepted findings, in place of the settings'.
-        settings: Whether ``cartwheel.toml`` or ``pyproject.toml`` at or above the path count.
-        use_baseline: False to report the findings that the baseline accepts as well.
+        path: A xacro, URDF, SDF or world file, a built-in model, or a folder.
+        arguments: Values of xacro arguments.
+        package_path: Folders to search for packages first.
+        controllers: Controller files to check instead of those found near the robot.
+        select: Codes to report instead of the settings': numbers, names, or prefixes such as
+            ``CW2``. Empty for the settings' selection, or all codes.
+        ignore: Codes not to report, in addition to those in the settings.
+        baseline: A file with accepted findings, instead of the settings' baseline.
+        settings: Whether to read ``cartwheel.toml`` or ``pyproject.toml`` in or above the path.
+        use_baseline: False to also report findings that the baseline accepts.
 
     Raises:
         DescriptionError: A single file cannot be read at all, or is not a description.
@@ -112,7 +112,7 @@ def _report(
             controller_files=controllers,
         )
     except DescriptionError as error:
-        # Without a line there is nothing to show of a single file but the error itself.
+        # Without a line, there is nothing to show for a single file except the error itself.
         if not folder and (error.origin is None or not error.origin.line):
             raise
         finding = error.diagnostic()
@@ -144,7 +144,7 @@ def _result(
             if finding.identity in seen:
                 continue
             seen.add(finding.identity)
-            # Comments first: one that suppresses an ignored code is not unused.
+            # Comments first: a comment that suppresses an ignored code is not unused.
             if suppressions.suppresses(finding):
                 suppressed += 1
             elif finding.code not in selection:

@@ -1,4 +1,4 @@
-"""Which codes count: selected and ignored ones, by number, name or the begin of a number."""
+"""Selected and ignored codes, by number, name or prefix of a number."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PREFIX = re.compile(r"CW\d{0,2}", re.IGNORECASE)
 
 
 def codes_matching(text: str) -> frozenset[Code]:
-    """The code of a number or a name, or all codes whose number begins with ``CW2`` and the like.
+    """The code with a number or name, or all codes with a prefix such as ``CW2``.
 
     Raises:
         UnknownNameError: No code matches.
@@ -28,15 +28,15 @@ def codes_matching(text: str) -> frozenset[Code]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Selection:
-    """Codes that are reported; by default all of them."""
+    """Codes to report; by default all codes."""
 
     select: frozenset[Code] | None = None
-    """None for all."""
+    """None for all codes."""
     ignore: frozenset[Code] = frozenset()
 
     @classmethod
     def of(cls, select: Iterable[str] = (), ignore: Iterable[str] = ()) -> Selection:
-        """The selection that options or settings state.
+        """The selection in options or settings.
 
         Raises:
             UnknownNameError: A code does not exist.

@@ -1,4 +1,4 @@
-"""Settings of a project: ``[tool.cartwheel.check]`` of pyproject.toml, or cartwheel.toml."""
+"""Project settings: ``[tool.cartwheel.check]`` in pyproject.toml, or cartwheel.toml."""
 
 from __future__ import annotations
 
@@ -18,23 +18,24 @@ _KNOWN = (*_LISTS, "strict", "baseline")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Settings:
-    """What a project's file states; options of the command line come before it."""
+    """The settings of a project; command-line options take precedence."""
 
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     strict: bool = False
     baseline: Path | None = None
     file: Path | None = None
-    """Where they come from; None for the defaults."""
+    """The settings file; None for the defaults."""
 
 
 def settings_for(path: Path) -> Settings:
-    """The settings of the nearest folder that has some, at the file or above it.
+    """The settings in the nearest folder that has some, at or above the path.
 
-    In each folder ``cartwheel.toml``, with its table ``check``, comes before ``pyproject.toml``.
+    In each folder, the table ``check`` in ``cartwheel.toml`` takes precedence over
+    ``pyproject.toml``.
 
     Raises:
-        CartwheelError: A settings file cannot be read, or has an unknown or wrong entry.
+        CartwheelError: A settings file cannot be read, or has an unknown or invalid entry.
     """
     start = path.absolute()
     folders = [start, *start.parents] if start.is_dir() else list(start.parents)

@@ -1,8 +1,8 @@
-"""Comments that suppress a code at one place.
+"""Comments that suppress a code at one location.
 
-``<!-- cartwheel: ignore CW204 -->`` in XML and ``# cartwheel: ignore CW204`` in YAML, at the
-line of the element or on the line before. Several codes are separated by commas or spaces; a
-reason may follow in parentheses.
+``<!-- cartwheel: ignore CW204 -->`` in XML and ``# cartwheel: ignore CW204`` in YAML, on the
+element's line or the line above. Separate several codes by commas or spaces; a reason may follow in
+parentheses.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ _END = "-->"
 _IN_YAML = re.compile(r"#\s*cartwheel:\s*ignore\b([^(\n]*)")
 _YAML = (".yaml", ".yml")
 MOST = 1000
-"""Suppressions of one file; later ones are not read."""
+"""Maximum suppressions per file; later ones are not read."""
 
 
 @dataclass
 class Suppression:
-    """A comment, and whether it has suppressed anything."""
+    """A comment, and whether it has suppressed a finding."""
 
     file: str
     line: int
     lines: frozenset[int]
-    """Whose findings it suppresses."""
+    """Lines whose findings it suppresses."""
     word: str
     codes: frozenset[Code]
     hint: str = ""
@@ -41,7 +41,7 @@ class Suppression:
 
 
 class Suppressions:
-    """Those of the files of one or several checks."""
+    """The suppressions in the files of one or several checks."""
 
     def __init__(self) -> None:
         self._by_file: dict[str, list[Suppression]] = {}
@@ -87,7 +87,7 @@ def _read(file: str) -> list[Suppression]:
     parted = _parted_yaml if file.endswith(_YAML) else _parted_xml
     found: list[Suppression] = []
     for number, line in enumerate(lines, 1):
-        # A plain search first: most lines of large files have no comment of ours.
+        # A simple search first: most lines contain no suppression.
         if "cartwheel:" not in line:
             continue
         comments, others = parted(line)
@@ -102,9 +102,9 @@ def _read(file: str) -> list[Suppression]:
 
 
 def _parted_xml(line: str) -> tuple[list[str], str]:
-    """The codes that each comment of a line names, and what else the line holds.
+    """The codes in each comment on a line, and the rest of the line.
 
-    In time that grows with the line's length alone: strangers write these lines.
+    The time is linear in the line's length, because the files may be untrusted.
     """
     comments, others, at = list[str](), list[str](), 0
     while (begin := _IN_XML.search(line, at)) is not None:
@@ -118,12 +118,12 @@ def _parted_xml(line: str) -> tuple[list[str], str]:
 
 
 def _parted_yaml(line: str) -> tuple[list[str], str]:
-    """As `_parted_xml`."""
+    """The same as `_parted_xml` for YAML."""
     return _IN_YAML.findall(line), _IN_YAML.sub("", line)
 
 
 def _next(lines: Sequence[str], number: int, parted: Callable[[str], tuple[list[str], str]]) -> int:
-    """The first line behind a comment that holds something else."""
+    """The first line after a comment that contains anything except comments."""
     for following in range(number, min(number + 20, len(lines))):
         if parted(lines[following])[1].strip():
             return following + 1

@@ -1,4 +1,4 @@
-"""The robots, models and worlds of a folder: files that others only include are not among them."""
+"""Finds the robots, models and worlds in a folder, without files that are only included."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cartwheel.description.packages import IGNORE_MARKERS
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
 MOST = 5000
-"""Files of a folder that are looked at."""
+"""Maximum number of files to examine in a folder."""
 _LEFT_OUT = {"build", "install", "devel", "log", "node_modules", "__pycache__"}
 _SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)|^(?:package|model|file)://")
 _FIND = re.compile(r"^(?:\$\(find(?:-pkg-share)? +([\w.-]+)\)|package://([\w.-]+))/(.+)$")
@@ -29,10 +29,10 @@ Walked = Sequence[tuple[Path, list[str]]]
 
 
 def descriptions(folder: Path) -> list[Path]:
-    """The top-level descriptions below a folder, in the order of their paths.
+    """The top-level descriptions below a folder, sorted by path.
 
-    Build and hidden folders, and those with ``COLCON_IGNORE`` and the like, are not searched.
-    A file that cannot be read counts, so that its error is reported.
+    Build folders, hidden folders and folders with ``COLCON_IGNORE`` or similar files are skipped.
+    Unreadable files are included, so that their errors are reported.
     """
     walked = list(_walk(folder))
     files = {path: _File.read(path) for path in _files(walked)}
@@ -45,12 +45,12 @@ def descriptions(folder: Path) -> list[Path]:
 
 @dataclass(frozen=True, slots=True)
 class _File:
-    """What the choice needs of a file: the trees of thousands of them would fill the memory."""
+    """The relevant facts about a file: keeping thousands of trees would need too much memory."""
 
     includes: tuple[str, ...]
-    """Names of files, as they are written."""
+    """Included file names, as written."""
     describes: bool
-    """Whether it describes something by itself, or cannot be read."""
+    """Whether the file describes something by itself, or cannot be read."""
 
     @classmethod
     def read(cls, path: Path) -> _File:
@@ -106,14 +106,14 @@ def _included(
         if not _SUBSTITUTION.search(name):
             yield Path(os.path.normpath(path.parent / name))
             continue
-        # What an expression says is not known here: any file with the same end may be meant.
+        # An expression's value is unknown here: any file with the same ending may be included.
         tail = PurePosixPath(_SUBSTITUTION.split(name)[-1].lstrip("/")).parts
         if tail:
             yield from (each for each in known if each.parts[-len(tail) :] == tail)
 
 
 def _describes(root: Node) -> bool:
-    """Whether a file describes something by itself, and not only defines macros."""
+    """Whether a file describes something by itself, instead of only defining macros."""
     if root.tag != "robot":
         tags = ("model", "world", "light")
         return root.tag in ("sdf", "gazebo") and any(each.tag in tags for each in root.children)

@@ -1,7 +1,7 @@
-"""All kinds of diagnostics: their codes, and what each of them means.
+"""All diagnostic codes and their explanations.
 
-A module for each hundred holds the codes, as constants; ``texts/`` holds an explanation of each,
-from which `cartwheel explain` and the documentation are made.
+Each hundred has a module with codes as constants. ``texts/`` contains an explanation of each code,
+used by `cartwheel explain` and the documentation.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MODULES = {
     "wires": "ROS 1, ROS 2, Foxglove and network access",
     "recording": "Recording, playback and the web interface",
 }
-"""The modules with codes, in the order of their numbers, and their titles."""
+"""The modules with codes and their titles, in numerical order."""
 FORMER = {
     "name-twice": "duplicate-name",
     "two-parents": "multiple-parents",
@@ -59,12 +59,12 @@ FORMER = {
     "property-twice": "property-overwritten",
     "unreadable": "value-invalid",
 }
-"""Names that codes had before, which settings and options still accept."""
+"""Former names of codes, which settings and options still accept."""
 _HEADING = re.compile(r"^## (CW\d{3}) (\S+)\n", re.MULTILINE)
 
 
 def codes_of(module: str) -> tuple[Code, ...]:
-    """The codes of a module of `MODULES`, by number."""
+    """The codes of a module in `MODULES`, by number."""
     loaded: ModuleType = importlib.import_module(f"cartwheel.codes.{module}")
     return tuple(
         sorted(
@@ -76,15 +76,15 @@ def codes_of(module: str) -> tuple[Code, ...]:
 
 @cache
 def all_codes() -> tuple[Code, ...]:
-    """All of them, by number."""
+    """All codes, by number."""
     return tuple(code for module in MODULES for code in codes_of(module))
 
 
 def code_named(text: str) -> Code:
-    """The code with a number, a name or a former name, in any case.
+    """The code with this number, name or former name, in upper or lower case.
 
     Raises:
-        UnknownNameError: There is none.
+        UnknownNameError: The code does not exist.
     """
     wanted = text.strip().lower()
     wanted = FORMER.get(wanted, wanted)
@@ -98,13 +98,13 @@ def code_named(text: str) -> Code:
 
 
 def explanation(code: Code) -> str:
-    """What a code means, why it matters, and an example, as Markdown without the heading."""
+    """The explanation of a code: meaning, reason and example, as Markdown without the heading."""
     return _explanations()[code.number]
 
 
 @cache
 def _explanations() -> dict[str, str]:
-    from importlib import resources  # only for explanations: it takes time to import
+    from importlib import resources  # Imported only for explanations, because the import is slow.
 
     found: dict[str, str] = {}
     for module in MODULES:

@@ -1,4 +1,4 @@
-"""How another process reaches a running simulation."""
+"""Access to a running simulation from another process."""
 
 from cartwheel.control.client import ControlClient, Sample
 from cartwheel.control.registry import Running, find, running

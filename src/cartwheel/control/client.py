@@ -1,4 +1,4 @@
-"""The end of the control socket that a command holds."""
+"""The client side of the control socket."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ _HUNG_UP = "the simulation has ended, or too many clients are connected"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sample:
-    """One message of a topic."""
+    """A message on a topic."""
 
     topic: str
     type: str
     data: bytes
-    """CDR; empty where only the times were asked for."""
+    """CDR; empty if only timestamps were requested."""
     time_ns: int
-    """Simulation time of its publication."""
+    """Simulation time at which the message was published."""
     dropped: int
-    """Messages lost so far because they were not read fast enough."""
+    """Number of messages dropped so far because the client was too slow."""
 
 
 class ControlClient:
-    """Asks things of a running simulation.
+    """A connection to a running simulation.
 
     Args:
-        simulation: Which; the only one that runs when None.
+        simulation: The simulation; None for the only running one.
 
     Raises:
-        ControlError: There is none, or it does not answer.
+        ControlError: There is no such simulation, or it does not respond.
     """
 
     def __init__(self, simulation: Running | None = None) -> None:
@@ -53,38 +53,37 @@ class ControlClient:
         self.close()
 
     def close(self) -> None:
-        """Ends the connection."""
+        """Closes the connection."""
         self._connection.close()
 
     def request(self, name: str, *, payload: bytes = b"", **parameters: Any) -> dict[str, Any]:
-        """Asks for one thing and waits for the answer.
+        """Sends a request and waits for the response.
 
         Args:
-            name: Of the request; see `Operations`.
-            payload: Bytes that go with it.
-            parameters: Of the request.
+            name: Name of the request; see `Operations`.
+            payload: Binary payload of the request.
+            parameters: Parameters of the request.
 
         Raises:
-            ControlError: It was refused, with the simulation's own words, or the
-                simulation has ended.
+            ControlError: The simulation rejected the request, with its reason, or has ended.
         """
         return _ask(self._connection, name, parameters, payload)
 
     def wait_for_end(self) -> None:
-        """Returns when the simulation has ended; nothing is asked meanwhile."""
+        """Waits until the simulation ends, without sending requests."""
         with contextlib.suppress(OSError, ControlError):
             self._connection.receive()
 
     def subscribe(self, topic: str, *, data: bool = True, queue: int | None = None) -> Subscription:
-        """The messages of a topic, over a connection of their own.
+        """Subscribes to a topic, over a separate connection.
 
         Args:
-            topic: Its name.
-            data: Whether the messages themselves are wanted, or only their times.
-            queue: How many unread messages the simulation holds.
+            topic: Topic name.
+            data: Whether to receive the messages, or only their timestamps.
+            queue: Number of unread messages that the simulation buffers.
 
         Raises:
-            ControlError: There is no such topic.
+            ControlError: The topic does not exist.
         """
         parameters: dict[str, Any] = {"topic": topic, "data": data}
         if queue is not None:
@@ -105,14 +104,14 @@ class ControlClient:
         *,
         at_end: Mapping[str, Any] | None = None,
     ) -> int:
-        """Publishes a message; returns how many read it.
+        """Publishes a message; returns the number of subscribers.
 
         Args:
-            topic: Its name.
-            type_name: Of the message.
-            message: Its fields.
-            at_end: What the simulation publishes on that topic when this connection ends, in
-                whatever manner; None withdraws it.
+            topic: Topic name.
+            type_name: Message type.
+            message: The message's fields.
+            at_end: A message that the simulation publishes on this topic when the connection ends
+                for any reason; None withdraws it.
         """
         answer = self.request(
             "publish", topic=topic, type=type_name, message=message, at_end=at_end
@@ -121,7 +120,7 @@ class ControlClient:
 
 
 class Subscription:
-    """Yields the messages of a topic until it is closed or the simulation ends."""
+    """Yields the messages on a topic until it is closed or the simulation ends."""
 
     def __init__(self, connection: Connection, topic: str, type_name: str) -> None:
         self._connection = connection
@@ -139,10 +138,10 @@ class Subscription:
             yield sample
 
     def get(self, timeout: float | None = None) -> Sample | None:
-        """The next message; None where the simulation has ended.
+        """The next message; None if the simulation has ended.
 
         Raises:
-            TimeoutError: None came in `timeout` seconds.
+            TimeoutError: No message arrived within `timeout` seconds.
         """
         try:
             frame = self._connection.receive(timeout)
@@ -161,7 +160,7 @@ class Subscription:
         )
 
     def close(self) -> None:
-        """Ends the subscription."""
+        """Closes the subscription."""
         self._connection.close()
 
 
@@ -174,7 +173,7 @@ def _connect(simulation: Running) -> Connection:
             sock.connect(str(simulation.path))
         except OSError as error:
             sock.close()
-            # A full queue shows at once, whatever the time allowed.
+            # A full queue is reported at once, whatever the timeout.
             if isinstance(error, BlockingIOError) and time.monotonic() < deadline:
                 time.sleep(0.01)
                 continue
@@ -190,9 +189,9 @@ def _ask(
     connection: Connection, name: str, parameters: Mapping[str, Any], payload: bytes = b""
 ) -> dict[str, Any]:
     try:
-        with contextlib.suppress(BrokenPipeError):  # Why may stand in what is received.
+        with contextlib.suppress(BrokenPipeError):  # The received data may contain the reason.
             connection.send({"request": name, "parameters": dict(parameters)}, payload)
-        # Longer than the simulation itself waits, so that its own words arrive.
+        # Longer than the simulation's own timeout, so that its error message arrives.
         frame: Frame | None = connection.receive(None if name == "step" else PATIENCE + 60)
     except TimeoutError as error:
         raise ControlError("the simulation does not respond", code=SIMULATION_SILENT) from error

@@ -1,4 +1,4 @@
-"""Diagnostics in the frames of the control socket."""
+"""Diagnostics in frames on the control socket."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ Packed = dict[str, Any]
 
 
 def packed(diagnostic: Diagnostic) -> Packed:
-    """A diagnostic as JSON holds it.
+    """A diagnostic as JSON data.
 
-    ``severity``, ``message``, ``file`` and ``line`` are what earlier releases sent and read.
+    Earlier releases used only ``severity``, ``message``, ``file`` and ``line``.
     """
     origin = diagnostic.origin
     return {
@@ -49,7 +49,7 @@ def packed(diagnostic: Diagnostic) -> Packed:
 
 
 def unpacked(given: Mapping[str, Any]) -> Diagnostic:
-    """The diagnostic that `packed` or an earlier release sent; what is malformed is empty."""
+    """The diagnostic sent by `packed` or by an earlier release; malformed fields become empty."""
     also = given.get("also")
     alike = [each for each in also if isinstance(each, dict)] if isinstance(also, list) else []
     return replace(_alone(given), also=tuple(_alone(each) for each in alike))
@@ -77,7 +77,7 @@ def _alone(given: Mapping[str, Any]) -> Diagnostic:
 
 
 def refusal(error: Exception) -> dict[str, Any]:
-    """The header of a frame that refuses a request.
+    """The header of a frame that rejects a request.
 
     ``error`` is a text for earlier releases.
     """
@@ -88,7 +88,7 @@ def refusal(error: Exception) -> dict[str, Any]:
 
 
 def refused(header: Mapping[str, Any]) -> ControlError:
-    """The error that a frame of `refusal`, or of an earlier release, holds."""
+    """The error in a frame created by `refusal` or by an earlier release."""
     given = header.get("diagnostic")
     if not isinstance(given, dict):
         return ControlError(str(header["error"]), code=REQUEST_REFUSED)
@@ -104,10 +104,10 @@ def refused(header: Mapping[str, Any]) -> ControlError:
 
 
 def _code(number: str, name: str, severity: Severity) -> Code:
-    """The code; one of another release is made from what was sent."""
+    """The code; unknown codes from other releases are created from the received values."""
     if not number or number == UNCLASSIFIED.number:
         return UNCLASSIFIED
-    all_codes()  # loads them
+    all_codes()  # loads all codes
     return known_code(number) or Code(number, name, severity, "a code from a different release")
 
 
@@ -133,7 +133,7 @@ def _values(given: Any) -> dict[str, Value]:
             if all(isinstance(each, str) for each in value):
                 found[name] = tuple(value)
             elif all(isinstance(each, int | float) for each in value):
-                with contextlib.suppress(OverflowError):  # JSON's whole numbers have any size
+                with contextlib.suppress(OverflowError):  # JSON integers have arbitrary size
                     found[name] = tuple(map(float, value))
         elif value is None or isinstance(value, str | int | float):
             found[name] = value

@@ -1,7 +1,7 @@
-"""What another process may ask of a running simulation.
+"""The requests that other processes can send to a running simulation.
 
-Everything here runs on the thread of the connection that asked. Files are read and
-messages are checked there; only what touches the physics goes to the simulation's thread.
+All requests run on the connection's thread, which reads files and checks messages. Only changes to
+the physics are passed to the simulation's thread.
 """
 
 from __future__ import annotations
@@ -28,25 +28,27 @@ from cartwheel.simulation import RunState
 T = TypeVar("T")
 Answer = dict[str, Any]
 Load = Callable[[Path, Mapping[str, str], Sequence[Path]], RobotDescription]
-"""Reads the description in a file, given ``name:=value`` and folders to look for packages in."""
+"""Reads a description from a file, with ``name:=value`` arguments and package folders."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PageOffer:
-    """The viewer of a simulation, for clients that ask for it; from any thread but its own."""
+    """A simulation's web viewer, for clients that request it. Callable from any thread except its
+    own.
+    """
 
     show: Callable[[], str]
-    """Gives its URL, and brings it up where it is not."""
+    """Returns the viewer's URL, and starts it if necessary."""
     browsers: Callable[[], int]
-    """How many are connected."""
+    """The number of connected browsers."""
 
 
 class Operations:
-    """The requests by name; each takes parameters and a payload and gives an answer.
+    """The requests by name. Each takes parameters and a payload, and returns a response.
 
     Args:
-        session: What they act on.
-        load: Reads the file of a ``spawn``.
+        session: The session.
+        load: Reads the file of a ``spawn`` request.
     """
 
     def __init__(self, session: Session, load: Load) -> None:
@@ -74,10 +76,10 @@ class Operations:
         }
 
     def run(self, name: str, parameters: Parameters, payload: bytes) -> Answer:
-        """Does what a request asks.
+        """Executes a request.
 
         Raises:
-            CartwheelError: It cannot be done.
+            CartwheelError: The request failed.
         """
         if name not in self._by_name:
             raise UnknownNameError("request", name, self._by_name, code=CONTROL_REQUEST_INVALID)
@@ -113,7 +115,7 @@ class Operations:
         return self._then_time(self._simulation.reset)
 
     def step(self, parameters: Parameters, _: bytes) -> Answer:
-        """Answers when the steps are done."""
+        """Responds when the steps are done."""
         simulation = self._simulation
         count = parameters.whole("count", 1, 1, 1_000_000_000)
         self._on_simulation(lambda: simulation.step(count))
@@ -126,7 +128,7 @@ class Operations:
         return self._then_time(lambda: None)
 
     def speed(self, parameters: Parameters, _: bytes) -> Answer:
-        """A positive number, or null for as fast as it can."""
+        """Accepts a positive number, or null for as fast as possible."""
         speed = None if parameters.value("speed") is None else parameters.number("speed")
         return self._then_time(lambda: self._simulation.set_speed(speed))
 
@@ -157,7 +159,7 @@ class Operations:
         return self._on_simulation(read)
 
     def spawn(self, parameters: Parameters, _: bytes) -> Answer:
-        """Reads the file here, so that the simulation goes on meanwhile."""
+        """Reads the file on this thread, so that the simulation can continue."""
         path = Path(parameters.text("file"))
         if not path.is_absolute():
             raise ControlError(
@@ -202,7 +204,7 @@ class Operations:
         return _described(self._graph.topic(resolve_name(parameters.text("topic"))))
 
     def publish(self, parameters: Parameters, payload: bytes) -> Answer:
-        """A message as a mapping, or as CDR in the payload."""
+        """Accepts a message as a mapping, or as CDR in the payload."""
         name = resolve_name(parameters.text("topic"))
         wanted = type_name(parameters.text("type"))
         known = {topic.name: topic for topic in self._graph.topics()}
@@ -212,7 +214,8 @@ class Operations:
             message = from_dict(wanted, parameters.value("message") or {})
         topic = known.get(name)
         if topic is None:
-            # Nobody would ever read it, and names must not pile up in the graph.
+            # Without subscribers, skip the message, so that topic names do not accumulate in the
+            # graph.
             return {"subscribers": 0, "topics": list(known)}
         self._graph.publish(name, wanted, message)
         return {"subscribers": len(topic.subscribers), "topics": []}
@@ -235,14 +238,14 @@ class Operations:
     # -- the viewer
 
     def page(self, _: Parameters, __: bytes) -> Answer:
-        """The URL of the viewer, which is brought up where it is not, and its browsers."""
+        """The viewer's URL and number of browsers; starts the viewer if necessary."""
         offer = _in_time(self._page, cancel=False)
         if offer is None:
             raise ControlError("this simulation has no web interface", code=NO_PAGE)
         return {"url": offer.show(), "browsers": offer.browsers()}
 
     def offer_page(self, offer: PageOffer | None) -> None:
-        """States what page there is; requests wait until this was called."""
+        """Sets the viewer; requests wait until this was called."""
         self._page.set_result(offer)
 
     # -- the simulation's thread

@@ -1,4 +1,4 @@
-"""What a request says, read with errors that name the wrong parameter."""
+"""Reads request parameters, with errors that contain the parameter's name."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cartwheel.errors import ControlError
 
 
 class Parameters:
-    """The parameters of one request.
+    """The parameters of a request.
 
     Args:
-        values: As the client sent them.
+        values: The values from the client.
 
     Raises:
-        ControlError: They are no mapping.
+        ControlError: The values are not a mapping.
     """
 
     def __init__(self, values: Any) -> None:
@@ -30,7 +30,7 @@ class Parameters:
         return name in self._values
 
     def text(self, name: str, default: str | None = None) -> str:
-        """A text; needed where there is no default."""
+        """A string; required unless there is a default."""
         value = self._values.get(name)
         if value is None and default is not None:
             return default
@@ -43,7 +43,7 @@ class Parameters:
         return value
 
     def texts(self, name: str) -> dict[str, str]:
-        """Texts by text."""
+        """A mapping from strings to strings."""
         value = self._values.get(name) or {}
         if not isinstance(value, dict) or not all(isinstance(v, str) for v in value.values()):
             raise ControlError(
@@ -54,7 +54,7 @@ class Parameters:
         return value
 
     def list_of_texts(self, name: str) -> list[str]:
-        """Texts in order."""
+        """A list of strings."""
         value = self._values.get(name) or []
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
             raise ControlError(
@@ -65,7 +65,7 @@ class Parameters:
         return value
 
     def number(self, name: str, default: float | None = None) -> float:
-        """A finite number; needed where there is no default."""
+        """A finite number; required unless there is a default."""
         value = self._values.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ControlError(
@@ -86,7 +86,7 @@ class Parameters:
         return number
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
-        """A whole number within limits."""
+        """An integer within limits."""
         value = self.number(name, default)
         if value != int(value) or not low <= value <= high:
             raise ControlError(
@@ -98,7 +98,7 @@ class Parameters:
         return int(value)
 
     def flag(self, name: str, *, default: bool) -> bool:
-        """True or false."""
+        """A boolean."""
         value = self._values.get(name, default)
         if not isinstance(value, bool):
             raise ControlError(
@@ -109,5 +109,5 @@ class Parameters:
         return value
 
     def value(self, name: str) -> Any:
-        """Whatever was given."""
+        """Any value."""
         return self._values.get(name)

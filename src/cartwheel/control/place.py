@@ -1,4 +1,4 @@
-"""Where a model is to stand, as a command line says it."""
+"""The pose of a model from command-line options."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
 def placed(pose: Pose, values: Mapping[str, float]) -> Pose | None:
-    """A description's own pose with the given ones of `AXES` in place of its; None without any."""
+    """The description's pose with some `AXES` replaced; None if no values are given."""
     if not values:
         return None
     own = dict(zip(AXES, (*pose.position, *pose.rpy), strict=True))

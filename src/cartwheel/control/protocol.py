@@ -1,8 +1,8 @@
-"""Frames on a stream: a header in JSON and bytes beside it.
+"""Frames on a stream: a JSON header and a binary payload.
 
-A frame is ``CW``, the version, a zero, the two lengths as big-endian 32-bit numbers, the
-header and the payload. Whatever does not begin so is not read any further, nothing is read
-before there is room for it, and a frame that was begun must end in time.
+A frame consists of ``CW``, the version, a zero, the two lengths as big-endian 32-bit numbers, the
+header and the payload. Reading stops at anything else. Lengths are checked before any data is read,
+and a started frame must be complete before a deadline.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from cartwheel.errors import ControlError
 VERSION = 1
 MAX_HEADER = 4 << 20
 MAX_PAYLOAD = 64 << 20
-"""Bytes; an image of 4000 by 4000 fits."""
+"""Bytes; enough for an image of 4000 by 4000 pixels."""
 FRAME_SECONDS = 10.0
-"""In which a frame that was begun must arrive."""
+"""Timeout for receiving a started frame."""
 SEND_SECONDS = 30.0
-"""In which the other side must take something of what is sent."""
+"""Timeout for sending without progress."""
 
 PATIENCE = 30.0
-"""s that a simulation may take for one request."""
+"""Timeout for a request, s."""
 
 _MAGIC = b"CW"
 _START = struct.Struct(">2sBxII")
@@ -46,7 +46,7 @@ def pack(header: dict[str, Any], payload: bytes = b"") -> bytes:
     """The bytes of a frame.
 
     Raises:
-        ControlError: It is larger than a frame may be.
+        ControlError: The frame is too large.
     """
     text = json.dumps(header, separators=(",", ":")).encode()
     if len(text) > MAX_HEADER or len(payload) > MAX_PAYLOAD:
@@ -59,42 +59,42 @@ def pack(header: dict[str, Any], payload: bytes = b"") -> bytes:
 
 
 class Connection:
-    """Frames over a connected socket, which it owns; for one thread at a time."""
+    """Frames over a connected socket, which it owns. Use it from one thread at a time."""
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
 
     def send(self, header: dict[str, Any], payload: bytes = b"") -> None:
-        """Sends a frame; waits while the other side does not read, but not for ever.
+        """Sends a frame; blocks while the peer does not read, up to a timeout.
 
         Raises:
-            TimeoutError: The other side took nothing for `SEND_SECONDS`.
-            OSError: The other side is gone.
+            TimeoutError: The peer received nothing for `SEND_SECONDS`.
+            OSError: The connection is closed.
         """
         self.send_packed(pack(header, payload))
 
     def send_packed(self, data: bytes) -> None:
-        """Sends what `pack` made."""
+        """Sends the result of `pack`."""
         self.sock.settimeout(SEND_SECONDS)
         left = memoryview(data)
         while left:
             left = left[self.sock.send(left) :]
 
     def refuse(self, error: ControlError) -> None:
-        """Sends an error if there is room for it at once, and ends the connection."""
+        """Sends an error if it fits into the send buffer, and closes the connection."""
         with contextlib.suppress(OSError):
             self.sock.send(pack(refusal(error)), socket.MSG_DONTWAIT)
         self.close()
 
     def receive(self, timeout: float | None = None) -> Frame | None:
-        """The next frame; None where the other side has closed.
+        """The next frame; None if the peer closed the connection.
 
         Args:
-            timeout: Seconds to wait for its beginning; None waits as long as it takes.
+            timeout: Seconds to wait for the first byte; None waits without limit.
 
         Raises:
-            ControlError: These are no frames of this version.
-            TimeoutError: None began in `timeout`, or one was not finished in time.
+            ControlError: The data is not a frame of this version.
+            TimeoutError: No frame started within `timeout`, or a frame was not completed in time.
             OSError: The connection broke.
         """
         self.sock.settimeout(timeout)
@@ -130,7 +130,7 @@ class Connection:
         return Frame(header=header, payload=bytes(payload))
 
     def has_ended(self) -> bool:
-        """Whether the other side has closed, or says something that nobody asked for."""
+        """Whether the peer closed the connection or sent unexpected data."""
         self.sock.settimeout(0.0)
         try:
             self.sock.recv(1, socket.MSG_PEEK)
@@ -141,13 +141,13 @@ class Connection:
         return True
 
     def close(self) -> None:
-        """Ends the connection, and wakes whoever waits on it."""
-        with contextlib.suppress(OSError):  # The other side may have been first.
+        """Closes the connection and wakes threads that wait on it."""
+        with contextlib.suppress(OSError):  # The peer may have closed it first.
             self.sock.shutdown(socket.SHUT_RDWR)
         self.sock.close()
 
     def _read(self, size: int, deadline: float) -> bytearray:
-        """Exactly that many bytes; room is made as they come, not as they are promised."""
+        """Exactly this many bytes; memory is allocated as they arrive, not as announced."""
         data = bytearray()
         while len(data) < size:
             left = deadline - time.monotonic()

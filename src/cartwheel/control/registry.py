@@ -1,6 +1,6 @@
-"""Which simulations run on this computer: one socket and one small file for each.
+"""Lists the simulations on this computer: each has a socket and a small file.
 
-They lie in a folder that belongs to the user alone, so that nobody else can steer or
+They are in a folder that only the user can access, so that other users cannot control or
 impersonate a simulation.
 """
 
@@ -24,29 +24,29 @@ from cartwheel.codes.command import (
 from cartwheel.errors import ControlError
 
 VARIABLE = "CARTWHEEL_SIM"
-"""Names the simulation that commands mean where several run."""
+"""Selects the simulation for commands if several are running."""
 
 _LONGEST_SOCKET = 100
-"""Bytes of a socket's path; the system's own limit is 104 or 108."""
+"""Maximum length of a socket path, bytes; the system's limit is 104 or 108."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Running:
-    """A simulation that runs."""
+    """A running simulation."""
 
     pid: int
     title: str
-    """What it simulates, in a few words."""
+    """A short description of what is simulated."""
     world: str
     url: str | None = None
-    """Of the viewer; None without one."""
+    """URL of the web viewer; None without a viewer."""
     port: int | None = None
     ros_master: str | None = None
-    """URI of the ROS 1 master that it is known to; empty until it is, None without ROS."""
+    """URI of the ROS 1 master where it is registered; empty until then, None without ROS."""
     started: float = field(default_factory=time.time)
     """Seconds since 1970."""
     path: Path
-    """Of its socket."""
+    """Path of the socket."""
 
     def __str__(self) -> str:
         since = time.strftime("%H:%M:%S", time.localtime(self.started))
@@ -55,15 +55,15 @@ class Running:
 
 
 def folder() -> Path:
-    """The user's folder of sockets; made where it is missing.
+    """The user's folder for sockets, which is created if necessary.
 
     Raises:
-        ControlError: Somebody else could write there.
+        ControlError: Other users could write to the folder.
     """
     base = os.environ.get("XDG_RUNTIME_DIR", "")
     chosen = Path(base, "cartwheel") if base.startswith("/") and Path(base).is_dir() else None
     if chosen is None or len(os.fsencode(chosen)) > _LONGEST_SOCKET - len("/4194304-99.sock"):
-        # Every process of the user must come to the same folder, so TMPDIR has no say.
+        # TMPDIR is ignored, because all processes of a user must use the same folder.
         chosen = Path(f"/tmp/cartwheel-{os.getuid()}")  # noqa: S108 - owner and mode are checked
     try:
         chosen.mkdir(mode=0o700, exist_ok=True)
@@ -87,7 +87,7 @@ def folder() -> Path:
 
 
 def running() -> list[Running]:
-    """All simulations of this user, oldest first; what dead ones left behind is removed."""
+    """All running simulations of this user, oldest first; removes files of dead processes."""
     found = []
     for file in sorted(folder().glob("*.json")):
         entry = _read(file)
@@ -100,13 +100,13 @@ def running() -> list[Running]:
 
 
 def find(pid: int | None = None) -> Running:
-    """The simulation that a command means: the only one, or the one named.
+    """The simulation that a command applies to: the selected one, or the only one.
 
     Args:
-        pid: Of its process; the variable `VARIABLE` stands in for it.
+        pid: Process ID; the environment variable `VARIABLE` is the default.
 
     Raises:
-        ControlError: There is none, or several and none is named.
+        ControlError: No simulation is running, or several are and none is selected.
     """
     known = running()
     if pid is None:
@@ -138,14 +138,14 @@ def find(pid: int | None = None) -> Running:
 
 
 def listen() -> tuple[socket.socket, Path]:
-    """A listening socket of this process in the folder."""
+    """Creates a listening socket for this process in the folder."""
     base = folder()
     for count in range(1, 100):
         name = str(os.getpid()) if count == 1 else f"{os.getpid()}-{count}"
         path = base / f"{name}.sock"
         server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         if path.exists() and not answers(path):
-            # Left by a dead process whose number this one has now.
+            # Left by a dead process with the same process ID.
             path.unlink(missing_ok=True)
         try:
             server.bind(str(path))
@@ -162,7 +162,7 @@ def listen() -> tuple[socket.socket, Path]:
 
 
 def announce(entry: Running) -> None:
-    """Writes or replaces the file of a simulation; readers see the old or the new, never half."""
+    """Writes or replaces a simulation's file atomically."""
     values = {name: value for name, value in asdict(entry).items() if name != "path"}
     file = entry.path.with_suffix(".json")
     draft = entry.path.with_suffix(".draft")
@@ -177,13 +177,13 @@ def withdraw(path: Path) -> None:
 
 
 def answers(path: Path) -> bool:
-    """Whether somebody listens at a socket."""
+    """Whether a process is listening on a socket."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
         probe.settimeout(1.0)
         try:
             probe.connect(str(path))
         except (BlockingIOError, TimeoutError):
-            # Its queue is full: busy, but alive.
+            # The queue is full: busy, but alive.
             return True
         except OSError:
             return False

@@ -1,4 +1,4 @@
-"""The end of the control socket that a simulation holds."""
+"""The server side of the control socket."""
 
 from __future__ import annotations
 
@@ -24,41 +24,41 @@ from cartwheel.graph import resolve_name
 from cartwheel.session import Session
 
 MAX_CLIENTS = 64
-"""Clients at a time. One more takes the place of the one that has been silent longest."""
+"""Maximum number of clients. A new client replaces the client that has been silent longest."""
 
 _log = logging.getLogger(__name__)
 
 
 @dataclass(slots=True)
 class _Use:
-    """What a client does."""
+    """The activity of a client."""
 
     busy: bool = False
-    """A request of its is being answered, or a subscription served."""
+    """Whether a request or subscription is in progress."""
     asked: bool = False
     since: float = field(default_factory=time.monotonic)
 
     @property
     def rank(self) -> tuple[bool, float]:
-        """The least gives way first: clients that never asked for anything, then silent ones."""
+        """Sort key for eviction: first clients without any request, then the longest silent."""
         return self.asked, self.since
 
 
 class ControlServer:
-    """Lets other processes of the same user reach a session; starts at once.
+    """Gives other processes of the same user access to a session; starts at once.
 
-    Each client has a thread, which does one request after the other. A client that is slow,
-    silent or sends garbage costs that thread and a bounded queue, and nothing else. Clients that
-    ask for nothing keep no others out, nor do those that do not read what they asked for.
+    Each client has a thread that handles its requests one by one. A slow, silent or faulty client
+    only uses this thread and a bounded queue. Clients that send no requests or do not read the
+    responses cannot block other clients.
 
     Args:
-        session: To be reached.
-        title: What it simulates, in a few words.
-        load: Reads the file of a ``spawn``.
-        ros: Whether it is about to join a ROS 1 master; see `announce_ros`.
+        session: The session.
+        title: A short description of what is simulated.
+        load: Reads the file of a ``spawn`` request.
+        ros: Whether the session will register at a ROS 1 master; see `announce_ros`.
 
     Raises:
-        ControlError: No socket can be made.
+        ControlError: The socket cannot be created.
     """
 
     def __init__(self, session: Session, *, title: str, load: Load, ros: bool = False) -> None:
@@ -81,11 +81,11 @@ class ControlServer:
         self._thread.start()
 
     def announce(self, *, url: str | None, port: int | None) -> None:
-        """Tells where the viewer is."""
+        """Publishes the location of the web viewer."""
         self._announce(replace(self.entry, url=url, port=port))
 
     def announce_ros(self, master: str) -> None:
-        """Tells of which ROS 1 master the simulation is known to."""
+        """Publishes the ROS 1 master where the simulation is registered."""
         self._announce(replace(self.entry, ros_master=master))
 
     def _announce(self, entry: Running) -> None:
@@ -94,11 +94,11 @@ class ControlServer:
             registry.announce(self.entry)
 
     def offer_page(self, offer: PageOffer | None) -> None:
-        """States what page there is, None for none; clients that ask before wait for that."""
+        """Sets the web viewer, or None; clients that request it earlier wait for this call."""
         self._operations.offer_page(offer)
 
     def close(self) -> None:
-        """Sends all clients away and removes the socket."""
+        """Disconnects all clients and removes the socket."""
         if self._closed.is_set():
             return
         self._closed.set()
@@ -116,7 +116,7 @@ class ControlServer:
             except OSError:
                 if self._closed.wait(0.05):
                     return
-                continue  # Out of file descriptors, perhaps: others may free some.
+                continue  # Possibly out of file descriptors, which may be freed later.
             client = Connection(sock)
             if not self._admit(client):
                 client.refuse(
@@ -133,7 +133,7 @@ class ControlServer:
             ).start()
 
     def _admit(self, client: Connection) -> bool:
-        """Makes room for a client, if there is none; says whether there is some."""
+        """Makes room for a client if necessary; returns whether there is room."""
         with self._lock:
             if len(self._clients) >= MAX_CLIENTS:
                 idle = [one for one, use in self._clients.items() if not use.busy]
@@ -141,7 +141,7 @@ class ControlServer:
                     return False
                 given_up = min(idle, key=lambda one: self._clients[one].rank)
                 del self._clients[given_up]
-                # Its thread, which waits for a request, ends with that.
+                # This also ends its thread, which waits for a request.
                 given_up.close()
             self._clients[client] = _Use()
         return True
@@ -164,11 +164,11 @@ class ControlServer:
                     client.send(self._answer(frame, wills))
                 self._note(client, busy=False)
         except ControlError as error:
-            # No frame: what follows cannot be understood either.
+            # The stream is not in sync any more, so nothing else can be read.
             with contextlib.suppress(OSError):
                 client.send(refusal(error))
         except OSError:
-            pass  # It is gone, or took too long; nobody is left to be told.
+            pass  # The client has disconnected or is too slow to receive an error.
         finally:
             client.close()
             self._execute(wills)
@@ -189,7 +189,7 @@ class ControlServer:
             )
 
     def _stream(self, client: Connection, frame: Frame) -> bool:
-        """Serves a subscription to its end; returns whether there was one."""
+        """Serves a subscription until it ends; returns whether the request was a subscription."""
         try:
             parameters = _parameters(frame)
             topic = self._session.graph.topic(resolve_name(parameters.text("topic")))
@@ -204,7 +204,8 @@ class ControlServer:
             name = Parameters(frame.header).text("request")
             parameters = _parameters(frame)
             if name == "publish" and "at_end" in parameters:
-                # First, so that no message moves a robot that nothing would stop.
+                # Register the final message first, so that no message can move a robot that nothing
+                # stops.
                 wills.take(parameters)
             answer = self._operations.run(name, parameters, frame.payload)
         except CartwheelError as error:

@@ -1,4 +1,4 @@
-"""A topic's messages to clients, for as long as they read."""
+"""Streams a topic's messages to clients."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from cartwheel.graph import Mailbox, TopicInfo
 from cartwheel.session import Session
 
 _LOOK = 0.2
-"""s between two looks whether the client is still there."""
+"""Interval of the checks whether the client is still connected, s."""
 _QUEUE = 200
 _LARGE = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/PointCloud2"}
 _LARGE_QUEUE = 5
-"""Unread messages held for a client; the oldest are dropped and counted."""
+"""Default queue of unread messages per client; the oldest are dropped and counted."""
 _MOST, _MOST_LARGE = 10_000, 100
-"""Those that it may ask for."""
+"""Maximum queue lengths that a client can request."""
 _BATCH = 1 << 18
-"""Bytes sent at once."""
+"""Maximum bytes per send."""
 
 
 class Streams:
-    """Serves the subscriptions of all clients, each on the thread of its connection.
+    """Serves all subscriptions, each on its connection's thread.
 
     Args:
-        session: Whose topics.
+        session: The session.
         closed: Ends all streams when set.
     """
 
@@ -35,13 +35,14 @@ class Streams:
         self._closed = closed
 
     def serve(self, client: Connection, topic: TopicInfo, parameters: Parameters) -> None:
-        """Sends a topic's messages until the client or the simulation ends.
+        """Sends a topic's messages until the client disconnects or the simulation ends.
 
-        A frame's header has the message's simulation time and how many were dropped so far.
+        A frame's header contains the message's simulation time and the number of messages dropped
+        so far.
 
         Raises:
-            CartwheelError: The parameters make no sense; nothing was sent.
-            OSError: The client is gone, or has not read for `protocol.SEND_SECONDS`.
+            CartwheelError: The parameters are invalid; nothing was sent.
+            OSError: The client disconnected, or did not read for `protocol.SEND_SECONDS`.
         """
         with_data = parameters.flag("data", default=True)
         large = with_data and topic.type in _LARGE
@@ -50,7 +51,7 @@ class Streams:
         simulation = self._session.simulation
 
         def put(message: Any) -> None:
-            # On the simulation's thread: the time of the message is known only now.
+            # On the simulation's thread, because the message's time is known only there.
             box.put((simulation.time_ns, message if with_data else None))
 
         subscription = self._session.graph.subscribe(

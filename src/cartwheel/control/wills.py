@@ -1,4 +1,4 @@
-"""What is published when a client goes away, in whatever manner: a robot must not drive on."""
+"""Final messages, published when a client disconnects for any reason, to stop its robot."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from cartwheel.graph import Graph, resolve_name
 from cartwheel.messages import from_dict, type_name
 
 MOST = 16
-"""Topics for which one connection may leave a message."""
+"""Maximum number of topics with a final message per connection."""
 
 
 class Wills:
-    """The last messages of one connection, one for each topic.
+    """The final messages of a connection, one per topic.
 
     Args:
-        graph: To publish on.
+        graph: The graph to publish on.
     """
 
     def __init__(self, graph: Graph) -> None:
@@ -26,10 +26,11 @@ class Wills:
         self._messages: dict[str, tuple[str, Any]] = {}
 
     def take(self, parameters: Parameters) -> None:
-        """Reads `at_end` of a "publish": a message replaces that of its topic, null withdraws it.
+        """Reads `at_end` of a "publish" request: a message replaces the topic's message, null
+        withdraws it.
 
         Raises:
-            CartwheelError: It is not a message of the type, or there are too many.
+            CartwheelError: The message does not match the type, or there are too many.
         """
         name = resolve_name(parameters.text("topic"))
         content = parameters.value("at_end")
@@ -47,7 +48,7 @@ class Wills:
         self._messages[name] = (wanted, message)
 
     def execute(self) -> None:
-        """Publishes them; the connection has ended."""
+        """Publishes the messages after the connection ended."""
         known = {topic.name for topic in self._graph.topics()}
         for name, (wanted, message) in self._messages.items():
             if name in known:

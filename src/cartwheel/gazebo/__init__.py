@@ -1,4 +1,4 @@
-"""Gazebo's own topics and services under ``/gazebo``, acting on a session."""
+"""Gazebo's topics and services under ``/gazebo``, for a session."""
 
 from cartwheel.gazebo.api import GazeboApi
 

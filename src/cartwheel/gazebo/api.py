@@ -22,14 +22,14 @@ NODE = "gazebo"
 
 
 class GazeboApi:
-    """Offers ``/gazebo/…`` on a session's graph, as a running Gazebo does.
+    """Advertises ``/gazebo/…`` on a session's graph, as Gazebo does.
 
-    A request that cannot be met is answered with ``success`` false and the reason; it never
-    changes anything by half. Source: gazebo_ros, gazebo_ros_api_plugin.
+    A failed request returns ``success`` false with the reason, and never has partial effects.
+    Source: gazebo_ros, gazebo_ros_api_plugin.
 
     Args:
-        session: To act on.
-        package_path: Folders in which the packages of spawned models are looked for first.
+        session: The session.
+        package_path: Folders to search first for packages of spawned models.
     """
 
     def __init__(self, session: Session, *, package_path: Sequence[Path] = ()) -> None:
@@ -50,10 +50,11 @@ class GazeboApi:
         self._topics: list[StateTopics | StateCommands | Metrics | PhysicsReconfigure] = []
 
     def start(self) -> None:
-        """Advertises everything; on the owner's thread, or before there is one.
+        """Advertises all topics and services. Call it on the owner's thread, or before there is an
+        owner.
 
         Raises:
-            GraphError: Something of it is offered already.
+            GraphError: A service already exists.
         """
         graph = self._session.graph
         try:
@@ -77,7 +78,7 @@ class GazeboApi:
             raise
 
     def close(self) -> None:
-        """Takes everything off the graph."""
+        """Removes all topics and services."""
         for topic in self._topics:
             topic.close()
         for service in self._services:
@@ -87,7 +88,7 @@ class GazeboApi:
 
 
 def _title(name: str) -> str:
-    """What Gazebo's answers begin with."""
+    """The start of Gazebo's status messages."""
     if name.startswith("spawn_"):
         return "SpawnModel"
     return "".join(word.capitalize() for word in name.split("_"))

@@ -1,4 +1,4 @@
-"""Which room entities take up, and what reaches into a room that a request names."""
+"""Bounds of entities, and tests whether an entity overlaps bounds in a request."""
 
 from __future__ import annotations
 
@@ -25,31 +25,31 @@ from cartwheel.geometry import Pose, rotate
 from cartwheel.messages import message_class, zero
 
 EMPTY, BOX, CONVEX_HULL, SPHERE = range(4)
-"""Of Bounds.msg."""
+"""Types in Bounds.msg."""
 _TOUCH = 1e-6
-"""m between two things that touch."""
+"""Tolerance for contact, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """A collision, in its link's frame."""
+    """A collision in its link's frame."""
 
     link: str
     points: Floats
-    """(n, 3), m, whose convex hull it is; of a plane, a point of it and its normal."""
+    """Points with this convex hull, shape (n, 3), m; for a plane, a point and the normal."""
     radius: float = 0.0
-    """m that it reaches beyond them."""
+    """Distance by which the shape extends beyond the hull, m."""
     endless: bool = False
 
 
 class Rooms:
-    """The room that models take up with their collisions, each of them convex, as they stand now.
+    """Convex bounds of the models' collisions in the current state.
 
-    What has no collision is where its visuals are. For the simulation's thread alone, after a
+    Visuals are used for models without collisions. Use it on the simulation's thread, after a
     forward pass.
 
     Args:
-        entities: Finds models.
+        entities: Resolves model names.
     """
 
     def __init__(self, entities: Entities) -> None:
@@ -57,10 +57,11 @@ class Rooms:
         self._known: dict[str, tuple[RobotDescription, tuple[_Piece, ...]]] = {}
 
     def message(self, name: str) -> Any:
-        """``Bounds`` in the frame of the model's canonical link: a box, or none without an end.
+        """``Bounds`` in the frame of the model's canonical link: a box, or none for infinite
+        shapes.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         description = self._entities.model(name)
         own = self._entities.link_motion(name, description.canonical_link).pose.inverse()
@@ -79,10 +80,11 @@ class Rooms:
         return made
 
     def within(self, asked: Any) -> Callable[[str], bool]:
-        """Tells of a model's name whether it reaches into ``Bounds`` that are in the world's frame.
+        """Returns a test whether a model overlaps the given ``Bounds``, which are in the world
+        frame.
 
         Raises:
-            Refusal: The bounds make no sense.
+            Refusal: The bounds are invalid.
         """
         if asked.type == EMPTY:
             return lambda _: True
@@ -93,7 +95,7 @@ class Rooms:
         )
 
     def _gap(self, name: str, piece: _Piece, points: Floats) -> float:
-        """m between a collision and the convex hull of points in the world."""
+        """Distance between a collision and the convex hull of points in the world, m."""
         place = self._place(name, piece)
         if piece.endless:
             on, normal = place.apply(piece.points[0]), rotate(place.orientation, piece.points[1])
@@ -138,7 +140,7 @@ def _of(link: str, parts: Any) -> Iterator[_Piece]:
 
 
 def _shape(asked: Any) -> tuple[Floats, float]:
-    """Points in the world whose convex hull is meant, and how far beyond it reaches."""
+    """World points whose convex hull is requested, and the distance that it extends beyond them."""
     needed = {BOX: "two points", SPHERE: "two points", CONVEX_HULL: "at least three points"}
     if asked.type not in needed:
         raise Refusal(UNSUPPORTED, f"bounds of type {asked.type} are not supported")
@@ -157,5 +159,5 @@ def _shape(asked: Any) -> tuple[Floats, float]:
 
 
 def _corners(x: Any, y: Any, z: Any) -> Floats:
-    """Of a box, shape (8, 3), from two numbers on each axis."""
+    """Corners of a box from two values per axis, shape (8, 3)."""
     return np.array(list(itertools.product(x, y, z)), dtype=np.float64)

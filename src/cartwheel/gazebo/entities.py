@@ -1,4 +1,4 @@
-"""The models, links, joints and lights that requests name, and where they are."""
+"""Resolves the models, links, joints and lights in requests, and their poses."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from cartwheel.simulation import LinkHandle, PlacedModel, Simulation
 from cartwheel.world.entry import scoped
 
 INERTIAL = ("", "world", "map", "/map", "/world")
-"""Names of the world's own frame, as Gazebo takes them."""
+"""Names that Gazebo accepts for the world frame."""
 
 _ORIGIN = Pose()
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Where a frame is in the world and how it moves there."""
+    """The pose and velocity of a frame in the world."""
 
     pose: Pose = _ORIGIN
     linear: Vec3 = (0.0, 0.0, 0.0)
-    """m/s, of its origin, in the world's axes."""
+    """Velocity of the origin, m/s, in world axes."""
     angular: Vec3 = (0.0, 0.0, 0.0)
-    """rad/s, in the world's axes."""
+    """rad/s, in world axes."""
 
     def carried(self, offset: Pose) -> Motion:
-        """The motion of a frame that is fixed to this one at `offset`."""
+        """The motion of a frame fixed to this frame at `offset`."""
         place = self.pose @ offset
         arm = np.subtract(place.position, self.pose.position)
         vx, vy, vz = (np.asarray(self.linear) + np.cross(self.angular, arm)).tolist()
         return Motion(place, (vx, vy, vz), self.angular)
 
     def seen_from(self, frame: Motion) -> Motion:
-        """In another frame: the differences of place and speed, in that frame's axes.
+        """Relative pose and velocity in another frame's axes.
 
-        Source: gazebo_ros, ``GetModelState``; the turning of the frame moves nothing in it.
+        The frame's rotation adds no velocity. Source: gazebo_ros, ``GetModelState``.
         """
         back = quat_conjugate(frame.pose.orientation)
         linear, angular = (
@@ -51,10 +51,10 @@ class Motion:
 
 
 class Entities:
-    """Finds what a request names; for the simulation's thread alone.
+    """Resolves names in requests. Use it on the simulation's thread.
 
-    A link or joint is named as ``model::link``; its own name does where no other model has one
-    of that name.
+    Links and joints are specified as ``model::link``. A short name works if it is unique among all
+    models.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -62,14 +62,14 @@ class Entities:
 
     @property
     def placed(self) -> tuple[PlacedModel, ...]:
-        """The models of the world."""
+        """The models in the world."""
         return self._simulation.scene.models
 
     def model(self, name: str) -> RobotDescription:
         """The description of a model.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         for placed in self.placed:
             if placed.name == name:
@@ -82,15 +82,15 @@ class Entities:
         """A link and the name of its model.
 
         Raises:
-            UnknownNameError: There is no such link.
-            GraphError: Several models have one of that name.
+            UnknownNameError: The link does not exist.
+            GraphError: Several models have a link with this name.
         """
         model, link = self._find("link", name, {m.name: m.description.links for m in self.placed})
         assert isinstance(link, Link)
         return model, link
 
     def joint(self, name: str) -> tuple[str, Joint]:
-        """A joint and the name of its model; errors as those of `link`."""
+        """A joint and the name of its model; raises the same errors as `link`."""
         model, joint = self._find(
             "joint", name, {m.name: m.description.joints for m in self.placed}
         )
@@ -98,10 +98,10 @@ class Entities:
         return model, joint
 
     def light(self, name: str) -> Light:
-        """A light of the world.
+        """A light in the world.
 
         Raises:
-            UnknownNameError: There is none of that name.
+            UnknownNameError: The light does not exist.
         """
         lights = self._simulation.world.lights
         for light in lights:
@@ -141,10 +141,10 @@ class Entities:
         raise UnknownNameError(kind, name, _spelled_alike(name, every), code=ENTITY_UNKNOWN)
 
     def frame(self, name: str) -> Motion:
-        """The frame of the world, a model or a link, as of the last forward pass.
+        """The frame of the world, a model or a link, from the last forward pass.
 
         Raises:
-            GraphError: There is none of that name.
+            GraphError: The frame does not exist.
         """
         if name in INERTIAL:
             return Motion()
@@ -159,19 +159,23 @@ class Entities:
         return self.link_motion(model, link.name)
 
     def link_motion(self, model: str, link: str) -> Motion:
-        """Of a link's frame, as of the last forward pass."""
+        """Motion of a link's frame, from the last forward pass."""
         handle = LinkHandle(model, link)
         handle.bind(self._simulation.model, self._simulation.data)
         return Motion(handle.pose, *handle.motion(local=False))
 
     def model_motion(self, model: str) -> Motion:
-        """Of a model's frame, which goes with its canonical link, as of the last forward pass."""
+        """Motion of a model's frame, which is fixed to its canonical link, from the last forward
+        pass.
+        """
         description = self.model(model)
         link = self.link_motion(model, description.canonical_link)
         return link.carried(description.canonical_pose.inverse())
 
     def model_acceleration(self, name: str) -> tuple[Vec3, Vec3]:
-        """m/s² and rad/s² of a model's frame in the world's axes, as of the last forward pass."""
+        """Acceleration of a model's frame in world axes, m/s² and rad/s², from the last forward
+        pass.
+        """
         description = self.model(name)
         handle = LinkHandle(name, description.canonical_link)
         handle.bind(self._simulation.model, self._simulation.data)
@@ -179,7 +183,7 @@ class Entities:
 
 
 def _spelled_alike(name: str, every: Iterable[tuple[str, Link | Joint]]) -> list[str]:
-    """Scoped names where a scoped one was asked for; else the parts' own."""
+    """Scoped names if the requested name is scoped, otherwise short names."""
     if "::" in name:
         return [scoped(model, part.name) for model, part in every]
     return [part.name for _, part in every]

@@ -1,4 +1,4 @@
-"""What entities are, for simulation_interfaces, and which of them a request is about."""
+"""Categories, tags and filters of entities, for simulation_interfaces."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ from cartwheel.messages import zero
 from cartwheel.simulation import Simulation
 
 OBJECT, ROBOT, HUMAN, DYNAMIC_OBJECT, STATIC_OBJECT = 0, 1, 2, 4, 5
-"""Of EntityCategory.msg."""
+"""Values in EntityCategory.msg."""
 _CATEGORIES = (OBJECT, ROBOT, HUMAN, DYNAMIC_OBJECT, STATIC_OBJECT)
 _ALL = 1
-"""A filter of tags that wants all of them, not any."""
+"""Value of a tag filter that requires all tags, instead of any."""
 
 
 class EntityInfos:
-    """Knows what each model is, until somebody says otherwise.
+    """The default info of each model, and changes by requests.
 
-    What plugins, sensors or controllers belong to is a robot; what cannot move is a static object.
+    A model with plugins, sensors or controllers is a robot; a model that cannot move is a static
+    object.
 
     Args:
-        simulation: Whose models.
-        entities: Finds them.
+        simulation: The simulation.
+        entities: Resolves model names.
     """
 
     def __init__(self, simulation: Simulation, entities: Entities) -> None:
@@ -37,7 +38,7 @@ class EntityInfos:
         self._said: dict[str, tuple[Origin, Any]] = {}
 
     def offers(self) -> list[tuple[str, str, Handler, bool]]:
-        """The services: name, type, handler, and whether it runs on a thread of its own."""
+        """The services: name, type, handler, and whether the handler runs on a separate thread."""
         return [
             ("get_entity_info", "GetEntityInfo", self._get, False),
             ("set_entity_info", "SetEntityInfo", self._set, False),
@@ -46,18 +47,18 @@ class EntityInfos:
         ]
 
     def forget(self) -> None:
-        """Takes back all that was said."""
+        """Discards all changes."""
         self._said.clear()
 
     def info(self, name: str) -> Any:
         """``EntityInfo`` of a model.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         description = self._entities.model(name)
         origin, said = self._said.get(name, (None, None))
-        # Another model may have taken the name since.
+        # The name may meanwhile belong to a different model.
         if said is not None and origin is description.origin:
             return said
         made = zero(f"{PACKAGE}/msg/EntityInfo")
@@ -66,10 +67,10 @@ class EntityInfos:
         return made
 
     def filtered(self, filters: Any) -> list[str]:
-        """Names of the models that meet all of some ``EntityFilters``.
+        """Names of the models that match ``EntityFilters``.
 
         Raises:
-            Refusal: The filters make no sense.
+            Refusal: The filters are invalid.
         """
         try:
             pattern = re.compile(filters.filter)
@@ -118,7 +119,7 @@ class EntityInfos:
 
 
 def has_tags(tags: list[str], asked: Any) -> bool:
-    """Whether tags meet a ``TagsFilter``."""
+    """Whether tags match a ``TagsFilter``."""
     wanted = set(asked.tags)
     if not wanted:
         return True

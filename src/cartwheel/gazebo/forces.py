@@ -1,4 +1,4 @@
-"""Wrenches on links and efforts on joints."""
+"""Services for wrenches on links and efforts on joints."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from cartwheel.simulation.limits import STRONGEST, number
 
 
 class Pushes:
-    """Wrenches on links and efforts on joints, by ROS 1's names and by ROS 2's.
+    """Wrenches on links and efforts on joints, with the services of ROS 1 and ROS 2.
 
-    A wrench is turned into the world's axes when it is asked for, and does not turn with the
-    body. In the world's frame and in the body's own, the reference point counts from the body's
-    centre of mass; in any other it is that point. Source: gazebo_ros, ``applyBodyWrench``;
-    gazebo_ros_force_system.
+    A wrench is converted to world axes when it is requested, and does not rotate with the body. In
+    the world frame and in the body's own frame, the reference point is relative to the body's
+    centre of mass. In any other frame, it is a point in that frame. Source: gazebo_ros,
+    ``applyBodyWrench``; gazebo_ros_force_system.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class Pushes:
         self._report = report
 
     def offers(self) -> list[Offer]:
-        """The services of ROS 1."""
+        """The ROS 1 services."""
         package = "gazebo_msgs/srv"
         return [
             Offer("apply_body_wrench", f"{package}/ApplyBodyWrench", self.apply_body_wrench),
@@ -44,7 +44,7 @@ class Pushes:
         ]
 
     def ros2_offers(self) -> list[Offer]:
-        """The services of ROS 2."""
+        """The ROS 2 services."""
         package = "gazebo_msgs/srv"
         return [
             Offer("apply_link_wrench", f"{package}/ApplyLinkWrench", self.apply_link_wrench),
@@ -152,6 +152,6 @@ class Pushes:
 
 
 def _span(request: Any) -> tuple[int, int | None]:
-    """When it begins and how long it lasts, ns; None is without end."""
+    """Start and duration, ns; None for no end."""
     duration = nanoseconds(request.duration)
     return nanoseconds(request.start_time), None if duration < 0 else duration

@@ -1,4 +1,4 @@
-"""How fast the simulation and its sensors really run."""
+"""Performance metrics of the simulation and its sensors."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.world.entry import scoped
 
 RATE = 5.0
-"""Hz of simulation time."""
+"""Publish rate, Hz of simulation time."""
 _CAMERAS = ("camera", "depth", "depth_camera", "rgbd_camera", "multicamera", "wideanglecamera")
 
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """What was reached at one time."""
+    """Counters at one time."""
 
     wall: float
     time_ns: int
@@ -28,9 +28,9 @@ class _Mark:
 
 
 class Metrics:
-    """``performance_metrics``: the real-time factor, and what each sensor published.
+    """``performance_metrics``: the real-time factor, and the rate of each sensor.
 
-    Measured from one message to the next, and only while somebody reads it. Source: Gazebo 11,
+    Measured between two messages, and only while there are subscribers. Source: Gazebo 11,
     gazebo_ros_api_plugin.
     """
 
@@ -49,7 +49,7 @@ class Metrics:
         self._task = simulation.schedule(RATE, after=self._publish, active=self._wanted)
 
     def close(self) -> None:
-        """Takes the topic off the graph."""
+        """Removes the topic."""
         self._simulation.unschedule(self._task)
         self._publisher.close()
 
@@ -83,7 +83,7 @@ class Metrics:
         )
 
     def _sensors(self) -> list[tuple[str, Sensor, set[str]]]:
-        """Each sensor with its scoped name and the nodes that publish for it."""
+        """Each sensor with its scoped name and the nodes that publish its data."""
         return [
             (
                 scoped(placed.name, link.name, sensor.name),

@@ -1,4 +1,4 @@
-"""Gravity, step length and speed; pause and reset."""
+"""Services for gravity, step length, speed, pause and reset."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cartwheel.simulation.clock import NANOSECONDS, to_ns
 from cartwheel.simulation.limits import check_speed, number
 
 LONGEST_STEP = 0.1
-"""s; with a longer one nothing stands on anything."""
+"""s; with a longer step, no contact is stable."""
 _ODE_DEFAULTS: dict[str, float | int | bool] = {
     "auto_disable_bodies": False,
     "sor_pgs_precon_iters": 0,
@@ -29,23 +29,22 @@ _ODE_DEFAULTS: dict[str, float | int | bool] = {
     "erp": 0.2,
     "max_contacts": 20,
 }
-"""What a Gazebo 11 tells that was not told anything."""
+"""Default values in Gazebo 11."""
 
 
 class Physics:
     """physics_properties, pause, unpause and the two resets.
 
-    The real-time factor that is aimed at is time_step times max_update_rate. ODE's parameters
-    are kept and given back: the solver here has none of them. Source: gazebo_ros,
-    gazebo_ros_api_plugin.
+    The target real-time factor is time_step times max_update_rate. ODE's parameters are stored and
+    returned, but have no effect on this solver. Source: gazebo_ros, gazebo_ros_api_plugin.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self.ode: dict[str, float | int | bool] = dict(_ODE_DEFAULTS)
-        """ODE's parameters as they were last set."""
+        """The last values of ODE's parameters."""
         self.on_change: Callable[[], None] = lambda: None
-        """Called after a request changed anything."""
+        """Called after a request changed a value."""
 
     def offers(self) -> list[Offer]:
         """The services."""
@@ -72,17 +71,17 @@ class Physics:
 
     @property
     def time_step(self) -> float:
-        """s."""
+        """Step length, s."""
         return self._simulation.step_ns / NANOSECONDS
 
     @property
     def gravity(self) -> Vec3:
-        """m/s²."""
+        """Gravity, m/s²."""
         return self._simulation.world.gravity
 
     @property
     def max_update_rate(self) -> float:
-        """Steps a second of wall time that are aimed at; 0 is as many as can be."""
+        """Target number of steps per second of wall time; 0 is as fast as possible."""
         speed = self._simulation.speed
         return 0.0 if speed is None else speed * NANOSECONDS / self._simulation.step_ns
 
@@ -114,13 +113,13 @@ class Physics:
         ode: Mapping[str, float | int | bool],
         tell: bool = True,
     ) -> tuple[str, ...]:
-        """Makes all of it count, and tells of it where it is asked to.
+        """Applies all values and, if `tell` is set, calls the callback for changes.
 
         Returns:
-            What has no effect.
+            Parameters without effect.
 
         Raises:
-            CartwheelError: A value makes no sense; nothing has changed.
+            CartwheelError: A value is invalid; nothing has changed.
         """
         step_ns = to_ns(number(time_step, "time_step"))
         if not 1 <= step_ns <= to_ns(LONGEST_STEP):

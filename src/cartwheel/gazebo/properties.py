@@ -1,4 +1,4 @@
-"""Properties of links, joints, models, lights and the world."""
+"""Services for properties of links, joints, models, lights and the world."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ _JOINT_FIELDS = (
 )
 _IN_ROS2 = {"hiStop": "hi_stop", "loStop": "lo_stop"}
 _HEAVIEST = 1e9
-"""kg, kg m², N m s/rad."""
+"""Maximum, kg, kg m² or N m s/rad."""
 
 
 class Properties:
-    """``get_`` and ``set_`` of properties.
+    """The ``get_`` and ``set_`` services of properties.
 
-    What is set becomes part of the model's description: it outlasts what is spawned and deleted
-    later, and a reset. Source: gazebo_ros, gazebo_ros_api_plugin; gazebo_ros_properties.
+    Changes become part of the model's description, so they persist when other models are spawned or
+    deleted, and after a reset. Source: gazebo_ros, gazebo_ros_api_plugin; gazebo_ros_properties.
     """
 
     def __init__(self, simulation: Simulation, entities: Entities) -> None:
@@ -57,7 +57,7 @@ class Properties:
         self._entities = entities
 
     def offers(self) -> list[Offer]:
-        """The services of ROS 1."""
+        """The ROS 1 services."""
         package = "gazebo_msgs/srv"
         return [
             Offer(
@@ -83,7 +83,7 @@ class Properties:
         ]
 
     def ros2_offers(self) -> list[Offer]:
-        """The services of ROS 2: some of ROS 1's, with types of their own where those differ."""
+        """The ROS 2 services: some of the ROS 1 services, with separate types if they differ."""
         own = [
             Offer(
                 "get_model_properties",
@@ -103,7 +103,7 @@ class Properties:
         return [*own, *(offer for offer in self.offers() if offer.name not in without)]
 
     def get_scoped_properties(self, request: Any) -> Answer:
-        """As ROS 2 tells them: links have their model's name before theirs."""
+        """The ROS 2 response, in which link names include the model's name."""
         answer = self.get_model_properties(request)
         model, told = request.model_name, answer.fields
         told["canonical_body_name"] = scoped(model, told["canonical_body_name"])
@@ -228,7 +228,7 @@ class Properties:
         return Answer("SetJointProperties: properties set", notes=tuple(notes))
 
     def _drive(self, model: str, joint: Joint, driven: Mapping[str, float]) -> list[str]:
-        """ODE's motor of a joint: fmax at most to reach vel. Returns what has no effect."""
+        """ODE's joint motor: at most fmax to reach vel. Returns the parameters without effect."""
         if (model, joint.name) not in self._simulation.scene.joints:
             return [
                 "fmax and vel have no effect because the joint does not move or has more than "
@@ -272,7 +272,7 @@ class Properties:
         return Answer("SetLightProperties: properties set", notes=notes)
 
     def set_light(self, request: Any) -> Answer:
-        """ROS 2's request, which leaves where a light is, and its highlights."""
+        """Handles the ROS 2 request, which keeps a light's pose and specular colour."""
         light = self._entities.light(request.light_name)
         self._relight(light, _lit(light, request))
         return Answer("SetLightProperties: properties set")
@@ -285,7 +285,7 @@ class Properties:
 
 
 def _lit(light: Light, request: Any) -> Light:
-    """A light with what ROS 1 and ROS 2 set of it."""
+    """A light with the values set in a ROS 1 or ROS 2 request."""
     return dataclasses.replace(
         light,
         diffuse=_colour(request.diffuse, "diffuse"),
@@ -298,7 +298,7 @@ def _lit(light: Light, request: Any) -> Light:
 
 
 def _nested(description: RobotDescription) -> list[str]:
-    """Names of the models within, whose links are scoped by them."""
+    """Names of nested models, which are part of their links' scoped names."""
     names = (link.name.partition("::") for link in description.links)
     return list(dict.fromkeys(model for model, separator, _ in names if separator))
 
@@ -309,7 +309,7 @@ def _colour(value: Any, name: str) -> tuple[float, float, float, float]:
 
 
 def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joint, list[str]]:
-    """A joint with the properties that were given, and what of them has no effect."""
+    """A joint with the given properties, and the properties without effect."""
     notes: list[str] = []
     axes = [joint.axis] if joint.axis2 is None else [joint.axis, joint.axis2]
     if joint.type in ("fixed", "ball"):
@@ -328,7 +328,7 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
         for field, bound in (("hiStop", "upper"), ("loStop", "lower")):
             if index < len(given[field]):
                 value = given[field][index]
-                # Gazebo's number for no stop is 1e16.
+                # Gazebo's value for a missing stop is 1e16.
                 changes[bound] = value if abs(value) < 1e10 else None
         axes[index] = dataclasses.replace(axis, **changes)  # type: ignore[arg-type]
         lower, upper = axes[index].lower, axes[index].upper

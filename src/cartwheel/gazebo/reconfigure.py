@@ -1,4 +1,4 @@
-"""Physics as parameters that dynamic_reconfigure's clients show and change."""
+"""Physics parameters for dynamic_reconfigure clients."""
 
 from __future__ import annotations
 
@@ -65,11 +65,11 @@ PARAMETERS = (
     _double("contact_max_correcting_vel", 100.0, 0.0, 10_000_000.0),
     _int("max_contacts", 100, 10_000_000),
 )
-"""Names, bounds and defaults of Gazebo 11's."""
+"""Names, limits and defaults in Gazebo 11."""
 
 
 class PhysicsReconfigure:
-    """``/gazebo/set_parameters``: the same as set_physics_properties, value by value.
+    """``/gazebo/set_parameters``: the same as set_physics_properties, by parameter.
 
     Source: gazebo_ros, ``Physics.cfg``.
     """
@@ -85,7 +85,7 @@ class PhysicsReconfigure:
         physics.on_change = self._tell
 
     def close(self) -> None:
-        """Takes it off the graph."""
+        """Removes the service and its topics."""
         self._physics.on_change = lambda: None
         self._server.close()
 
@@ -105,7 +105,7 @@ class PhysicsReconfigure:
         self._server.update(self._present())
 
     def _change(self, values: dict[str, Value]) -> dict[str, Value]:
-        """Takes what differs from what was told: the rest may have changed in other ways."""
+        """Applies values that differ from the last published ones: others may have changed."""
         told, now = self._server.values, self._present()
         new: dict[str, Any] = now | {k: v for k, v in values.items() if v != told[k]}
         try:

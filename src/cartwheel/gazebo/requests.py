@@ -1,4 +1,4 @@
-"""What a request says, as checked numbers, and what an answer is made of."""
+"""Converts requests to checked numbers, and builds responses."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from cartwheel.messages import message_class, zero
 from cartwheel.simulation.limits import FARTHEST, number, rotation
 
 REPORTED = 200
-"""Different failures that are reported at once."""
+"""Maximum number of different failures reported in a burst."""
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A success: what Gazebo's status message says of it, and the response's fields."""
+    """A success: Gazebo's status message, and the response's fields."""
 
     status: str = ""
     fields: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
-    """What of the request has no effect, sentences for the status message."""
+    """Sentences about parameters without effect, for the status message."""
 
 
 Handler = Callable[[Any], Answer]
@@ -34,7 +34,7 @@ class Offer:
     """A service of the API."""
 
     name: str
-    """With or without the namespace, as the API has it."""
+    """With or without the namespace, as in the API."""
     type: str
     handler: Handler
     threaded: bool = False
@@ -43,15 +43,15 @@ class Offer:
 def answering(
     offer: Offer, tell: Callable[[Diagnostic], None], *, title: str = ""
 ) -> Callable[[Any], Any]:
-    """A handler for the graph that answers in any case.
+    """A handler that always returns a response.
 
-    A request that cannot be met is answered with ``success`` false and the reason; where the
-    response has no room for it, it is told. Faults of ours are told as well.
+    A failed request returns ``success`` false with the reason. If the response has no field for the
+    reason, the failure is reported. Internal errors are also reported.
 
     Args:
         offer: The service.
-        tell: Takes what no answer tells; from any thread.
-        title: Before each reason.
+        tell: Reports failures that the response cannot contain. Thread-safe.
+        title: Prefix of each reason.
     """
     response_type = f"{offer.type}_Response"
 
@@ -83,7 +83,7 @@ def answering(
 
 
 def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:
-    """``geometry_msgs/Vector3`` or ``Point``."""
+    """Converts ``geometry_msgs/Vector3`` or ``Point``."""
     return (
         number(value.x, f"{name}.x", most=most),
         number(value.y, f"{name}.y", most=most),
@@ -92,10 +92,10 @@ def vector(value: Any, name: str, *, most: float = FARTHEST) -> Vec3:
 
 
 def pose(value: Any, name: str) -> Pose:
-    """``geometry_msgs/Pose``; an orientation of zeros, which nobody set, is none, as in Gazebo.
+    """Converts ``geometry_msgs/Pose``; a quaternion of zeros is the identity, as in Gazebo.
 
     Raises:
-        CartwheelError: A number is not finite, or the orientation is no rotation.
+        CartwheelError: A number is not finite, or the orientation is invalid.
     """
     position = vector(value.position, f"{name}.position")
     q = value.orientation
@@ -106,18 +106,18 @@ def pose(value: Any, name: str) -> Pose:
 
 
 def pose_message(where: Pose) -> Any:
-    """``geometry_msgs/Pose``."""
+    """Creates ``geometry_msgs/Pose``."""
     Pose_, Point = message_class("geometry_msgs/msg/Pose"), message_class("geometry_msgs/msg/Point")
     Quaternion = message_class("geometry_msgs/msg/Quaternion")
     return Pose_(Point(*where.position), Quaternion(*where.orientation))
 
 
 def vector_message(value: Vec3) -> Any:
-    """``geometry_msgs/Vector3``."""
+    """Creates ``geometry_msgs/Vector3``."""
     return message_class("geometry_msgs/msg/Vector3")(*value)
 
 
 def twist_message(linear: Vec3, angular: Vec3) -> Any:
-    """``geometry_msgs/Twist``."""
+    """Creates ``geometry_msgs/Twist``."""
     Twist = message_class("geometry_msgs/msg/Twist")
     return Twist(vector_message(linear), vector_message(angular))

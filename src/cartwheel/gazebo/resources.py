@@ -1,4 +1,4 @@
-"""What can be spawned and loaded, and which places the world names, for simulation_interfaces."""
+"""Lists spawnable models, loadable worlds and named poses, for simulation_interfaces."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ Kind = Literal["model", "world"]
 
 
 class Resources:
-    """Lists models and worlds: those that are shipped, and those in the folders of models.
+    """Lists models and worlds: built-in ones and those in model folders.
 
     Args:
-        simulation: Whose world.
-        package_path: Where models are looked for first.
-        reach: Folders that clients may name, besides those of packages and models.
+        simulation: The simulation.
+        package_path: Folders to search for models first.
+        reach: Folders that clients may access, besides those of packages and models.
     """
 
     def __init__(self, simulation: Simulation, package_path: Sequence[Path], reach: Reach) -> None:
@@ -36,7 +36,7 @@ class Resources:
         self._packages = Packages(None, package_path, reach=reach)
 
     def offers(self) -> list[tuple[str, str, Handler, bool]]:
-        """The services: name, type, handler, and whether it runs on a thread of its own."""
+        """The services: name, type, handler, and whether the handler runs on a separate thread."""
         return [
             ("get_spawnables", "GetSpawnables", self._spawnables, True),
             ("get_named_poses", "GetNamedPoses", self._places, False),
@@ -84,7 +84,7 @@ class Resources:
         raise Refusal(UNSUPPORTED, "named poses have no bounds")
 
     def _folders(self, sources: Iterable[str]) -> tuple[list[str], list[Path]]:
-        """What is wrong with some of the sources, and the folders that the others are."""
+        """Errors for invalid sources, and the folders of the valid ones."""
         wrong, found = [], []
         for source in sources:
             folder = Path(unquote(source.removeprefix("file://")))
@@ -107,14 +107,14 @@ class Resources:
 
 
 def _world(name: str, *, uri: str) -> Any:
-    """``WorldResource``."""
+    """Creates ``WorldResource``."""
     made = zero(f"{PACKAGE}/msg/WorldResource")
     made.name, made.world_resource.uri = name, uri
     return made
 
 
 def _described(kind: Kind, folders: Iterable[Path]) -> Iterator[tuple[Path, str]]:
-    """The models or worlds that are shipped or lie in folders: their files and names."""
+    """The built-in models or worlds and those in folders: files and names."""
     files = list(shipped_descriptions())
     for folder in folders:
         files += _files(folder)
@@ -125,7 +125,7 @@ def _described(kind: Kind, folders: Iterable[Path]) -> Iterator[tuple[Path, str]
 
 
 def _files(folder: Path) -> Iterator[Path]:
-    """The descriptions in a folder, and those of the models that have folders in it."""
+    """The descriptions in a folder and in its model folders."""
     try:
         entries = sorted(folder.iterdir())
     except OSError:
@@ -139,7 +139,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _kind_and_name(path: Path) -> tuple[Kind, str] | None:
-    """What a file describes; None for what cannot be read, or is a part of others."""
+    """The type and name in a file; None for unreadable files and parts of other descriptions."""
     try:
         root = xml.read_file(path)
     except DescriptionError:

@@ -1,4 +1,4 @@
-"""How simulation_interfaces answers: results by number, and why."""
+"""Result codes and messages of simulation_interfaces."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from cartwheel.messages import zero
 
 PACKAGE = "simulation_interfaces"
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)
-"""Of Result.msg; services have further ones of their own."""
+"""Values in Result.msg; services define additional values."""
 
 Handler = Callable[[Any, Any], None]
-"""Takes a request and fills the response's fields."""
+"""Handles a request by setting the response's fields."""
 
 
 class Refusal(Exception):  # noqa: N818 - it is an answer
-    """A result that is none of success."""
+    """A result code that is not a success."""
 
     def __init__(self, result: int, text: str) -> None:
         super().__init__(text)
@@ -25,7 +25,7 @@ class Refusal(Exception):  # noqa: N818 - it is an answer
 
 
 def outcome(function: Callable[[], None]) -> tuple[int, str]:
-    """Runs a function; the result that tells what came of it, and its text."""
+    """Runs a function and returns its result code and message."""
     try:
         function()
     except Refusal as refusal:
@@ -38,14 +38,14 @@ def outcome(function: Callable[[], None]) -> tuple[int, str]:
 
 
 def answering(kind: str, handler: Handler) -> Callable[[Any], Any]:
-    """A handler for the graph, of the service type ``simulation_interfaces/srv/{kind}``."""
+    """A graph handler for the service type ``simulation_interfaces/srv/{kind}``."""
 
     def handle(request: Any) -> Any:
         response = zero(f"{PACKAGE}/srv/{kind}_Response")
         result, text = outcome(lambda: handler(request, response))
         if hasattr(response, "result"):
             response.result.result = result
-            # What went well may have a remark all the same.
+            # A successful result may also have a message.
             response.result.error_message = text or response.result.error_message
         return response
 

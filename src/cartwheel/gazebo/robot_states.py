@@ -1,4 +1,4 @@
-"""robot_state_publisher's work, where nobody else does it: where each link is, on ``/tf``."""
+"""Publishes link poses on ``/tf`` like robot_state_publisher, unless another node does."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from cartwheel.simulation import Simulation
 
 NODE = "robot_state_publisher"
 RATE = 50.0
-"""Hz of simulation time at which moving joints are told."""
+"""Publish rate for moving joints, Hz of simulation time."""
 _LOOK = 10.0
-"""Hz of simulation time at which new models are looked for."""
+"""Rate of checks for new models, Hz of simulation time."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Told:
-    """A robot whose links' frames are told."""
+    """A robot whose link frames are published."""
 
     description: RobotDescription
     prefix: str
@@ -33,17 +33,17 @@ class _Told:
 
 
 class RobotStates:
-    """Tells where each link of each robot is in its parent link.
+    """Publishes the pose of each robot link in its parent link.
 
-    Fixed joints go to ``/tf_static``, the others to ``/tf``. What a plugin tells is left to
-    it: wheels whose drive publishes their transforms. So is the root: it is the drive's, in
-    ``odom``. Two robots with the same frames need a namespace or prefix: the second one's are
-    left out, and reported. For the owner's thread. Source: robot_state_publisher.
+    Fixed joints are published on ``/tf_static``, others on ``/tf``. Transforms that plugins publish
+    are omitted, such as wheels whose drive publishes them. So is the root link: its drive publishes
+    it in ``odom``. Two robots with the same frames need a namespace or prefix: the second robot's
+    frames are omitted, and reported. Use it on the owner's thread. Source: robot_state_publisher.
 
     Args:
-        simulation: Whose robots.
-        graph: To publish on.
-        descriptions: Where the robots are described.
+        simulation: The simulation.
+        graph: The graph to publish on.
+        descriptions: The published robot descriptions.
     """
 
     def __init__(
@@ -62,17 +62,18 @@ class RobotStates:
         self._look()
 
     def leave_to_others(self, topics: frozenset[str]) -> None:
-        """Leaves the robots to others that these describe, and tells of all the rest.
+        """Stops publishing for robots described by other nodes, and publishes for the rest.
 
         Args:
-            topics: On which others publish descriptions; ``/robot_description`` is any robot's.
+            topics: Topics on which other nodes publish descriptions; ``/robot_description`` may be
+                any robot's.
         """
         if topics != self._others:
             self._others = topics
             self._look()
 
     def close(self) -> None:
-        """Ends it."""
+        """Stops publishing."""
         self._tell_of({})
         self._simulation.unschedule(self._looking)
         self._simulation.unschedule(self._telling)
@@ -122,7 +123,7 @@ class RobotStates:
             if fixed:
                 poses = link_poses(description, {})
                 static.put((NODE, name), _transforms(0, fixed, poses, prefix))
-        # Who tells nothing publishes nothing: so /tf shows whose it is.
+        # Advertise only if there is something to publish, so that /tf shows the actual publisher.
         if self._told and self._publisher is None:
             self._publisher = self._graph.advertise(
                 "/tf", "tf2_msgs/msg/TFMessage", node=NODE, rate=RATE
@@ -168,7 +169,7 @@ class RobotStates:
 
 
 def _tree(description: RobotDescription) -> list[Joint]:
-    """The joints that make the tree of links, one for each link but the root."""
+    """The joints in the link tree: one for each link except the root."""
     inbound: dict[str, Joint] = {}
     for joint in description.joints:
         if joint.parent != "world":
@@ -177,7 +178,7 @@ def _tree(description: RobotDescription) -> list[Joint]:
 
 
 def _told_by_plugins(description: RobotDescription) -> set[str]:
-    """Joints whose transforms a plugin publishes, as its tag says."""
+    """Joints whose transforms a plugin publishes, according to its tags."""
     names = {joint.name for joint in description.joints}
     found: set[str] = set()
     for tag in description.plugins:

@@ -34,17 +34,16 @@ NODE = "gazebo"
 
 
 class Ros2Api:
-    """Offers what Gazebo and new Gazebo offer in ROS 2, and simulation_interfaces.
+    """Advertises the ROS 2 interfaces of Gazebo Classic, new Gazebo and simulation_interfaces.
 
-    A request that cannot be met is answered with ``success`` false and, where the response has
-    room for it, the reason; it never changes anything by half. What Gazebo has from plugins of the
-    world is there without them; those add the namespaces that they state. Source: gazebo_ros 3,
-    gazebo_ros_init, gazebo_ros_factory, gazebo_ros_force_system, gazebo_ros_state,
-    gazebo_ros_properties.
+    A failed request returns ``success`` false with the reason, if the response has a field for it,
+    and never has partial effects. Services that Gazebo gets from world plugins exist without these
+    plugins; the plugins add their namespaces. Source: gazebo_ros 3, gazebo_ros_init,
+    gazebo_ros_factory, gazebo_ros_force_system, gazebo_ros_state, gazebo_ros_properties.
 
     Args:
-        session: To act on.
-        package_path: Folders in which the packages of spawned models are looked for first.
+        session: The session.
+        package_path: Folders to search first for packages of spawned models.
     """
 
     def __init__(self, session: Session, *, package_path: Sequence[Path] = ()) -> None:
@@ -64,10 +63,11 @@ class Ros2Api:
         self._topics: list[StateTopics | Metrics] = []
 
     def start(self) -> None:
-        """Advertises everything; on the owner's thread, or before there is one.
+        """Advertises all topics and services. Call it on the owner's thread, or before there is an
+        owner.
 
         Raises:
-            GraphError: Something of it is offered already.
+            GraphError: A service already exists.
         """
         graph = self._session.graph
         try:
@@ -90,7 +90,7 @@ class Ros2Api:
             raise
 
     def close(self) -> None:
-        """Takes everything off the graph."""
+        """Removes all topics and services."""
         for topic in self._topics:
             topic.close()
         self._topics.clear()
@@ -109,7 +109,7 @@ class Ros2Api:
         package = "gazebo_msgs/srv"
         states = [
             offer
-            # Where most worlds have it.
+            # The namespace in most worlds.
             for prefix in dict.fromkeys((*self._namespaces("gazebo_ros_state"), "/gazebo"))
             for offer in (
                 Offer(f"{prefix}/get_entity_state", f"{package}/GetEntityState", self._get_state),
@@ -137,7 +137,7 @@ class Ros2Api:
         ]
 
     def _namespaces(self, plugin: str) -> list[str]:
-        """The root, and those that the world's plugins of that name state."""
+        """The root, and the namespaces of this plugin in the world."""
         found = [""]
         for tag in self._simulation.world.plugins:
             stated = tag.element.find("ros/namespace")
@@ -151,7 +151,7 @@ class Ros2Api:
             name=request.name,
             where=pose(request.initial_pose, "initial_pose"),
             reference_frame=request.reference_frame,
-            # Without one a node of ROS 2 is at the root, whatever its model is called.
+            # Without a namespace, a ROS 2 node is at the root, whatever its model's name.
             namespace=request.robot_namespace or "/",
         )
         return Answer(f"SpawnEntity: Successfully spawned entity [{request.name}]")
@@ -197,7 +197,7 @@ class Ros2Api:
         try:
             self._entities.link(name)
         except UnknownNameError:
-            # The error is to name models.
+            # The error should list models.
             return True
         except CartwheelError:
             return False

@@ -1,4 +1,4 @@
-"""What newer ROS 2 programs steer any simulator by: simulation_interfaces."""
+"""The simulation_interfaces standard, which newer ROS 2 programs use for any simulator."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from cartwheel.session import Session
 from cartwheel.simulation import RunState
 
 PREFIX = "/gz_server"
-"""Where new Gazebo's node offers them."""
+"""Namespace of new Gazebo's node."""
 _NAME_NOT_UNIQUE, _NAME_INVALID, _NO_RESOURCE, _NAMESPACE_INVALID, _PARSE_ERROR = (
     101, 102, 104, 105, 106,
 )  # fmt: skip
@@ -46,18 +46,18 @@ _NOT_THERE = frozenset(
     ("POSE_BOUNDS", "SIMULATION_RESET_TIME", "WORLD_LOADING", "WORLD_RESOURCE_STRING",
      "WORLD_TAGS", "WORLD_UNLOADING")
 )  # fmt: skip
-"""Features that are refused: all others of SimulatorFeatures.msg are there."""
+"""Unsupported features; all others in SimulatorFeatures.msg are supported."""
 
 
 class SimulationInterfaces:
     """Serves simulation_interfaces 2. Every model is an entity.
 
     Args:
-        session: To act on.
-        entities: Finds models.
-        spawning: Puts models into the world.
-        states: Gets and sets where they are.
-        package_path: Where models look for packages first.
+        session: The session.
+        entities: Resolves model names.
+        spawning: Spawns models.
+        states: Gets and sets poses and velocities.
+        package_path: Folders to search first for packages.
     """
 
     def __init__(
@@ -79,10 +79,10 @@ class SimulationInterfaces:
         self._resources = Resources(session.simulation, package_path, spawning.reach)
         self._original: frozenset[str] = frozenset()
         self._stopped = False
-        """Whether it was stopped and not paused since, as far as requests say."""
+        """Whether the last request stopped the simulation instead of pausing it."""
 
     def start(self, node: str) -> list[Service]:
-        """Offers everything; what stands in the world now is what a reset leaves there."""
+        """Advertises everything; the current models are restored by a reset."""
         self._original = frozenset(self._simulation.models)
         self._stepping.start(node, PREFIX)
         offers: list[tuple[str, str, Handler, bool]] = [
@@ -112,7 +112,7 @@ class SimulationInterfaces:
         ]
 
     def close(self) -> None:
-        """Takes the action off the graph; the services are the caller's."""
+        """Removes the action; the caller removes the services."""
         self._stepping.close()
 
     # -- what there is

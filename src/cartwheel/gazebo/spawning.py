@@ -1,4 +1,4 @@
-"""Models in and out, and lights out."""
+"""Spawns and deletes models, and adds and removes lights."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ _ASIDE = r"(?:\s|<\?(?:(?!\?>).)*\?>|<!--(?:(?!-->).)*-->)*"
 _LIGHT = re.compile(
     rf"({_ASIDE}<sdf\b[^>]*>)({_ASIDE}<light\b.*</light>{_ASIDE})(</sdf>{_ASIDE})\Z", re.DOTALL
 )
-"""A document of one light: its head, the light, and its end."""
+"""A document with a single light: its head, the light, and its end."""
 _LOOK = 0.2
-"""s between two looks whether a simulation that does not answer has ended."""
+"""Interval of the checks whether an unresponsive simulation has ended, s."""
 
 
 class Spawning:
-    """The services that put models into the world and take them out.
+    """The services that spawn and delete models.
 
-    Source: gazebo_ros, gazebo_ros_api_plugin: a text's root element says what it is, whichever
-    of the two services it is given to.
+    Source: gazebo_ros, gazebo_ros_api_plugin. The root element determines the format, in both spawn
+    services.
     """
 
     def __init__(self, session: Session, entities: Entities, package_path: Sequence[Path]) -> None:
@@ -74,9 +74,10 @@ class Spawning:
     def spawn_text(
         self, text: str, *, name: str, where: Pose, reference_frame: str, namespace: str
     ) -> None:
-        """Puts the model or light that a text describes into the world; from any thread.
+        """Spawns the model or light in a text. Thread-safe.
 
-        The text is read on that thread; the owner's alone spawns. For the rest see `spawn`.
+        The text is parsed on the calling thread; only spawning runs on the owner's thread. See
+        `spawn` for the arguments.
         """
         name = name.strip()
         found = self.read(name, text)
@@ -101,21 +102,21 @@ class Spawning:
         namespace: str,
         rename: bool = False,
     ) -> str:
-        """Puts a model into the world; from any thread.
+        """Spawns a model. Thread-safe.
 
         Args:
-            description: Of the model.
-            name: In this world; the description's own where it is empty.
-            where: Its pose in the frame.
-            reference_frame: Of the world, a model or a link.
-            namespace: Of its topics and services.
-            rename: Find a free name where that is taken.
+            description: The model's description.
+            name: Name in this world; empty for the description's name.
+            where: Pose in the reference frame.
+            reference_frame: The world, a model or a link.
+            namespace: Namespace of its topics and services.
+            rename: Choose a free name if the name is in use.
 
         Returns:
             The name.
 
         Raises:
-            CartwheelError: It cannot be; nothing has changed.
+            CartwheelError: The model cannot be spawned; nothing has changed.
         """
         namespace = namespace.strip()
         prefix = self._session.graph.parameters.search("tf_prefix", namespace)
@@ -150,7 +151,7 @@ class Spawning:
         return self.on_owner(spawn)
 
     def add_light(self, light: Light, name: str, where: Pose, reference: str) -> None:
-        """Puts a light into the world; from any thread. For the rest see `spawn`."""
+        """Adds a light to the world. Thread-safe. See `spawn` for the arguments."""
 
         def add() -> None:
             wanted = name or light.name
@@ -170,16 +171,16 @@ class Spawning:
         self.on_owner(add)
 
     def read(self, name: str, text: str) -> RobotDescription | Light:
-        """What a text describes.
+        """The model or light in a text.
 
         Raises:
-            DescriptionError: It is no model and no light.
+            DescriptionError: The text is neither a model nor a light.
         """
         if not text.strip():
             raise DescriptionError("Failure - model_xml is empty", code=SPAWN_INVALID)
         alone = _LIGHT.match(text)
         if alone is not None:
-            # SDF knows lights in worlds and links; the lines stay what they are.
+            # SDF allows lights only in worlds and links. The line numbers stay the same.
             text = f'{alone[1]}<world name="of the light">{alone[2]}</world>{alone[3]}'
         found = load_plain(
             text,
@@ -191,7 +192,7 @@ class Spawning:
             return found.lights[0]
         if isinstance(found, WorldDescription):
             if len(found.models) == 1:
-                # What gazebo_ros's spawn_model makes of -database: a world that includes a model.
+                # gazebo_ros's spawn_model converts -database to a world that includes the model.
                 return found.models[0]
             raise DescriptionError(
                 f'Failure - model_xml describes the world "{found.name}", not a model',
@@ -202,14 +203,14 @@ class Spawning:
         return found
 
     def load(self, uri: str) -> RobotDescription | WorldDescription:
-        """What a file describes that a service names.
+        """The description in a file requested by a service.
 
         Raises:
-            DescriptionError: It is no description, or outside of the folders that clients may name.
+            DescriptionError: The file is not a description, or is outside the allowed folders.
         """
         packages = Packages(None, self.package_path, reach=self.reach)
         named = Path(unquote(uri.removeprefix("file://")))
-        # Before a look at the file: whether it exists is nothing for who may not read it.
+        # Check before accessing the file: its existence is not revealed without permission.
         if named.is_absolute() or uri.startswith("file:") or ".." in named.parts:
             packages.require(named, "the file")
         path = find_description(uri, self.package_path)
@@ -217,7 +218,7 @@ class Spawning:
         return load(path, package_path=self.package_path)
 
     def on_owner(self, function: Callable[[], T]) -> T:
-        """Runs a function on the owner's thread and waits for it, as long as there is an owner."""
+        """Runs a function on the owner's thread and waits for it while there is an owner."""
         if threading.get_ident() == self._simulation.owner:
             return function()
         future: Future[T] = self._simulation.call(function)
@@ -234,10 +235,10 @@ class Spawning:
         return Answer("DeleteModel: successfully deleted model")
 
     def remove_light(self, name: str) -> None:
-        """Takes a light out of the world.
+        """Removes a light from the world.
 
         Raises:
-            UnknownNameError: There is none of that name.
+            UnknownNameError: The light does not exist.
         """
         light = self._entities.light(name)
         world = self._simulation.world

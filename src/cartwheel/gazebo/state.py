@@ -1,4 +1,4 @@
-"""Where models and links are and how they move: told, and set."""
+"""Services and topics for the poses and velocities of models and links."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from cartwheel.world.entry import scoped
 class States:
     """``get_`` and ``set_`` of model_state and link_state, and set_model_configuration.
 
-    A model that is put somewhere goes on as one body: its joints keep their positions and
-    stand. Source: gazebo_ros, gazebo_ros_api_plugin.
+    A model is moved as a rigid body: its joints keep their positions and stop. Source: gazebo_ros,
+    gazebo_ros_api_plugin.
     """
 
     def __init__(self, simulation: Simulation, entities: Entities) -> None:
@@ -46,35 +46,35 @@ class States:
         ]
 
     def model(self, name: str, frame: str) -> Motion:
-        """Where a model is and how it moves, in a frame of the world, a model or a link."""
+        """Motion of a model relative to the world, a model or a link."""
         self._entities.model(name)
         self._simulation.refresh()
         return self._entities.model_motion(name).seen_from(self._entities.frame(frame))
 
     def link(self, name: str, frame: str) -> Motion:
-        """Where a link is and how it moves, in a frame of the world, a model or a link."""
+        """Motion of a link relative to the world, a model or a link."""
         model, link = self._entities.link(name)
         self._simulation.refresh()
         motion = self._entities.link_motion(model, link.name)
         return motion.seen_from(self._entities.frame(frame))
 
     def put_model(self, name: str, where: Any, twist: Any, frame: str) -> tuple[str, ...]:
-        """Moves a model.
+        """Sets a model's pose and velocity.
 
         Args:
-            name: Of the model.
+            name: Model name.
             where: ``geometry_msgs/Pose`` in the frame.
-            twist: ``geometry_msgs/Twist`` in the frame's axes, against the world.
-            frame: Of the world, a model or a link.
+            twist: ``geometry_msgs/Twist`` in the frame's axes, relative to the world.
+            frame: The world, a model or a link.
 
         Returns:
-            What has no effect.
+            Parameters without effect.
         """
         self._entities.model(name)
         return self._put(name, self._target(where, twist, frame))
 
     def put_link(self, name: str, where: Any, twist: Any, frame: str) -> tuple[str, ...]:
-        """Moves a model so that its link has a pose and twist; see `put_model`."""
+        """Moves a model so that its link gets a pose and twist; see `put_model`."""
         model, link = self._entities.link(name)
         target = self._target(where, twist, frame)
         base = self._entities.model_motion(model).pose
@@ -111,7 +111,7 @@ class States:
         return Answer("SetLinkState: success", notes=notes)
 
     def _target(self, where: Any, twist: Any, frame: str) -> Motion:
-        """What is asked for, in the world. Source of the twist's axes: gazebo_ros."""
+        """The requested motion in the world. Source for the twist's axes: gazebo_ros."""
         placed = pose(where, "pose")
         linear = vector(twist.linear, "twist.linear")
         angular = vector(twist.angular, "twist.angular")
@@ -159,7 +159,7 @@ class States:
 
 
 class StateTopics:
-    """``model_states`` and ``link_states``, told at every step while somebody reads them."""
+    """``model_states`` and ``link_states``, published at every step while there are subscribers."""
 
     def __init__(
         self, simulation: Simulation, graph: Graph, node: str, *, prefix: str = "/gazebo"
@@ -183,7 +183,7 @@ class StateTopics:
         self._task = simulation.schedule(0, after=self._publish, active=self._wanted)
 
     def close(self) -> None:
-        """Takes the topics off the graph."""
+        """Removes the topics."""
         self._simulation.unschedule(self._task)
         self._models.close()
         self._links.close()
@@ -196,7 +196,7 @@ class StateTopics:
             self._resolve()
         data = self._simulation.data
         bodies = self._bodies
-        # MuJoCo keeps a body's velocity as that of the point at its model's centre of mass.
+        # MuJoCo stores a body's velocity at the centre of mass of its kinematic tree.
         arms = data.xpos[bodies] - data.subtree_com[self._roots]
         spatial = data.cvel[bodies]
         positions = data.xpos[bodies].tolist()
@@ -251,7 +251,7 @@ class StateTopics:
 
 
 class StateCommands:
-    """``set_model_state`` and ``set_link_state`` as topics."""
+    """The ``set_model_state`` and ``set_link_state`` topics."""
 
     def __init__(
         self, states: States, graph: Graph, node: str, report: Callable[[Diagnostic], None]
@@ -273,7 +273,7 @@ class StateCommands:
             )
 
     def close(self) -> None:
-        """Ends both."""
+        """Removes both subscriptions."""
         for subscription in self._subscriptions:
             subscription.close()
 

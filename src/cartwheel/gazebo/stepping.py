@@ -1,4 +1,4 @@
-"""Steps of a paused simulation, counted: simulation_interfaces' service and action."""
+"""Single steps of a paused simulation: the service and action of simulation_interfaces."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from cartwheel.session import Session
 from cartwheel.simulation import RunState
 
 _LOOK = 0.002
-"""s between two looks whether steps were made."""
+"""Interval of the checks whether steps are done, s."""
 _INTERRUPTED = "the simulation was resumed or reset by something else"
 _AT_A_TIME = 20
-"""Steps of an action between two looks at whether it goes on."""
+"""Steps of an action between two checks for cancellation."""
 
 
 class Stepping:
-    """Makes steps and waits for them.
+    """Runs steps and waits for them.
 
     Args:
-        session: Whose simulation.
+        session: The session.
         spawning: Runs functions on the owner's thread.
     """
 
@@ -38,7 +38,7 @@ class Stepping:
         self._stepping = False
 
     def start(self, node: str, prefix: str) -> None:
-        """Offers the action."""
+        """Advertises the action."""
         self._action = Action(
             self._session.graph,
             f"{prefix}/simulate_steps",
@@ -50,13 +50,13 @@ class Stepping:
         )
 
     def close(self) -> None:
-        """Takes the action off the graph; the service is the caller's."""
+        """Removes the action; the caller removes the service."""
         if self._action is not None:
             self._action.close()
             self._action = None
 
     def offers(self) -> list[tuple[str, str, Handler, bool]]:
-        """The service: name, type, handler, and whether it runs on a thread of its own."""
+        """The service: name, type, handler, and whether the handler runs on a separate thread."""
         return [("step_simulation", "StepSimulation", self._step, True)]
 
     def _step(self, request: Any, _: Any) -> None:
@@ -75,7 +75,7 @@ class Stepping:
             time.sleep(_LOOK)
 
     def _simulate_steps(self, goal: Goal) -> None:
-        """Takes a goal of the action; on the owner's thread."""
+        """Accepts a goal; on the owner's thread."""
         goal.accept()
         if self._simulation.run_state is not RunState.PAUSED:
             goal.abort(_ended(FAILED, "the simulation must be paused to be stepped"))
@@ -88,7 +88,7 @@ class Stepping:
             ).start()
 
     def _make_steps(self, goal: Goal) -> None:
-        """Makes the steps of a goal, some at a time; on a thread of its own."""
+        """Runs the steps of a goal in batches, on a separate thread."""
         total, made, simulation = int(goal.goal.steps), 0, self._simulation
         on_owner = self._spawning.on_owner
 
@@ -135,7 +135,7 @@ class Stepping:
         self._session.graph.post(end)
 
     def _reached(self, step: int) -> bool:
-        """Whether a step was made; between steps, on the owner's thread."""
+        """Whether a step has been reached; called between steps, on the owner's thread."""
         simulation = self._simulation
         if simulation.current_step == step:
             return True
@@ -145,7 +145,7 @@ class Stepping:
 
 
 def _ended(result: int, text: str) -> Any:
-    """What came of an action."""
+    """The result of an action."""
     made = zero(f"{PACKAGE}/action/SimulateSteps_Result")
     made.result.result, made.result.error_message = result, text
     return made

@@ -1,4 +1,4 @@
-"""New Gazebo's services of a world as ros_gz_bridge brings them to ROS 2: ``/world/<name>/…``."""
+"""New Gazebo's world services as ros_gz_bridge exposes them in ROS 2: ``/world/<name>/…``."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from cartwheel.simulation import Simulation
 
 _PACKAGE = "ros_gz_interfaces/srv"
 _ANY, _LIGHT, _MODEL = range(3)
-"""Of Entity.msg."""
+"""Values in Entity.msg."""
 _NO_PART_OF_A_NAME = re.compile(r"[^A-Za-z0-9_]|\A(?=[0-9])")
 
 
 class WorldServices:
     """create, remove, set_pose and control of the world.
 
-    Their answers say nothing but success, so what else there is to say is told to the user.
-    Source: gz-sim, UserCommands and SimulationRunner; ros_gz_bridge for the types.
+    Their responses contain only success, so reasons and warnings are reported to the user. Source:
+    gz-sim, UserCommands and SimulationRunner; ros_gz_bridge for the types.
 
     Args:
-        simulation: To act on.
-        entities: Finds models.
-        spawning: Puts models into the world.
-        tell: Takes what no answer tells.
+        simulation: The simulation.
+        entities: Resolves model names.
+        spawning: Spawns models.
+        tell: Reports failures that the response cannot contain.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class WorldServices:
         self._tell = tell
 
     def offers(self) -> list[Offer]:
-        """The services, below the world's name as far as ROS takes it."""
+        """The services, under the world's name as a valid ROS name."""
         world = f"/world/{_NO_PART_OF_A_NAME.sub('_', self._simulation.world.name)}"
         return [
             Offer(f"{world}/create", f"{_PACKAGE}/SpawnEntity", self._create, threaded=True),
@@ -61,7 +61,7 @@ class WorldServices:
     def _create(self, request: Any) -> Answer:
         asked = request.entity_factory
         name, where = asked.name.strip(), pose(asked.pose, "pose")
-        # The request's pose stands in the place of the description's own.
+        # The request's pose replaces the description's.
         found = dataclasses.replace(self._wanted(asked, name), pose=Pose())
         if isinstance(found, Light):
             self._spawning.add_light(found, name, where, asked.relative_to)
@@ -77,7 +77,7 @@ class WorldServices:
         return Answer()
 
     def _wanted(self, asked: Any, name: str) -> RobotDescription | Light:
-        """What a request describes, in the one of three ways that it uses."""
+        """The description in a request, in one of its three forms."""
         ways = [way for way in ("sdf", "sdf_filename", "clone_name") if getattr(asked, way)]
         if len(ways) != 1:
             raise GraphError(

@@ -126,8 +126,7 @@ class Forces:
         self._keep(lambda _: False)
 
     def bind(self) -> None:
-        """Recomputes all forces after the engine's state was replaced, in which no force acts yet.
-        """
+        """Recomputes all forces after the engine's state was replaced, which cleared them."""
         self._wrenches, self._efforts, self._due = {}, {}, 0
 
     def serve(self) -> int:
@@ -188,8 +187,7 @@ class Forces:
 
 
 def _exchange(rows: Array, old: dict[int, Array], new: dict[int, Array]) -> None:
-    """Replaces our old contributions to each row with new ones; rows may have other contributions.
-    """
+    """Replaces our previous contributions to each row; rows may have other contributions."""
     for index in sorted(old.keys() | new.keys()):
         row = rows[index]
         before, after = old.get(index, 0.0), new.get(index, 0.0)

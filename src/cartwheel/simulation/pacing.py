@@ -148,8 +148,7 @@ class Pacer:
                 raise
 
     def _anchored(self, now: float) -> _Anchor | None:
-        """The anchor for pacing, reset after a speed change or a lag; None without a target speed.
-        """
+        """The pacing anchor, reset after a speed change or a lag; None without a target speed."""
         simulation, anchor = self._simulation, self._anchor
         if simulation.speed is None:
             self._anchor = None

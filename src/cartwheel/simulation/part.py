@@ -440,8 +440,7 @@ class Part:
         return np.random.default_rng(words)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
-        """Contacts of these collisions (``link::collision``), each with the collision as `first`.
-        """
+        """Contacts of these collisions (``link::collision``), each as `first`."""
         names = {scoped(self.name, collision) for collision in collisions}
         return read_contacts(self._engine.model, self._engine.data, names)
 

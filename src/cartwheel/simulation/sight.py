@@ -17,14 +17,14 @@ _GROUPS[VISUAL_GROUP] = 1
 
 
 def in_sight(model: Any, data: Any, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
-    """For each point, whether only the model's own visuals lie between the point and a target.
+    """For each viewpoint, whether only the model's own visuals lie between it and the target.
 
     Args:
         model: The compiled world.
         data: Its state after a forward pass.
-        name: The model whose visuals are ignored.
+        name: The model whose visuals do not block the view.
         eyes: Viewpoints in the world, m.
-        target: The target in the world, m.
+        target: Target point in the world, m.
     """
     own = scoped(name, "")
     hit = np.zeros(1, dtype=np.int32)

@@ -1,4 +1,4 @@
-"""The owner of the physics: models in and out, time onwards, what is due done."""
+"""The simulation: spawns and deletes models, advances time and runs due tasks."""
 
 from __future__ import annotations
 
@@ -43,23 +43,24 @@ from cartwheel.world.entry import ModelEntry
 
 _GUARD_INTERVAL_NS = 50_000_000
 _RECOVERIES = 20
-"""Recoveries that are reported: somebody may cause one again and again."""
+"""Maximum number of recovery reports: remote commands may cause divergence repeatedly."""
 _FAULTS = 100
-"""Faults of subscribers and commands that are reported."""
+"""Maximum number of reported faults in subscribers and commands."""
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
 
 class Simulation(Run):
-    """Models in a world, stepped.
+    """Models in a world, advanced in time steps.
 
-    One thread, that which calls `advance` or a `Pacer`, owns a simulation; it alone calls
-    its methods. Others use `post` and `call`, and read what `snapshot` gave the owner.
+    A single thread owns a simulation: the thread that calls `advance` or runs a `Pacer`. Only this
+    thread calls the methods. Other threads use `post` and `call`, and read snapshots from the
+    owner.
 
     Args:
-        world: Its own models are spawned at once.
-        attach: Makes a model's plugins.
-        attach_world: Makes the world's own.
-        seed: Of all noise.
+        world: The world; its models are spawned immediately.
+        attach: Creates a model's plugins.
+        attach_world: Creates the world's plugins.
+        seed: Seed for all noise.
     """
 
     def __init__(
@@ -87,9 +88,9 @@ class Simulation(Run):
         """`Engine.commanded` at the last recovery."""
         self._recoveries = 0
         self.tolerant = False
-        """Whether errors of subscribers and posted functions are reported and not raised."""
+        """Whether errors in subscribers and posted functions are reported instead of raised."""
         self.strict = False
-        """Whether a plugin that fails ends `advance`."""
+        """Whether a failing plugin stops `advance`."""
         self._failure: BaseException | None = None
         self._told_once = Once(_FAULTS)
         self.engine.on_fault = self._disable
@@ -107,22 +108,22 @@ class Simulation(Run):
 
     @property
     def model(self) -> Any:
-        """MuJoCo's; replaced at each spawn and delete."""
+        """The MuJoCo model; replaced at each spawn and delete."""
         return self.engine.model
 
     @property
     def data(self) -> Any:
-        """MuJoCo's; replaced at each spawn and delete."""
+        """The MuJoCo data; replaced at each spawn and delete."""
         return self.engine.data
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """All that was reported so far."""
+        """Diagnostics reported so far."""
         return self.engine.diagnostics
 
     @property
     def scene(self) -> Scene:
-        """What stands in the world."""
+        """The models, links and joints in the world."""
         return self._observer.scene
 
     # -- time
@@ -134,7 +135,7 @@ class Simulation(Run):
 
     @property
     def current_step(self) -> int:
-        """Steps made since time zero, or since their length was last changed."""
+        """Number of steps since time zero, or since the step length last changed."""
         return self.engine.step
 
     @property
@@ -143,10 +144,10 @@ class Simulation(Run):
         return self.engine.step_ns
 
     def advance(self, target_ns: int) -> None:
-        """Runs to a time: posted commands, then what is due, then the physics, in turns.
+        """Advances to a time: alternates between posted commands, due tasks and physics.
 
-        Ends early when a command pauses, stops or resets the run. What is due at the target
-        itself is done by the next call, after the commands that come before it.
+        Returns early when a command pauses, stops or resets the run. Tasks due at the target itself
+        run in the next call, after any earlier commands.
 
         Raises:
             SimulationError: The state is no longer finite.
@@ -166,7 +167,7 @@ class Simulation(Run):
             due, forwarded = self._serve()
             if change is not None:
                 due = min(due, change)
-            # Asked again: what was due may have changed the length of a step.
+            # Recomputed, because a task may have changed the step length.
             left = engine.steps_until(target_ns)
             single = separation.active or self._failure is not None
             count = 1 if single else min(left, due - engine.step)
@@ -184,11 +185,11 @@ class Simulation(Run):
                 raise failure
 
     def _serve(self) -> tuple[int, bool]:
-        """Does what is due now.
+        """Runs the tasks that are due now.
 
         Returns:
-            The step at which something is due next, and whether a forward pass was made for
-            tasks that read: their state is what the physics would compute next anyway.
+            The step of the next due task, and whether a forward pass was made for tasks that read
+            the state. The physics would compute the same pass next.
         """
         tasks, upcoming = self._schedule.at(self.engine.step)
         afters = []
@@ -207,27 +208,27 @@ class Simulation(Run):
             for task in afters:
                 after = task.after
                 try:
-                    # None where the plugin was disabled meanwhile.
+                    # None if the plugin was disabled in the meantime.
                     if after is not None:
                         after()
                 except Exception as error:  # noqa: BLE001 - a plugin's own
                     self._task_failed(task, error)
         return upcoming, bool(afters)
 
-    # -- faults of others' code
+    # -- faults in callbacks
 
     def defer(self, error: BaseException) -> None:
-        """Ends `advance` with an error as soon as the step that has begun is made.
+        """Raises an error from `advance` after the current step.
 
-        So time has gone on, and goes on with the next call.
+        Time has then advanced, and the next call continues from there.
         """
         if self._failure is None:
             self._failure = error
 
     def fail(self, what: str, error: Exception) -> None:
-        """Somebody else's function failed: a subscriber's, or one that was posted.
+        """Handles an error in an external function: a subscriber or a posted function.
 
-        Ends `advance`; is reported once where the simulation is `tolerant`.
+        Stops `advance`; in a `tolerant` simulation, the error is only reported once.
         """
         if not self.tolerant:
             self.defer(error)
@@ -239,10 +240,10 @@ class Simulation(Run):
         self.fail("a command", error)
 
     def _task_failed(self, task: Task, error: Exception) -> None:
-        # What reads a state that has just diverged fails in all ways: name the cause.
+        # Code that reads a diverged state may fail in any way: report the divergence instead.
         self._watch()
         if isinstance(error, SimulationError):
-            # It says that the simulation cannot go on so, not that the plugin has a fault.
+            # The simulation itself cannot continue; the plugin is not at fault.
             self.defer(error)
         elif task.owner is not None:
             self._disable(task.owner, error)
@@ -253,10 +254,10 @@ class Simulation(Run):
             self._report_fault(fault(text, error, code=world_codes.CALLBACK_FAILED))
 
     def _disable(self, plugin: object, error: Exception) -> None:
-        """Ends a plugin that raised an error, and says so; everything else goes on."""
+        """Disables a plugin that raised an error, and reports it; the simulation continues."""
         resident = next((each for each in self._inhabitants() if plugin in each.behaviours), None)
         if resident is None:
-            # It was disabled or deleted already.
+            # It was already disabled or deleted.
             return
         text = f"{title(plugin)} failed and is disabled"
         values = {"plugin": title(plugin)}
@@ -285,24 +286,24 @@ class Simulation(Run):
         self._guard.keep()
 
     def refresh(self) -> None:
-        """Makes poses and contacts those of the present state, for reading between steps."""
+        """Updates poses and contacts to the current state, for reading between steps."""
         self.engine.forward()
 
     def step(self, count: int = 1) -> None:
-        """Lets a paused simulation make `count` steps more.
+        """Queues `count` single steps of a paused simulation.
 
         Raises:
-            CartwheelError: It is not from 1 to `limits.MOST_STEPS`.
+            CartwheelError: The number is not between 1 and `limits.MOST_STEPS`.
         """
         check_steps(count)
         self.pause()
         self.steps_allowed = (self.steps_allowed or 0) + count
 
     def reset(self, *, keep_time: bool = False) -> None:
-        """Takes every model to where it was spawned, and time back to zero.
+        """Resets every model to its spawn pose, and time to zero.
 
         Args:
-            keep_time: Time goes on instead, and so does what acts on links and joints.
+            keep_time: Do not reset time; forces on links and joints also continue.
         """
         moved = [each for each in self._residents.values() if each.entry.pose != each.start]
         for resident in moved:
@@ -332,7 +333,7 @@ class Simulation(Run):
             callback()
 
     def _place_of(self, body: str) -> Origin | None:
-        """Where the link of a body is written, or its model."""
+        """The origin of a body's link, or of its model."""
         for name, resident in self._residents.items():
             if body.startswith(f"{name}::"):
                 description = resident.entry.description
@@ -341,13 +342,14 @@ class Simulation(Run):
         return None
 
     def recover(self, error: DivergedError) -> bool:
-        """Takes every model to where it was spawned, at rest, after a divergence; time goes on.
+        """Resets every model to its spawn pose, at rest, after a divergence; time continues.
 
-        What anybody commands can diverge: a huge force, a robot driven into a corner. A world
-        that diverges by itself would do so again, and is left to its author.
+        External commands can cause divergence, such as a huge force or a robot driven into a
+        corner. A world that diverges without commands would do so again, so it is not reset.
 
         Returns:
-            Whether it can go on: something from outside acted since the last recovery.
+            Whether the simulation can continue, because of an external action since the last
+            recovery.
         """
         if self.engine.commanded == self._recovered:
             return False
@@ -373,14 +375,14 @@ class Simulation(Run):
         return True
 
     def report(self, diagnostic: Diagnostic) -> None:
-        """Tells the user something, on the owner's thread; from any thread."""
+        """Reports a diagnostic on the owner's thread. Thread-safe."""
         self.post(lambda: self.engine.report(diagnostic))
 
     # -- models
 
     @property
     def models(self) -> tuple[str, ...]:
-        """Names of the models, in order of spawning."""
+        """Names of the models, in spawn order."""
         return tuple(self._residents)
 
     def spawn(
@@ -392,21 +394,21 @@ class Simulation(Run):
         namespace: str = "",
         frame_prefix: str = "",
     ) -> str:
-        """Puts a model into the world; everything else keeps its state.
+        """Spawns a model; the rest of the state is unchanged.
 
         Args:
-            description: Of the model.
-            name: In this world; the description's own when None.
-            pose: Of its root link in the world; the description's own when None.
-            namespace: Of its topics and services, where a plugin names none.
-            frame_prefix: Of its frames.
+            description: The model's description.
+            name: Name in this world; None for the description's name.
+            pose: Pose of the root link in the world; None for the description's pose.
+            namespace: Default namespace of topics and services.
+            frame_prefix: Prefix of frame names.
 
         Returns:
-            The name.
+            The model's name.
 
         Raises:
-            WorldError: The name is taken or the model cannot be built; nothing has changed.
-            PluginError: A plugin's parameters make no sense; nothing has changed.
+            WorldError: The name is in use or the model cannot be built; nothing has changed.
+            PluginError: A plugin's parameters are invalid; nothing has changed.
             CartwheelError: The pose is not finite or too far away; nothing has changed.
         """
         name = name or description.name
@@ -422,10 +424,10 @@ class Simulation(Run):
         return name
 
     def delete(self, name: str) -> None:
-        """Takes a model out of the world; everything else keeps its state.
+        """Deletes a model; the rest of the state is unchanged.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         resident = self._resident(name)
         self._compile({key: value for key, value in self._residents.items() if key != name})
@@ -433,22 +435,22 @@ class Simulation(Run):
         resident.close()
 
     def pose(self, name: str) -> Pose:
-        """Where a model's frame is; see `Engine.model_pose`."""
+        """Pose of a model's frame in the world; see `Engine.model_pose`."""
         return self.engine.model_pose(self._resident(name).entry)
 
     def in_sight(self, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
-        """From which points, m in the world, nothing hides a point of a model."""
+        """For each viewpoint in the world, m, whether the model is visible at the target point."""
         return in_sight(self.engine.model, self.engine.data, name, eyes, target)
 
     def occupied(self) -> Space:
-        """The space that all collision shapes take now."""
+        """The space currently occupied by collision shapes."""
         return occupied(self.engine.model, self.engine.data)
 
     def set_pose(self, name: str, pose: Pose) -> None:
-        """Moves a model's frame, and with it the model, at rest.
+        """Moves a model's frame, and the model with it, and stops its motion.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
             CartwheelError: The pose is not finite or too far away.
         """
         entry = self._resident(name).entry
@@ -456,7 +458,7 @@ class Simulation(Run):
         self.engine.commanded += 1
         joint = self.engine.joint_id(name, entry.description.canonical_link)
         if joint < 0:
-            # It stands fixed in the world, so the world is made anew.
+            # A model fixed to the world is recompiled at the new pose.
             entry.pose = pose
             self._compile(self._residents)
         else:
@@ -464,18 +466,18 @@ class Simulation(Run):
         self._separate(name)
 
     def namespace(self, name: str) -> str:
-        """Where a model's topics and services are; empty for the root.
+        """The namespace of a model's topics and services; empty for the root.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         return self._resident(name).part.namespace
 
     def moves(self, name: str) -> bool:
-        """Whether a model is free in the world: neither static nor fixed to it.
+        """Whether a model can move in the world: it is neither static nor fixed to the world.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         link = self._resident(name).entry.description.canonical_link
         return self.engine.free_joint(name, link) >= 0
@@ -483,19 +485,19 @@ class Simulation(Run):
     def set_state(
         self, name: str, pose: Pose, *, linear: Vec3 = _STILL, angular: Vec3 = _STILL
     ) -> None:
-        """Moves a model's frame, and lets the model go on from there as one body.
+        """Moves a model's frame and sets the velocity of the whole model as a rigid body.
 
-        Its joints keep their positions and stand. A model that is fixed in the world is moved
-        with what it is fixed to; it has no speed.
+        Joints keep their positions and stop. A model fixed to the world moves with its mount and
+        gets no velocity.
 
         Args:
-            name: Of the model.
-            pose: Of its frame in the world.
-            linear: m/s, of the frame's origin, in the world's axes.
-            angular: rad/s, in the world's axes.
+            name: Model name.
+            pose: Pose of its frame in the world.
+            linear: Velocity of the frame's origin, m/s, in world axes.
+            angular: rad/s, in world axes.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
             CartwheelError: A number is not finite or too large.
         """
         entry = self._resident(name).entry
@@ -510,12 +512,12 @@ class Simulation(Run):
         self._separate(name)
 
     def set_joint_positions(self, name: str, positions: Mapping[str, float]) -> None:
-        """Turns joints of one degree of freedom to rad or m; they stand there.
+        """Sets the positions of joints with one degree of freedom, rad or m, and stops them.
 
-        Joints that mimic them go along.
+        Joints that mimic them follow.
 
         Raises:
-            UnknownNameError: There is no such model or joint.
+            UnknownNameError: The model or a joint does not exist.
             CartwheelError: A position is not finite or too large.
         """
         description = self._resident(name).entry.description
@@ -538,18 +540,18 @@ class Simulation(Run):
         velocity: float | None = None,
         max_effort: float | None = None,
     ) -> None:
-        """Drives a joint at a velocity with limited effort, as ODE's joint motors do.
+        """Drives a joint at a velocity with limited effort, like ODE's joint motors.
 
-        At velocity 0 it brakes. A joint that a plugin drives gets the plugin's velocity.
+        At velocity 0 it brakes. For a joint with a drive plugin, it sets the plugin's velocity.
 
         Args:
-            name: Of the model.
-            joint: Of one degree of freedom.
-            velocity: rad/s or m/s; None leaves it as it is, which is 0 at first.
-            max_effort: N m or N; None leaves it as it is; 0 ends it.
+            name: Model name.
+            joint: A joint with one degree of freedom.
+            velocity: rad/s or m/s; None leaves it unchanged. Initially 0.
+            max_effort: N m or N; None leaves it unchanged, 0 removes the drive.
 
         Raises:
-            UnknownNameError: There is no such model or joint.
+            UnknownNameError: The model or joint does not exist.
             WorldError: A plugin drives the joint by effort or position.
             CartwheelError: A number is not finite or too large.
         """
@@ -565,17 +567,17 @@ class Simulation(Run):
             drives[joint].command(velocity)
 
     def driven(self, name: str, joint: str) -> bool:
-        """Whether `drive` drives a joint."""
+        """Whether `drive` currently drives a joint."""
         return joint in self._resident(name).drives
 
     def redescribe(self, name: str, description: RobotDescription) -> None:
-        """Goes on with other properties of a model: of its links, or of its joints.
+        """Changes properties of a model's links or joints.
 
-        The model is compiled anew and keeps its state; what acts on it goes on.
+        The model is recompiled and keeps its state; commands and forces continue.
 
         Raises:
-            UnknownNameError: There is no such model.
-            WorldError: It cannot be built; nothing has changed.
+            UnknownNameError: The model does not exist.
+            WorldError: The model cannot be built; nothing has changed.
         """
         entry = self._resident(name).entry
         before = entry.description
@@ -587,10 +589,10 @@ class Simulation(Run):
             raise
 
     def change_world(self, world: WorldDescription) -> None:
-        """Goes on with other gravity, lights or step length; models are left alone.
+        """Changes gravity, lights or step length; models are unchanged.
 
         Raises:
-            WorldError: It cannot be built; nothing has changed.
+            WorldError: The world cannot be built; nothing has changed.
         """
         engine = self.engine
         if adjust(engine, world):
@@ -604,18 +606,18 @@ class Simulation(Run):
             raise
 
     def frame_prefix(self, name: str) -> str:
-        """Of a model's frames, as it was spawned.
+        """The prefix of a model's frames, as set at spawn.
 
         Raises:
-            UnknownNameError: There is no such model.
+            UnknownNameError: The model does not exist.
         """
         return self._resident(name).part.frame_prefix
 
     def joint_position(self, name: str, joint: str) -> float:
-        """Position of a joint of one degree of freedom, rad or m.
+        """Position of a joint with one degree of freedom, rad or m.
 
         Raises:
-            UnknownNameError: There is no such model or joint.
+            UnknownNameError: The model or joint does not exist.
         """
         self._resident(name)
         if (name, joint) not in self.scene.joints:
@@ -631,14 +633,14 @@ class Simulation(Run):
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
     ) -> Task:
-        """Does something of the world's at a rate in Hz, whatever models there are; see `Task`."""
+        """Schedules callbacks of the world, independent of models, at a rate in Hz; see `Task`."""
         task = self.engine.task(rate, before=before, after=after, active=active)
         self._world_tasks.append(task)
         self._gather_tasks()
         return task
 
     def unschedule(self, task: Task) -> None:
-        """Does it no longer."""
+        """Removes a scheduled task."""
         self._world_tasks.remove(task)
         self._gather_tasks()
 
@@ -651,7 +653,9 @@ class Simulation(Run):
         )
 
     def _populate(self, models: Sequence[RobotDescription]) -> None:
-        """Puts the world's own models into it, all at once: each compilation costs as much."""
+        """Spawns the world's models together, because each compilation takes as long as one for
+        all.
+        """
         for description in models:
             try:
                 resident = self._admit(description, description.name)
@@ -665,7 +669,7 @@ class Simulation(Run):
             self._welcome(description.name, before=models[index + 1 :])
 
     def _take_positions(self, residents: Iterable[Resident]) -> None:
-        """Turns joints to where their descriptions say that they begin."""
+        """Sets joints to the initial positions in their descriptions."""
         stated = [each.entry for each in residents if each.entry.description.joint_positions]
         for entry in stated:
             positions = dict(entry.description.joint_positions)
@@ -682,7 +686,7 @@ class Simulation(Run):
         namespace: str = "",
         frame_prefix: str = "",
     ) -> Resident:
-        """A model with its plugins, before it is compiled."""
+        """Creates a model with its plugins, before it is compiled."""
         if not name or "::" in name:
             raise WorldError(
                 f'the name of a model must not be empty or contain "::" (got "{name}")',
@@ -709,7 +713,7 @@ class Simulation(Run):
         return resident
 
     def _welcome(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
-        """Tells what is to be said of a model that was just compiled; see `_separate`."""
+        """Reports diagnostics about a model that was just compiled; see `_separate`."""
         resident = self._residents[name]
         resident.part.spawned = True
         description = resident.entry.description
@@ -719,11 +723,11 @@ class Simulation(Run):
         self._separate(name, before=before)
 
     def _separate(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
-        """Sees to it that a model that was put into another one comes out gently.
+        """Separates a model gently from others that it was placed in.
 
         Args:
-            name: Of the model.
-            before: Models that came after it: an overlap with them is theirs to tell.
+            name: Model name.
+            before: Models added later; overlaps with them are reported for those models.
         """
         description = self._resident(name).entry.description
         roots = {
@@ -745,11 +749,11 @@ class Simulation(Run):
         return self._residents[name]
 
     def _inhabitants(self) -> tuple[Resident, ...]:
-        """The world itself, and its models."""
+        """The world's resident and its models."""
         return (self._house, *self._residents.values())
 
     def _compile(self, residents: dict[str, Resident]) -> None:
-        """Compiles a new set of models and carries over the state of those that stay."""
+        """Compiles a new set of models and keeps the state of existing ones."""
         entries = [resident.entry for resident in residents.values()]
         built = build(self.world, [self._house.entry, *entries])
         self.engine.replace(built.model, built.alignments, built.bounces)
@@ -770,13 +774,13 @@ class Simulation(Run):
         self._observe()
 
     def _observe(self) -> None:
-        """Sees what stands in the world now."""
+        """Creates a new observer after a change of the models."""
         self._version += 1
         entries = [resident.entry for resident in self._residents.values()]
         self._observer = Observer(self.engine, entries, self._version)
 
     def snapshot(self) -> Snapshot:
-        """An immutable copy of the present state."""
+        """An immutable copy of the current state."""
         return self._observer.snapshot(
             run_state=self.run_state,
             speed=self.speed,
@@ -784,14 +788,14 @@ class Simulation(Run):
         )
 
     def close(self) -> None:
-        """Ends the run. What was simulated can still be read.
+        """Closes the simulation. Results can still be read.
 
-        Nothing refers to itself afterwards, so the memory is freed with the last reference.
+        All reference cycles are cleared, so the memory is freed with the last reference.
         """
         if self.closed:
             return
         self.run_state = RunState.STOPPED
-        # Those who wait for an answer get it.
+        # Complete the pending calls of other threads.
         self.drain()
         for resident in self._inhabitants():
             resident.close()

@@ -1,4 +1,4 @@
-"""Wheels that slip in proportion to the force that they pass on."""
+"""Wheels with slip proportional to the transmitted force."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from cartwheel.world.entry import SHIFT, TURN, TYRE, scoped
 
 _OBJ = mujoco.mjtObj
 _RIGID = 1e7
-"""N s/m, of a wheel that does not slip."""
+"""N s/m; damping of a wheel without slip."""
 
 
 class SlipHandle:
-    """A wheel's tyre, which lags behind the wheel and shifts along its axle as a damper does.
+    """A wheel's tyre, which rotates and shifts relative to the wheel, each with a damper.
 
-    Within the friction that it has, the tyre does not slip on the ground: what the wheel slips, it
-    slips on the tyre. A speed of slip of c for each N, as ODE's contacts have it, is a damper of
-    1 / c; the engine takes it implicitly, so that any c is stable.
+    Within the friction limit, the tyre does not slide on the ground, so all slip occurs between
+    wheel and tyre. ODE's slip compliance of c (speed per force) corresponds to a damping of 1 / c.
+    The engine integrates it implicitly, so it is stable for any c.
 
     Args:
-        model: Name of the model.
-        link: The wheel.
-        radius: Of the wheel, m.
+        model: Model name.
+        link: Link name of the wheel.
+        radius: Wheel radius, m.
     """
 
     def __init__(self, model: str, link: str, radius: float) -> None:
@@ -44,15 +44,15 @@ class SlipHandle:
         self.give(0.0, 0.0)
 
     def give(self, lateral: float, longitudinal: float) -> None:
-        """Sets how fast it slips for each N, m/s/N; 0 is not at all. Call it at every step."""
+        """Sets the slip compliance, m/s/N; 0 disables slip. Call it at every step."""
         damping = self._damping
         damping[self._turn] = self.radius**2 * min(_RIGID, 1.0 / max(longitudinal, 1.0 / _RIGID))
         damping[self._shift] = min(_RIGID, 1.0 / max(lateral, 1.0 / _RIGID))
-        # A tyre does not leave its wheel: what it has shifted, the wheel has slipped.
+        # Reset the tyre's displacement, which is slip that has already occurred.
         self._qpos[self._place] = 0.0
         self._qpos[self._place - 1] = math.remainder(self._qpos[self._place - 1], 2 * math.pi)
 
     @property
     def speeds(self) -> tuple[float, float]:
-        """Of the wheel's rim on the ground: along the axle, and ahead of the ground, m/s."""
+        """Slip velocities of the rim relative to the ground: along the axle, and forward, m/s."""
         return -float(self._qvel[self._shift]), -float(self._qvel[self._turn]) * self.radius

@@ -1,4 +1,4 @@
-"""What other threads may see of a simulation: immutable copies."""
+"""Immutable copies of the state of a simulation, for other threads."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cartwheel.geometry import Array, Pose
 
 
 class RunState(enum.Enum):
-    """Whether simulated time goes on."""
+    """Whether simulation time advances."""
 
     RUNNING = "running"
     PAUSED = "paused"
@@ -19,7 +19,7 @@ class RunState(enum.Enum):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedModel:
-    """A model as it was spawned."""
+    """A model as spawned."""
 
     name: str
     description: RobotDescription
@@ -28,15 +28,17 @@ class PlacedModel:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Scene:
-    """What stands in the world, from one spawn or delete to the next."""
+    """The models, links and joints in the world between two spawns or deletes."""
 
     version: int
     world: WorldDescription
     models: tuple[PlacedModel, ...]
     links: tuple[tuple[str, str], ...]
-    """Model and link of each row of a snapshot's poses."""
+    """Model and link for each row of a snapshot's poses."""
     joints: tuple[tuple[str, str], ...]
-    """Model and joint of each of a snapshot's joint positions; those of one degree of freedom."""
+    """Model and joint for each joint position of a snapshot; only joints with one degree of
+    freedom.
+    """
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,20 +49,20 @@ class Snapshot:
     time_ns: int
     run_state: RunState
     speed: float | None
-    """The wanted real-time factor; None is as fast as it can."""
+    """The target real-time factor; None is as fast as possible."""
     real_time_factor: float
     """Measured over the last second or so; 0 while paused."""
     positions: Array
     """Shape (links, 3), m, in the world."""
     quaternions: Array
-    """Shape (links, 4), MuJoCo's and viser's order (w, x, y, z), in the world."""
+    """Shape (links, 4), in the (w, x, y, z) order of MuJoCo and viser, in the world."""
     joint_positions: Array
     """Shape (joints,), rad or m."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Contact:
-    """A touching pair at one point."""
+    """A contact between two collisions at one point."""
 
     first: str
     """``model::link::collision``."""
@@ -68,10 +70,10 @@ class Contact:
     position: Array
     """Shape (3,), m, in the world."""
     normal: Array
-    """Shape (3,), unit, in the world, from the second into the first."""
+    """Unit vector in the world, shape (3,), from the second collision into the first."""
     depth: float
-    """m, positive when they overlap."""
+    """Penetration depth, m; positive if they overlap."""
     force: Array
-    """Shape (3,), N, in the world, that the second exerts on the first."""
+    """Force on the first collision, N, in world axes, shape (3,)."""
     torque: Array
-    """Shape (3,), N m, in the world, on the first about the centre of mass of its link."""
+    """Torque on the first link about its centre of mass, N m, in world axes, shape (3,)."""

@@ -1,4 +1,4 @@
-"""Where something stands: for placing more beside it."""
+"""Occupied space, to place models next to each other."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from cartwheel.geometry import Array
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Space:
-    """Boxes around the collision shapes of a world, edges along the world's axes."""
+    """Bounding boxes of the collision shapes in a world, aligned with the world's axes."""
 
     low: Array
-    """Shape (n, 3), m."""
+    """Lowest corners, shape (n, 3), m."""
     high: Array
-    """Shape (n, 3), m."""
+    """Highest corners, shape (n, 3), m."""
     fixed: Array
-    """Shape (n,): which of them never move."""
+    """Which boxes never move, shape (n,)."""
 
 
 def occupied(model: Any, data: Any) -> Space:
-    """The space that collision shapes take now; endless planes and height fields take none.
+    """The space occupied by collision shapes, without infinite planes and height fields.
 
     Args:
         model: The compiled world.

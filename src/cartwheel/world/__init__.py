@@ -1,4 +1,4 @@
-"""Descriptions to a compiled MuJoCo model."""
+"""Compiles descriptions to a MuJoCo model."""
 
 from cartwheel.world import mujoco_import  # noqa: F401 - before all others
 from cartwheel.world.build import Build, build

@@ -1,4 +1,4 @@
-"""A model's links and joints as MuJoCo bodies."""
+"""Adds a model's links and joints as MuJoCo bodies."""
 
 from __future__ import annotations
 
@@ -54,37 +54,37 @@ _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 _MOTOR_REFERENCE = (0.01, 1.0)
 _MOTOR_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 TYRE_MASS = 1e-6
-"""kg, of a tyre that slips on its wheel: nothing that would be felt."""
+"""Mass of a tyre that slips on its wheel, kg: small enough to have no effect."""
 _TYRE_SHARE = 0.02
-"""Of the model's mass: the inertia with which a tyre takes up its slip."""
+"""Inertia of a slipping tyre as a fraction of the model's mass."""
 ROTOR_INERTIA = 1e6
-"""kg m², so that no load slows a rotor."""
+"""kg m²; large enough that no load slows a rotor."""
 _STRONGEST = 1e6
-"""N m or N of a motor without a limit."""
+"""N m or N; limit of a motor without a stated limit."""
 _THINNEST = 1e-6
-"""The least of a body's three moments, of the largest."""
+"""Minimum ratio of a body's smallest to largest moment of inertia."""
 _LEAST = 1e-12
-"""kg m², the least of a moment: the engine takes what is smaller for nothing."""
+"""Minimum moment of inertia, kg m²; the engine treats smaller values as zero."""
 _POINT = 1e-6
-"""m², the inertia of a point mass for its mass: the engine wants one above 0."""
+"""Inertia of a point mass divided by its mass, m²: the engine requires a positive value."""
 _WORLD_SITE = "world::site"
 
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
-    """A link that is to become a body."""
+    """A link that will be added as a body."""
 
     link: Link
     parent: Any
-    """The body that it hangs on."""
+    """The parent body."""
     pose: Pose
-    """In that body."""
+    """Pose in the parent body."""
     moves: bool
-    """Whether that body does."""
+    """Whether the parent body can move."""
     trunk: bool
-    """Whether only fixed joints lead there from a free root."""
+    """Whether it is connected to a free root only by fixed joints."""
     axle: Axle | None = None
-    """That body turns about, where it is a wheel."""
+    """The parent body's axle, if the parent is a wheel."""
 
 
 class BodyBuilder:
@@ -95,13 +95,13 @@ class BodyBuilder:
         self._assets = assets
         self._step = step
         self.surfaces: list[contact.BuiltSurface] = []
-        """Every colliding geom, with what decides how it touches others."""
+        """All collision geoms with their contact properties."""
 
     def add(self, entry: ModelEntry) -> None:
         """Adds the entry's bodies, joints, geoms, motors and cameras.
 
         Raises:
-            WorldError: The description cannot be built, with the place in its file.
+            WorldError: The description cannot be built; the error has the element's origin.
         """
         description = entry.description
         inbound: dict[str, Joint] = {}
@@ -124,7 +124,7 @@ class BodyBuilder:
             anchor = inbound.get(link.name)
             free = anchor is None and not description.static and not link.kinematic
             there = entry.pose @ link.pose
-            # A list and no recursion: chains may be longer than Python's stack.
+            # Iterative, because chains may exceed Python's recursion limit.
             waiting = [_Branch(link, self._spec.worldbody, there, moves=free, trunk=free)]
             while waiting:
                 branch = waiting.pop()
@@ -163,7 +163,7 @@ class BodyBuilder:
     def _grow(
         self, entry: ModelEntry, branch: _Branch, joint: Joint | None, *, senses: bool
     ) -> _Branch:
-        """Adds a link's body; returns what those that hang on it begin with."""
+        """Adds a link's body; returns the parent values for its child links."""
         link, moves, axle = branch.link, branch.moves, branch.axle
         trunk = branch.trunk and (joint is None or joint.type == "fixed")
         body = branch.parent.add_body(
@@ -175,7 +175,7 @@ class BodyBuilder:
             roots = not moves and joint.type != "fixed"
             moves = moves or roots
         if roots and senses:
-            # A body asleep has no accelerations and no contacts to be read.
+            # A sleeping body has no accelerations or contacts to read.
             body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
         # A tyre may be fixed to a hub.
         held = joint is not None and joint.type == "fixed" and axle is not None
@@ -219,7 +219,8 @@ class BodyBuilder:
                     values={"collision": collision.name},
                     hint="Use a flat box instead, or <static>true</static>.",
                 )
-            # The base of an arm is its hull as its other links are: nothing is put into one.
+            # The base of an arm uses its convex hull, like the other links; nothing is placed
+            # inside it.
             whole = moves or not entry.description.static
             parts = solids(shape, place, collision.origin, self._assets, moves=whole)
             friction = contact.friction(collision.surface)
@@ -257,10 +258,10 @@ class BodyBuilder:
                 )
 
     def _exclude(self, entry: ModelEntry, description: RobotDescription) -> None:
-        """Links of one model collide only where both ask for it, as in Gazebo.
+        """Links of one model collide only if both enable self-collision, as in Gazebo.
 
-        Those that a joint connects never do. The engine knows that of all but a first joint
-        behind what stands in the world.
+        Links connected by a joint never collide. The engine excludes these pairs itself, except for
+        the first joint of a body fixed to the world.
         """
         if description.static:
             return
@@ -270,7 +271,7 @@ class BodyBuilder:
             inbound.setdefault(joint.child, joint)
 
         def rigid(name: str) -> str:
-            """The first of the links that are fixed to one another, this one among them."""
+            """The first link in the group of fixed links that contains this link."""
             joint = inbound.get(name)
             while joint is not None and joint.type == "fixed" and joint.parent != "world":
                 name = joint.parent
@@ -319,12 +320,12 @@ class BodyBuilder:
             name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, **arguments
         )
         actuator.set_to_motor()
-        # Its damping is set while it runs.
+        # The damping is set at run time.
         actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
         self._add_rotor(entry, motor)
 
     def _add_rotor(self, entry: ModelEntry, motor: Motor) -> None:
-        """What turns at a motor's velocity, and drags the joint along by dry friction."""
+        """Adds a rotor that turns at a motor's velocity and drags the joint by dry friction."""
         name = scoped(entry.name, motor.joint, ROTOR)
         joint = entry.description.joint(motor.joint)
         limits = [] if motor.max_effort is None else [motor.max_effort]
@@ -354,7 +355,7 @@ class BodyBuilder:
         for index, axis in enumerate(DRIVE_AXES):
             gear = [0.0] * 6
             gear[index] = 1.0
-            # Against the world's site it feels and pushes along and about the world's axes.
+            # Relative to the world's site, the actuators measure and act in world axes.
             self._spec.add_actuator(
                 name=scoped(name, axis),
                 target=name,
@@ -375,9 +376,10 @@ class BodyBuilder:
 
 
 def _add_tyre(entry: ModelEntry, wheel: Any, link: Link, axle: Axle) -> Any:
-    """What touches the ground in a wheel's place, and turns and shifts on it by a damper each.
+    """Adds the tyre that touches the ground in place of a wheel, and rotates and shifts with
+    damping.
 
-    It weighs nothing; the inertia of both motions gives the solver something to hold on to.
+    The tyre has almost no mass; the inertia of both motions keeps the solver stable.
     """
     name = scoped(entry.name, link.name, TYRE)
     tyre = wheel.add_body(name=name)
@@ -395,13 +397,13 @@ def _add_tyre(entry: ModelEntry, wheel: Any, link: Link, axle: Axle) -> Any:
             name=scoped(name, what), type=kind, axis=list(axle.axis), pos=list(axle.point)
         )
         made.armature = weight
-        # Set while it runs; the engine wants to know that there will be some.
+        # Set at run time; the engine requires a nonzero value here.
         made.damping = [1.0, 0, 0]
     return tyre
 
 
 def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str, Vec3] | None:
-    """Along which mu1 counts, with the body in whose axes it is."""
+    """The direction in which mu1 applies, with the body that defines its axes."""
     surface = collision.surface
     if surface.fdir1 is None:
         return None
@@ -412,15 +414,15 @@ def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str
 
 
 def _possible(inertia: Array) -> Array:
-    """An inertia matrix whose largest moment is no larger than the sum of the others.
+    """An inertia matrix whose largest moment does not exceed the sum of the others.
 
-    Thin plates lie on that edge exactly, and written digits put them beyond it; what misses
-    by more has been refused when it was read.
+    Thin plates are exactly at this limit, and rounded digits exceed it. Larger violations are
+    rejected when the file is read.
     """
     moments, axes = np.linalg.eigh(inertia)
     lowest = max(_THINNEST * float(moments[2]), _LEAST)
     if moments[0] < lowest:
-        # A rod without thickness, or a frame that weighs nothing: the engine divides by all three.
+        # An infinitely thin rod or a massless frame: the engine divides by all three moments.
         moments = np.maximum(moments, lowest)
         inertia = (axes * moments) @ axes.T
     excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)

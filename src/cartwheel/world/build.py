@@ -1,4 +1,4 @@
-"""A world description and the models that stand in it, compiled."""
+"""Compiles a world description and its models."""
 
 from __future__ import annotations
 
@@ -20,23 +20,25 @@ from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets
 
 LONGEST_CHAIN = 500
-"""Links in a row: the compiler's time grows with the third power."""
+"""Maximum links in a chain: the compile time grows with the third power."""
 MOST_CONTACTS = 10_000
-"""At the start: beyond, one step takes seconds and the solver's memory runs out."""
+"""Maximum initial contacts: beyond, a step takes seconds and the solver runs out of memory."""
 _CROWD = 60
-"""Shapes, of which no fewer can touch at too many points."""
+"""Minimum number of shapes for the contact limit to be exceeded."""
 DEFAULT_STEP = 0.005
-"""s; see ``docs/physics.md`` for how it was chosen."""
+"""s; see ``docs/physics.md`` for the reasons."""
 
 
 _MOST_AMBIENT = 0.4
-"""SDF's default. New Gazebo's worlds state 1, which its renderer dims; here no shade were left."""
+"""SDF's default. Worlds for new Gazebo state 1, which Gazebo's renderer dims; here it would leave
+no shading.
+"""
 _CELLS = 100
-"""On each side of a plane's middle; the engine draws no more."""
+"""Maximum grid cells on each side of a plane's centre."""
 _LEAST_CELL = 0.2
-"""m."""
+"""Minimum size of a grid cell, m."""
 _SHORTEST = 0.01
-"""m, at which a turning body's speed is judged where it has no shape."""
+"""Length used to judge the speed of a rotating body without a shape, m."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,14 +47,14 @@ class Build:
 
     model: mujoco.MjModel
     alignments: tuple[pairs.Alignment, ...] = ()
-    """In which directions friction counts where it is not the same in all."""
+    """Friction directions of pairs with direction-dependent friction."""
     bounces: tuple[contact.Bounce, ...] = ()
-    """The surfaces that bounce."""
+    """The surfaces with restitution."""
     xml: str | None = None
 
 
 def step_of(world: WorldDescription) -> float:
-    """The step length in s: the world's own, or the default."""
+    """The step length in s, from the world or the default."""
     return world.physics.max_step_size or DEFAULT_STEP
 
 
@@ -61,17 +63,17 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
 
     Args:
         world: Gravity, lights, physics.
-        entries: The models in it, the world's own among them.
+        entries: The models in the world, including the world's own.
         xml: Also write the model as MJCF.
 
     Raises:
-        WorldError: A model cannot be built; with the place in its file where it is known.
+        WorldError: A model cannot be built; the error has the origin if it is known.
     """
     entries = list(entries)
     try:
         return _built(world, entries, xml=xml)
     except ValueError as error:
-        # A name that stands twice is refused as soon as it is given.
+        # Duplicate names raise an error as soon as they are added.
         if not str(error).startswith("Error: "):
             raise
         raise _explain(str(error), entries) from None
@@ -100,7 +102,8 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
             alignments.append(pair.alignment)
     try:
         model = _compiled(spec)
-        # The engine reserves memory by degrees of freedom, and needs it by pairs of bodies, too.
+        # The engine estimates its memory from the degrees of freedom, but pairs of bodies also need
+        # some.
         pairs_of_bodies = 2 * model.nbody**2
         if pairs_of_bodies > model.narena / 2:
             spec.memory = model.narena + 2 * pairs_of_bodies
@@ -108,16 +111,17 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
     except (ValueError, mujoco.FatalError) as error:
         raise _explain(str(error), entries) from None
     _check_contacts(model, entries)
-    # What has no extent is as far from rest as its speed says, and not asleep while it spins.
+    # A body without extent has only its velocity as a measure of rest; it must not sleep while
+    # spinning.
     model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
     if any(model.body_treeid[model.body(name).id] < 0 for name in _felt(entries)):
-        # A body asleep on something that stands has no contact with it to be reported.
+        # A body that sleeps on a fixed body would have no contact to report.
         for option in (spec.option, model.opt):
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     _judge_without_rotors(model)
     _divide_floors(model)
     for index, coefficient in chains.apply(model).items():
-        # For the text alone: the compiled model has it.
+        # Only for the XML text: the compiled model already has the value.
         made = spec.joint(model.joint(index).name)
         made.damping = [made.damping[0], made.damping[1], coefficient]
     bounces = (contact.bounce(surface.name, surface.surface) for surface in bodies.surfaces)
@@ -131,16 +135,16 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
 
 def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
     with warnings.catch_warnings():
-        # The engine counts the same warnings while it runs, and the simulation reports them.
+        # The engine counts the same warnings at run time, and the simulation reports them.
         warnings.simplefilter("ignore", UserWarning)
         return spec.compile()
 
 
 def _check_chain(entry: ModelEntry) -> None:
-    """Refuses chains of links whose matrices nobody can wait for.
+    """Rejects chains of links that would take too long to compile.
 
     Raises:
-        WorldError: With the place of the first link that is too far out.
+        WorldError: With the origin of the first link beyond the limit.
     """
     description = entry.description
     parents = {joint.child: joint.parent for joint in reversed(description.joints)}
@@ -166,10 +170,10 @@ def _check_chain(entry: ModelEntry) -> None:
 
 
 def _check_contacts(model: mujoco.MjModel, entries: list[ModelEntry]) -> None:
-    """Refuses models that stand inside each other in such numbers that no step would end.
+    """Rejects worlds with so many overlapping models that a step would never finish.
 
     Raises:
-        WorldError: With the place of the model that touches most.
+        WorldError: With the origin of the model with most contacts.
     """
     if model.ngeom < _CROWD:
         return
@@ -194,9 +198,9 @@ def _check_contacts(model: mujoco.MjModel, entries: list[ModelEntry]) -> None:
 
 
 def _judge_without_rotors(model: mujoco.MjModel) -> None:
-    """Takes the rotors of motors out of the mean inertia, by which the solver judges its accuracy.
+    """Excludes motor rotors from the mean inertia, which scales the solver's tolerance.
 
-    They are heavy beyond measure, and with them it would be content with forces that are wrong.
+    Their huge inertia would make the solver accept wrong forces.
     """
     masses = model.dof_M0[model.dof_M0 < ROTOR_INERTIA / 2]
     if len(masses):
@@ -204,9 +208,9 @@ def _judge_without_rotors(model: mujoco.MjModel) -> None:
 
 
 def _divide_floors(model: mujoco.MjModel) -> None:
-    """Draws planes in many cells where lamps shine: light is computed at their corners.
+    """Splits planes into many cells in worlds with lamps: lighting is computed at cell corners.
 
-    The sun shines alike everywhere, so that one cell does for it.
+    Sunlight is uniform, so one cell is enough for it.
     """
     if (model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL).all():
         return
@@ -216,7 +220,7 @@ def _divide_floors(model: mujoco.MjModel) -> None:
 
 
 def _felt(entries: Iterable[ModelEntry]) -> Iterator[str]:
-    """The links that somebody asks what lies on them, scoped."""
+    """Scoped names of links for which contacts are needed."""
     for entry in entries:
         for link in entry.description.links:
             if link.name in entry.felt or any(each.type == "contact" for each in link.sensors):
@@ -232,26 +236,26 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
     spec.option.timestep = step_of(world)
     spec.option.gravity = list(world.gravity)
     # Solves motors and contacts in one system. The other implicit integrators damp a servo only
-    # after the contacts were solved without it, and a driven wheel slips by that difference.
+    # after the contacts were solved without it, so a driven wheel slips by the difference.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
-    # That one takes damping into its system; mj_Euler, by which a step ends where something has
-    # read it, would take it a second time.
+    # This integrator includes damping in its system; mj_Euler, which completes a step after the
+    # state was read, would apply the damping twice.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = contact.FRICTION_IMPEDANCE_RATIO
     spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
-    # Lengths that MuJoCo scales by the model's extent stay in metres.
+    # Keeps lengths that MuJoCo scales by the model's extent in metres.
     spec.stat.extent = 1.0
-    # A geom's laser_retro.
+    # The laser_retro of a geom.
     spec.nuser_geom = 1
     spec.visual.global_.offwidth = 16
     spec.visual.global_.offheight = 16
-    # Four samples a pixel and shadows are most of what a software renderer would pay for.
+    # Multisampling and shadows would be most of the cost in a software renderer.
     spec.visual.quality.offsamples = 0
     spec.visual.quality.shadowsize = 0
     ambient = [min(value, _MOST_AMBIENT) for value in world.ambient[:3]]
     spec.visual.headlight.ambient = ambient
-    # A little light from the camera itself: a face turned away from the sun keeps its shape.
+    # A weak headlight keeps the shape of faces visible that point away from the sun.
     spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
     spec.visual.headlight.specular = [0, 0, 0]
     sky = list(world.background[:3])
@@ -270,9 +274,9 @@ def _empty(world: WorldDescription) -> mujoco.MjSpec:
 
 
 def _explain(message: str, entries: list[ModelEntry]) -> WorldError:
-    """The error for what MuJoCo's compiler refuses, at the line of the element that it names.
+    """The error for a message of MuJoCo's compiler, at the origin of the named element.
 
-    Here alone its texts are read.
+    Only this function parses the compiler's messages.
     """
     text = message.splitlines()[0].removeprefix("Error: ")
     for entry in entries:

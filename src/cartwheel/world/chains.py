@@ -1,11 +1,11 @@
-"""Chains of joints, which the integrator would drive faster and faster.
+"""Drag for chains of joints, which the integrator would otherwise accelerate.
 
-A step takes the Coriolis forces of its beginning. What turns at ω turns by ωh meanwhile, and
-what is advanced along a tangent gets longer: energy grows by (ωh)² of itself in each step. An
-arm without damping that falls hands its energy on to lighter and lighter links, and the last
-of them turn so fast that this growth outruns all else. Each joint of a chain is therefore
-given the drag that takes as much: ½ h I ω³, with the largest inertia I that what it carries
-can have about it. ``docs/physics.md`` tells how little that is at speeds that a step resolves.
+A step uses the Coriolis forces at its beginning. A body that turns at ω turns by ωh during the
+step, and advancing along a tangent increases the length: the energy grows by a factor of (ωh)² per
+step. When an undamped arm falls, its energy moves to lighter and lighter links, until the last
+links turn so fast that this growth dominates. Therefore each joint in a chain gets a drag that
+removes the same energy: ½ h I ω³, with the largest possible inertia I of the carried bodies about
+the joint. ``docs/physics.md`` shows how small the drag is at speeds that a step resolves.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
 
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 _WEIGHTLESS = 1e-5
-"""kg; what weighs less moves nothing."""
+"""kg; lighter bodies have no effect."""
 _BALANCED = 0.05
-"""Of its inertia about the axis: less that a rotor's imbalance makes is none."""
+"""Fraction of the inertia about the axis below which a rotor counts as balanced."""
 
 
 def drag(model: mujoco.MjModel) -> dict[int, float]:
-    """What each hinge of a chain needs: the coefficient of ω³, by the joint's number.
+    """The drag of each hinge in a chain: the coefficient of ω³, by joint index.
 
     Args:
-        model: Compiled; its time step counts.
+        model: The compiled model; its time step is used.
 
     Returns:
-        N m s³/rad³ of each hinge that moves other joints or is moved by them. A wheel is not
-        among them: a balanced body on its axis changes no inertia by turning.
+        N m s³/rad³ for each hinge that moves other joints or is moved by them. Wheels are excluded:
+        a balanced body does not change any inertia as it turns.
     """
     if not model.njnt:
         return {}
     pivots, carried = _carried(model)
-    # A tyre that slips on its wheel weighs nothing: the wheel is no chain's part by it.
+    # A slipping tyre has almost no mass, so it does not make the wheel part of a chain.
     moving = (model.body_dofnum > 0) & (model.body_mass > _WEIGHTLESS)
     found = {}
     for joint in range(model.njnt):
@@ -56,7 +56,7 @@ def drag(model: mujoco.MjModel) -> dict[int, float]:
 
 
 def apply(model: mujoco.MjModel) -> dict[int, float]:
-    """Gives the model's hinges their drag; returns it as `drag` does."""
+    """Sets the drag of the model's hinges; returns the same as `drag`."""
     found = drag(model)
     for joint, coefficient in found.items():
         model.dof_dampingpoly[model.jnt_dofadr[joint], 1] = coefficient
@@ -64,11 +64,11 @@ def apply(model: mujoco.MjModel) -> dict[int, float]:
 
 
 def _carried(model: mujoco.MjModel) -> tuple[Array, Array]:
-    """Of each body its pivot, in its own frame, and the mass that hangs on that.
+    """The pivot of each body in its own frame, and the mass carried by it.
 
     Returns:
-        (nbody, 3) in m; and (nbody, 3): Σm, Σmd and Σmd² with the inertia, where d is the
-        farthest that a mass can come from the pivot, whatever the joints between do.
+        (nbody, 3) in m; and (nbody, 3): Σm, Σmd and Σmd² with the inertia, where d is the maximum
+        distance of a mass from the pivot in any joint configuration.
     """
     pivots = np.zeros((model.nbody, 3))
     frames = [matrix_from_quat(from_wxyz(quat)) for quat in model.body_quat]
@@ -103,7 +103,7 @@ def _carried(model: mujoco.MjModel) -> tuple[Array, Array]:
 
 
 def _is_balanced(model: mujoco.MjModel, joint: int, body: int) -> bool:
-    """Whether a rigid part may turn about its joint without moving any mass to another place."""
+    """Whether a rigid part can turn about its joint without moving any mass."""
     axis = np.asarray(model.jnt_axis[joint])
     anchor = np.asarray(model.jnt_pos[joint])
     mass, moment, tensor = 0.0, np.zeros(3), np.zeros((3, 3))
@@ -131,7 +131,7 @@ def _is_balanced(model: mujoco.MjModel, joint: int, body: int) -> bool:
 
 
 def _subtree(model: mujoco.MjModel, body: int) -> list[int]:
-    """A body and all below it, parents first."""
+    """A body and all its descendants, parents first."""
     found = [body]
     inside = {body}
     # The compiler numbers bodies depth first.

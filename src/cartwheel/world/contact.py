@@ -1,13 +1,12 @@
-"""Gazebo's contact parameters as MuJoCo's.
+"""Converts Gazebo's contact parameters to MuJoCo's.
 
-Derivations stand in ``docs/physics.md``. In short:
+For derivations, see ``docs/physics.md``. In short:
 
-- Friction of a pair is the smaller of the two coefficients in Gazebo. MuJoCo takes the
-  parameters of the geom with the higher priority: priorities that rise as mu falls keep
-  Gazebo's rule.
-- ``kp`` and ``kd`` are a spring and a damper against the body's mass m: in MuJoCo's terms
-  a time constant 1/(ζω) and a damping ratio ζ with ω = √(kp/m), ζ = kd/(2√(kp m)), no
-  stiffer than a contact can be at this step, and never bouncing where no restitution is asked for.
+- In Gazebo, the smaller of two coefficients is the friction of a pair. MuJoCo uses the parameters
+  of the geom with the higher priority, so priorities that rise as mu falls give the same rule.
+- ``kp`` and ``kd`` are a spring and a damper against the body's mass m. In MuJoCo's terms, they are
+  a time constant 1/(ζω) and a damping ratio ζ with ω = √(kp/m), ζ = kd/(2√(kp m)). The contact is
+  limited to the stiffness that the time step allows, and bounces only with restitution.
 """
 
 from __future__ import annotations
@@ -22,66 +21,70 @@ from cartwheel.geometry import Vec3
 from cartwheel.world.tyres import Tread
 
 DEFAULT_MU = 1.0
-"""Where a description states none, as in Gazebo."""
+"""Default friction coefficient, as in Gazebo."""
 DEFAULT_KP = 1e12
 DEFAULT_KD = 1.0
 STIFFEST_TIME_CONSTANT = 0.01
-"""s; a rigid contact, as long as the step is not longer than half of it."""
+"""s; a rigid contact, for time steps up to half of this value."""
 SOFTEST_TIME_CONSTANT = 0.1
-"""s; beyond it a body would visibly sink."""
+"""s; with a larger value, a body would visibly sink."""
 IMPEDANCE = (0.95, 0.99, 0.0005, 0.5, 2.0)
-"""MuJoCo's solimp: how much of the constraint is kept at and beyond 0.5 mm of depth."""
+"""MuJoCo's solimp: the enforced fraction of the constraint at depths of 0.5 mm and more."""
 FRICTION_TIME_CONSTANT = 0.03
-"""s; in which a slip that the friction can hold dies out. Below mu g T/2 friction is viscous."""
+"""Time constant for the decay of slip within the friction limit, s. Below mu g T/2, friction is
+viscous.
+"""
 TRAILING_TIME_CONSTANT = 0.4
-"""s; the same of what a robot drags along on its wheels' ground, as a caster that does not turn.
+"""The same for parts that a robot drags on the ground of its wheels, such as a fixed caster, s.
 
-Its wheels keep it from creeping, and friction that stops it at once throws it up."""
+The wheels prevent creep, and friction that stops such a part at once would throw it up.
+"""
 TORSION = 0.005
-"""m; MuJoCo's own, which no contact of three dimensions looks at."""
+"""m; MuJoCo's default, which contacts with three dimensions do not use."""
 NO_BOUNCE = 1e5
-"""m/s; SDF's default threshold, which nothing reaches."""
+"""m/s; SDF's default threshold, which is never reached."""
 ALL_BITS = 0xFFFF
-"""SDF's default of both bitmasks."""
+"""SDF's default for both bitmasks."""
 FRICTION_IMPEDANCE_RATIO = 100.0
-"""How much harder friction holds than the normal direction: less creep under a steady load."""
+"""Stiffness of friction relative to the normal direction: reduces creep under a constant load."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BuiltSurface:
-    """A colliding geom of a spec, and what decides how it touches others."""
+    """A collision geom in a spec, with its contact properties."""
 
     geom: Any
     name: str
     model: str
     moves: bool
-    """Whether any joint lies between it and the world."""
+    """Whether there is a joint between the geom and the world."""
     rolls: bool
     """Whether it is a wheel."""
     tread: Tread | None
-    """Of a wheel that may roll on the ground."""
+    """The tread of a wheel that may roll on the ground."""
     bottom: float | None
-    """How low it reaches in its model, where it is fixed to its root and nothing holds that; m."""
+    """Lowest point in the model, m, for geoms fixed to a free root; otherwise None."""
     friction: tuple[float, float, float]
     reference: tuple[float, float]
     surface: Surface
     direction: tuple[str, Vec3] | None = None
-    """Along which mu1 counts, in the axes of a body; None where the description states none."""
+    """The direction in which mu1 applies, in a body's axes; None if the description states none."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bounce:
-    """A geom that throws back what meets it, if that bounces too."""
+    """A geom with restitution; only pairs of such geoms bounce."""
 
     geom: str
     restitution: float
-    """Speed after an impact by speed before; of two surfaces the smaller counts."""
+    """Speed after an impact divided by speed before it; the smaller value of two surfaces is used.
+    """
     threshold: float
-    """m/s: what meets more slowly does not bounce; of two surfaces the smaller counts."""
+    """m/s; slower impacts do not bounce. The smaller value of two surfaces is used."""
 
 
 def bounce(geom: str, surface: Surface) -> Bounce | None:
-    """How a surface bounces; None where it does not, as without a threshold in Gazebo."""
+    """The restitution of a surface; None without one, or without a threshold, as in Gazebo."""
     restitution, threshold = surface.restitution, surface.bounce_threshold
     if not restitution or threshold is None or threshold >= NO_BOUNCE:
         return None
@@ -91,21 +94,21 @@ def bounce(geom: str, surface: Surface) -> Bounce | None:
 def friction(surface: Surface) -> tuple[float, float, float]:
     """Sliding, torsional and rolling friction of a geom.
 
-    Where mu1 and mu2 differ it is their mean, for contacts that no pair is stated for.
+    If mu1 and mu2 differ, the mean is used, for contacts without an explicit pair.
     """
     return (sum(coefficients(surface)) / 2, TORSION, 0.0001)
 
 
 def coefficients(surface: Surface) -> tuple[float, float]:
-    """mu1 and mu2; a surface that states one of them has it in both directions."""
+    """mu1 and mu2; if only one is stated, it applies in both directions."""
     mu1 = DEFAULT_MU if surface.mu1 is None else surface.mu1
     mu2 = mu1 if surface.mu2 is None else surface.mu2
-    # A coefficient beyond 100 only spoils the conditioning: no wheel slips at 100.
+    # Coefficients above 100 only worsen the conditioning: no wheel slips at 100.
     return min(mu1, 100.0), min(mu2, 100.0)
 
 
 def masks(surface: Surface) -> tuple[int, int]:
-    """MuJoCo's contype and conaffinity: what a surface is, and what it touches."""
+    """MuJoCo's contype and conaffinity: the category of a surface, and what it collides with."""
     if surface.collide_without_contact:
         return 0, 0
     collide = ALL_BITS if surface.collide_bitmask is None else surface.collide_bitmask
@@ -114,13 +117,13 @@ def masks(surface: Surface) -> tuple[int, int]:
 
 
 def masks_fit(first: Surface, second: Surface) -> bool:
-    """Whether two surfaces may touch: one of them is of what the other touches."""
+    """Whether two surfaces may collide: the category of one is in the mask of the other."""
     (category, collide), (other, others) = masks(first), masks(second)
     return bool(category & others or other & collide)
 
 
 def _signed(bits: int) -> int:
-    """32 bits as the engine's integers hold them."""
+    """An unsigned 32-bit mask as the engine's signed integer."""
     return bits - (1 << 32) if bits >= 1 << 31 else bits
 
 
@@ -128,9 +131,9 @@ def reference(surface: Surface, mass: float, step: float) -> tuple[float, float]
     """MuJoCo's solref: time constant in s and damping ratio.
 
     Args:
-        surface: Its ``kp`` in N/m and ``kd`` in N s/m, Gazebo's defaults where not stated.
-        mass: Of the model that rests on the contact, kg.
-        step: Of the simulation, s.
+        surface: ``kp`` in N/m and ``kd`` in N s/m, with Gazebo's defaults.
+        mass: Mass of the model on the contact, kg.
+        step: Time step, s.
     """
     kp = DEFAULT_KP if surface.kp is None else max(surface.kp, 1.0)
     kd = DEFAULT_KD if surface.kd is None else max(surface.kd, 0.0)

@@ -1,4 +1,4 @@
-"""A model that stands in a world, with what its plugins asked to be built into it."""
+"""A model in a world, with the elements that its plugins requested."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescriptio
 from cartwheel.geometry import Pose, Vec3
 
 ROTOR = "rotor"
-"""Of a driven joint: what it is coupled to; a body, a joint and a tendon of that name."""
+"""Name of the rotor of a driven joint: a body, a joint and a tendon."""
 TYRE = "tyre"
-"""Of a wheel that slips: a body, that turns and shifts on the wheel by joints of these names."""
+"""Name of the tyre of a slipping wheel: a body, and the prefix of its two joints."""
 TURN, SHIFT = "turn", "shift"
 DRIVE_AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-"""Of a `BodyDrive`'s servos, in the world's axes."""
+"""Axes of a `BodyDrive`'s servos, in the world."""
 
 
 def scoped(*parts: str) -> str:
@@ -23,16 +23,16 @@ def scoped(*parts: str) -> str:
 
 
 _PART = "\x1f"
-"""Between a collision's name and the number of a part; no XML can hold it."""
+"""Separates a collision's name from a part number; it cannot occur in XML."""
 
 
 def part_name(collision: str, number: int) -> str:
-    """The name of one of the convex parts of a collision; the first has the collision's own."""
+    """The name of a convex part of a collision; the first part has the collision's name."""
     return f"{collision}{_PART}{number}" if number else collision
 
 
 def collision_of(part: str) -> str:
-    """The name of the collision that a part belongs to."""
+    """The collision name of a part."""
     return part.partition(_PART)[0]
 
 
@@ -42,38 +42,39 @@ class Motor:
 
     joint: str
     mode: Literal["velocity", "servo"]
-    """A servo's law is set while it runs; see `ServoHandle`."""
+    """A servo's control law is set at run time; see `ServoHandle`."""
     max_effort: float | None = None
     """N m or N; None is unlimited."""
     beyond: bool = False
-    """Whether a position or velocity is held with that even beyond the joint's effort limit."""
+    """Whether holding a position or velocity may exceed the joint's effort limit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyDrive:
-    """A servo that moves a whole model: it holds the velocity of one of its links."""
+    """A servo that moves a whole model by holding the velocity of one link."""
 
     link: str
     centre: Vec3
-    """Where it pushes, in the link: at the model's centre of mass it tips nothing over."""
+    """Point of application in the link: at the model's centre of mass, no tilting torque results.
+    """
     force_gain: float
     """N s/m, along each axis."""
     torque_gain: float
     """N m s/rad, about each axis."""
     band: float
-    """m/s or rad/s: a larger difference of velocities counts as this one."""
+    """m/s or rad/s; larger velocity errors are clipped to this value."""
     number: int = 0
-    """Among the model's: two plugins may push it."""
+    """Index in the model: two plugins may push it."""
 
     @property
     def name(self) -> str:
-        """Of its site and its motors, in the link."""
+        """Name of its site and motors in the link."""
         return f"drive{self.number or ''}"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraMount:
-    """A camera on a link: looks along the x axis of `pose`, z up."""
+    """A camera on a link: looks along the x axis of `pose`, with z up."""
 
     name: str
     """Unique in its model."""
@@ -89,16 +90,16 @@ class ModelEntry:
     name: str
     description: RobotDescription
     pose: Pose
-    """Of the model's frame: where it was spawned and where a reset returns it."""
+    """Pose of the model's frame at spawn and after a reset."""
     motors: dict[str, Motor] = field(default_factory=dict)
     """By joint."""
     mimics: dict[str, Mimic] = field(default_factory=dict)
-    """By the joint that follows; besides those of the description."""
+    """By follower joint; in addition to those in the description."""
     drives: list[BodyDrive] = field(default_factory=list)
     cameras: list[CameraMount] = field(default_factory=list)
     slips: dict[str, float] = field(default_factory=dict)
-    """Wheels whose tyres give way, with their radius in m, by link; see `SlipHandle`."""
+    """Wheels with slipping tyres by link, with their radius in m; see `SlipHandle`."""
     felt: list[str] = field(default_factory=list)
-    """Links on which what lies must stay awake, besides those with contact sensors."""
+    """Links whose contacts must stay awake, besides those with contact sensors."""
     attachments: list[str] = field(default_factory=list)
-    """Names of welds that hold nothing at first; see `AttachmentHandle`."""
+    """Names of initially inactive welds; see `AttachmentHandle`."""

@@ -1,4 +1,4 @@
-"""A description's joints as MuJoCo's."""
+"""Adds a description's joints to a MuJoCo spec."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from cartwheel.world.entry import ModelEntry, scoped
 _KIND = mujoco.mjtJoint
 _EQUALITY = mujoco.mjtEq
 _COUPLING_REFERENCE = (0.01, 1.0)
-"""solref of threads and gears: as stiff as the default step allows."""
+"""solref of screws and gears: as stiff as the default time step allows."""
 _COUPLING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""solimp: a nut under load slips by nothing that could be seen."""
+"""solimp: a nut under load has no visible slip."""
 _LOCKED = 1e-6
-"""rad or m to each side that are left to a joint whose limits are equal."""
+"""Remaining range of a joint with equal limits on each side, rad or m."""
 _LOOP_ARM = 0.1
-"""m between the two points at which a closing hinge holds."""
+"""Distance between the two points that a loop-closing hinge holds, m."""
 
 
 def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -> None:
-    """Adds a joint between a body and its parent; a fixed one adds nothing.
+    """Adds a joint between a body and its parent; a fixed joint adds nothing.
 
-    A joint of several degrees of freedom is several of the engine's: a universal joint has
-    ``<name>`` and ``<name>::axis2``, a screw turns as ``<name>`` and travels as
+    A joint with several degrees of freedom becomes several MuJoCo joints: a universal joint has
+    ``<name>`` and ``<name>::axis2``; a screw rotates as ``<name>`` and translates as
     ``<name>::travel``.
     """
     name = scoped(entry.name, joint.name)
@@ -38,7 +38,7 @@ def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -
         case "revolute" | "continuous" | "prismatic":
             made = _add_axis(body, name, joint, joint.axis)
             if joint.axis.locks and entry.mimics.get(joint.name, joint.mimic) is not None:
-                # What follows another goes where that one does.
+                # A following joint is limited by its leader.
                 made.limited = mujoco.mjtLimited.mjLIMITED_FALSE
             made.type = _KIND.mjJNT_SLIDE if joint.type == "prismatic" else _KIND.mjJNT_HINGE
         case "ball":
@@ -72,10 +72,10 @@ def couple(
     ratio: float,
     offset: float = 0.0,
 ) -> None:
-    """Holds follower = ratio * leader + offset, both of one degree of freedom.
+    """Constrains follower = ratio * leader + offset, both with one degree of freedom.
 
-    The engine takes the sum of both inverse inertias for that of the constraint and makes it as
-    soft as that asks for: written for the joint that moves more, it is never softer than it is.
+    The engine uses the sum of both inverse inertias for the constraint, which determines its
+    softness. Written for the joint that moves more, the constraint is never softer than intended.
     """
     if 0 < abs(ratio) < 1:
         follower, leader, offset, ratio = leader, follower, -offset / ratio, 1 / ratio
@@ -92,19 +92,20 @@ def couple(
 
 
 def close_loop(spec: mujoco.MjSpec, entry: ModelEntry, joint: Joint) -> None:
-    """Holds a link that hangs on another joint already.
+    """Adds a constraint for a link that already has a parent joint.
 
-    A fixed joint holds all of it, a revolute one two points of its axis, any other one point.
+    A fixed joint constrains the whole pose, a revolute joint two points on its axis, and any other
+    joint one point.
     """
     parent = "world" if joint.parent == "world" else scoped(entry.name, joint.parent)
     _hold(spec, scoped(entry.name, joint.name), scoped(entry.name, joint.child), parent, joint)
 
 
 def join_models(spec: mujoco.MjSpec, joint: Joint) -> bool:
-    """Holds links of two models together as `close_loop` does; they do not collide.
+    """Connects links of two models as `close_loop` does; the links do not collide.
 
     Returns:
-        False where one of them is not there: its model may have been deleted.
+        False if a link does not exist, for example because its model was deleted.
     """
     if any(spec.body(name) is None for name in (joint.parent, joint.child)):
         return False
@@ -129,8 +130,8 @@ def _hold(spec: mujoco.MjSpec, name: str, child: str, parent: str, joint: Joint)
             objtype=mujoco.mjtObj.mjOBJ_BODY,
             name1=child,
             name2=parent,
-            # A weld's relative pose is that of the model as built; the last number is how hard
-            # it holds the orientation.
+            # A weld's relative pose is that of the model as built; the last number weights the
+            # orientation.
             data=equality_data(*point, *([0.0] * 7), 1.0),
         )
         for number, point in enumerate(points)
@@ -138,9 +139,9 @@ def _hold(spec: mujoco.MjSpec, name: str, child: str, parent: str, joint: Joint)
 
 
 def add_attachment(spec: mujoco.MjSpec, name: str) -> None:
-    """Adds a weld that holds nothing yet; see `AttachmentHandle`.
+    """Adds an inactive weld; see `AttachmentHandle`.
 
-    It needs two bodies all the same: any will do. A world without any needs no welds.
+    A weld requires two bodies; any will do. A world without two bodies needs no welds.
     """
     if not spec.worldbody.bodies:
         return
@@ -158,7 +159,7 @@ def add_attachment(spec: mujoco.MjSpec, name: str) -> None:
 
 
 def equality_data(*values: float) -> list[float]:
-    """A constraint's numbers, as many as the engine wants."""
+    """Data of an equality constraint, padded to the length that the engine requires."""
     return [*values, *([0.0] * (mujoco.mjNEQDATA - len(values)))]
 
 
@@ -177,7 +178,7 @@ def _add_axis(body: Any, name: str, joint: Joint, axis: Axis) -> Any:
     if joint.type != "continuous" and (axis.lower is not None or axis.upper is not None):
         lower = -1e10 if axis.lower is None else axis.lower
         upper = 1e10 if axis.upper is None else axis.upper
-        # The engine wants a range; equal limits lock a joint, as in ODE.
+        # The engine requires a range; equal limits lock a joint, as in ODE.
         slack = _LOCKED if axis.locks else 0.0
         made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
         made.range = [lower - slack, upper + slack]

@@ -1,4 +1,4 @@
-"""Lights of a world and of links."""
+"""Lights in a world and on links."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from cartwheel.geometry import rotate
 
 _KIND = mujoco.mjtLightType
 _ALL_AROUND = 180.0
-"""Degrees; a point light is a spot without an edge, since the renderer passes over the others."""
+"""Degrees; a point light is added as a spot without an edge, because the renderer skips others."""
 
 _STEEPEST = 128.0
-"""OpenGL's largest exponent of a spot."""
+"""OpenGL's maximum spot exponent."""
 
 
 def shine(light: Light) -> dict[str, tuple[float, float, float]]:
-    """What of a light may change in a compiled model: fields of MuJoCo's ``light_…``."""
+    """Properties of a light that can change in a compiled model, by MuJoCo's ``light_…`` field."""
     x, y, z = rotate(light.pose.orientation, light.direction)
     length = math.sqrt(x * x + y * y + z * z)
     return {
@@ -31,12 +31,12 @@ def shine(light: Light) -> dict[str, tuple[float, float, float]]:
 
 
 def add_light(body: Any, name: str, light: Light) -> None:
-    """Adds a light that moves with a body of a spec; the world's own are its ``worldbody``'s.
+    """Adds a light that moves with a body in a spec; a world's lights are on its ``worldbody``.
 
     Args:
-        body: In whose frame the light's pose is.
+        body: The body in whose frame the light's pose is given.
         name: Unique in the spec.
-        light: No shadow comes of it, whatever it says.
+        light: The light. It never casts shadows, even if the description enables them.
     """
     body.add_light(
         name=name,
@@ -51,9 +51,9 @@ def add_light(body: Any, name: str, light: Light) -> None:
 
 
 def _exponent(light: Light) -> float:
-    """Of the cosine of the angle off a spot's axis, by which OpenGL's spots fade.
+    """OpenGL's spot exponent of the cosine of the angle from the axis.
 
-    One that is as bright as the description has it half-way between both of its edges.
+    The brightness matches the description's halfway between the inner and outer angle.
     """
     inner, outer = (min(angle, math.pi) / 4 for angle in (light.spot_inner, light.spot_angle))
     middle = math.cos(inner + outer)

@@ -1,7 +1,7 @@
-"""The first import of MuJoCo, which must not need OpenGL.
+"""Imports MuJoCo without requiring OpenGL.
 
-MuJoCo's package loads the OpenGL that MUJOCO_GL names while it is imported, and fails where that
-is missing. Only cameras need it here, and `Renderer` opens it when one is read.
+MuJoCo's package loads the OpenGL library selected by MUJOCO_GL at import, and fails if it is
+missing. Only cameras need OpenGL here; `Renderer` opens it for the first image.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _GLFW = "PYGLFW_LIBRARY"
 
 
 def import_mujoco() -> None:
-    """Imports MuJoCo; without its own renderer where that cannot be loaded."""
+    """Imports MuJoCo, without its renderer if that cannot be loaded."""
     try:
         with _known_glfw():
             import mujoco
@@ -33,7 +33,7 @@ def import_mujoco() -> None:
 
 @contextlib.contextmanager
 def _known_glfw() -> Iterator[None]:
-    """Names GLFW's library: it would start a Python process for each that it finds, to ask."""
+    """Sets the path of the GLFW library, which would otherwise start a process per candidate."""
     found = importlib.util.find_spec("glfw")
     folder = Path(found.origin).parent if found is not None and found.origin else Path()
     library = folder / "x11" / "libglfw.so"

@@ -1,8 +1,7 @@
-"""Pairs of geoms that are stated one by one: what two surfaces have of each other.
+"""Explicit geom pairs with their own contact parameters.
 
-MuJoCo takes a contact's parameters from one of its geoms. Three things a pair has to say itself:
-a softer friction where a body slides, friction that differs by direction, and friction against
-turning on the spot.
+MuJoCo takes a contact's parameters from one of its geoms. Three properties require an explicit
+pair: softer friction for a sliding body, direction-dependent friction, and torsional friction.
 """
 
 from __future__ import annotations
@@ -20,45 +19,46 @@ from cartwheel.world.contact import BuiltSurface
 from cartwheel.world.tyres import Tread
 
 MOST_PAIRS = 500
-"""Pairs with parameters of their own; each costs 6 ns a step."""
+"""Maximum number of explicit pairs; each costs 6 ns per step."""
 _MESH_AREA = 1.0
 _HOLDS = 10.0
-"""A coefficient at which nothing slips: Gazebo's ground has 100 one way and 50 the other."""
+"""A coefficient at which nothing slips: Gazebo's ground plane has 100 and 50."""
 _PATCH = 3 * math.pi / 16
-"""Of a round patch pressed as a sphere presses: the mean arm of its friction, of its radius."""
+"""Mean friction arm of a circular patch with Hertz pressure, relative to its radius."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Alignment:
-    """In which directions the two coefficients of a pair count."""
+    """The directions in which the two coefficients of a pair apply."""
 
     first: str
     second: str
-    """Geoms."""
+    """Geom names."""
     body: str | None
-    """Whose axes `direction` is in; None for the world's, chosen as ODE does."""
+    """The body with the axes of `direction`; None for a direction in the world, as ODE chooses it.
+    """
     direction: Vec3
     across: bool
-    """Whether the pair's first coefficient counts across the direction, not along it."""
+    """Whether the pair's first coefficient applies perpendicular to the direction."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pair:
-    """Two geoms that may touch, and how."""
+    """Two geoms that may touch, with their contact parameters."""
 
     first: BuiltSurface
     second: BuiltSurface
     friction: tuple[float, float]
-    """The larger coefficient first: the engine scales by it."""
+    """The larger coefficient first, because the engine scales by it."""
     torsion: float
-    """m; the greatest torque about the normal, of the normal force."""
+    """m; maximum torque about the normal per normal force."""
     reference: tuple[float, float]
     friction_time: float | None
-    """s, in which a slip dies out; None for as hard as the contact."""
+    """Decay time of slip, s; None for the contact's stiffness."""
     alignment: Alignment | None = None
 
     def arguments(self) -> dict[str, Any]:
-        """Of ``MjSpec.add_pair``."""
+        """Arguments for ``MjSpec.add_pair``."""
         _, _, rolling = contact.friction(self.first.surface)
         found: dict[str, Any] = {
             "geomname1": self.first.name,
@@ -76,20 +76,21 @@ class Pair:
 def stated_pairs(
     surfaces: Iterable[BuiltSurface], joined: Collection[frozenset[str]] = ()
 ) -> Iterator[Pair]:
-    """Moving geoms with those of other models, where the two have something of their own.
+    """Pairs of moving geoms with geoms of other models that need their own parameters.
 
-    In MuJoCo's convex contact model a sliding body is lifted: one that slides at v hovers at
-    mu v b/k, with b the damping of friction and k the stiffness of the normal, and skips. Only
-    a pair stated by itself can have a b of its own; what slides, slides on what stands.
-    A wheel keeps the hard one: in a turn at rate ω it slips sideways by ω v/b. What the
-    trunk of a robot drags along where its wheels roll is led by them, and is softer still.
+    In MuJoCo's convex contact model, a sliding body is lifted: at speed v, it hovers at mu v b/k,
+    with the damping b of friction and the stiffness k of the normal direction, and skips. Only an
+    explicit pair can have a separate b, so sliding bodies get pairs with fixed bodies. A wheel
+    keeps the stiff value, because it slips sideways by ω v/b in a turn at rate ω. Parts of a
+    robot's trunk that are dragged where its wheels roll are guided by the wheels and are softer
+    still.
 
-    Each pair is looked at in each step, near or far: a world with more than `MOST_PAIRS` states
-    those of its largest floors, and what slides on something smaller is lifted.
+    Each pair is tested in every step, near or far. In a world with more than `MOST_PAIRS`, only the
+    largest floors get pairs, and bodies that slide on smaller ones are lifted.
 
     Args:
-        surfaces: Of all models.
-        joined: Bodies of different models that a joint holds together: they do not touch.
+        surfaces: Surfaces of all models.
+        joined: Bodies of different models that are connected by a joint and do not collide.
     """
     surfaces = list(surfaces)
     special = any(map(_special, surfaces))
@@ -121,7 +122,7 @@ def stated_pairs(
 
 
 def _trails(mover: BuiltSurface, treads: Sequence[Tread]) -> bool:
-    """Whether it touches the ground beside wheels: about as low as they are."""
+    """Whether a geom touches the ground beside wheels, at about the same height."""
     bottom = mover.bottom
     return bottom is not None and any(abs(bottom - each.bottom) < each.radius for each in treads)
 
@@ -164,7 +165,7 @@ def _pair(
 
 
 def _alignment(first: BuiltSurface, second: BuiltSurface, *, across: bool) -> Alignment:
-    """By the direction of the surface with the smaller mu1 where both have one, as Gazebo means."""
+    """Uses the direction of the surface with the smaller mu1 if both have one, as Gazebo does."""
     by_mu1 = sorted((first, second), key=lambda each: contact.coefficients(each.surface)[0])
     stated = [each.direction for each in by_mu1 if each.direction is not None]
     body, direction = stated[0] if stated else (None, (0.0, 0.0, 0.0))
@@ -174,7 +175,7 @@ def _alignment(first: BuiltSurface, second: BuiltSurface, *, across: bool) -> Al
 
 
 def _floor_area(surface: BuiltSurface) -> float:
-    """How much there is to slide on, m²: of a box the largest face that may lie level."""
+    """Area to slide on, m²: for a box, the largest face that may be level."""
     geom, kind = surface.geom, mujoco.mjtGeom
     if geom.type in (kind.mjGEOM_PLANE, kind.mjGEOM_HFIELD):
         return math.inf
@@ -182,5 +183,5 @@ def _floor_area(surface: BuiltSurface) -> float:
         return float(4 * geom.size[0] * geom.size[1])
     if geom.type == kind.mjGEOM_CYLINDER:
         return float(math.pi * geom.size[0] ** 2)
-    # A mesh's size is known to the compiler alone; it may well be a floor.
+    # Only the compiler knows a mesh's size; it may be a floor.
     return _MESH_AREA if geom.type == kind.mjGEOM_MESH else 0.0

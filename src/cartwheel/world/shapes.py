@@ -1,4 +1,4 @@
-"""Shapes of a description as MuJoCo geoms."""
+"""Converts shapes to MuJoCo geoms."""
 
 from __future__ import annotations
 
@@ -31,23 +31,23 @@ from cartwheel.geometry import Array, Pose, quat_between, to_wxyz
 
 _CONE_SIDES = 32
 _PLANE_HALF_SIZE = 200.0
-"""m, drawn half size of an endless plane."""
+"""Drawn half size of an infinite plane, m."""
 _ENDLESS = 50.0
-"""m; a plane of that size is a ground, which is drawn to the horizon."""
+"""m; a plane with at least this size is a ground, which is drawn to the horizon."""
 _LARGEST_TEXTURE = 1024
-"""Pixels in each direction: no camera here sees more of a surface."""
+"""Pixels in each direction: no camera resolves more of a surface."""
 _FLAT = 1e-6
-"""Of a mesh's extent: thinner is flat."""
+"""Relative thickness below which a mesh is flat."""
 _PLATE = 1e-3
-"""m, how thick a flat mesh that collides is, and a plane that moves."""
+"""m; thickness of a flat mesh that collides, and of a moving plane."""
 _HULL_CORNERS = 2000
-"""A hull of more, of a finely meshed round, takes seconds and differs by a thousandth."""
+"""Maximum hull vertices. Larger hulls of finely meshed curves take seconds and differ by 0.1 %."""
 _BELOW = 1.0
-"""m of solid ground below the lowest point of a heightmap."""
+"""Solid ground below the lowest point of a heightmap, m."""
 
 
 class Assets:
-    """The meshes and textures of one spec, each made once."""
+    """The meshes and textures of a spec, each created once."""
 
     def __init__(self, spec: mujoco.MjSpec) -> None:
         self._spec = spec
@@ -57,13 +57,13 @@ class Assets:
         self._heightmaps: dict[Heightmap, tuple[str, float]] = {}
 
     def mesh(self, key: object, vertices: Any, faces: Any, *, uv: Any = None) -> str:
-        """The name of a mesh asset; made from the arrays when `key` is new.
+        """The name of a mesh asset, which is created from the arrays if `key` is new.
 
-        Without faces it is the hull of its vertices.
+        Without faces, it is the convex hull of the vertices.
         """
         if key not in self._meshes:
             name = f"mesh_{len(self._meshes)}"
-            # A shell's inertia also exists for surfaces that are not closed; no mass comes from it.
+            # Shell inertia also works for open surfaces; it never affects the mass.
             mesh = self._spec.add_mesh(
                 name=name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
             )
@@ -77,13 +77,13 @@ class Assets:
         return self._meshes[key]
 
     def heightmap(self, shape: Heightmap, origin: Origin) -> tuple[str, float]:
-        """The name of a heightmap's asset, and the height in m of its lowest point."""
+        """The name of a heightmap asset, and the height of its lowest point, m."""
         if shape not in self._heightmaps:
             heights = heights_of(shape, origin=origin)
             low, high = float(heights.min()), float(heights.max())
             name = f"heightmap_{len(self._heightmaps)}"
             x, y = shape.size[0] / 2, shape.size[1] / 2
-            # The engine stretches the data over the third number.
+            # The engine scales the data by the third number.
             self._spec.add_hfield(
                 name=name,
                 nrow=heights.shape[0],
@@ -95,11 +95,11 @@ class Assets:
         return self._heightmaps[shape]
 
     def material(self, image: Path | bytes | None, emission: float) -> str:
-        """The name of a material that shows an image, its path or encoded bytes, and glows.
+        """The name of a material with an image (path or encoded bytes) and emission.
 
         Args:
-            image: None is none; one that cannot be read is left out.
-            emission: Light of its own, as a factor on its colour.
+            image: None for no image; unreadable images are omitted.
+            emission: Emitted light, as a factor on the colour.
         """
         key = (image, emission)
         if key not in self._materials:
@@ -113,7 +113,7 @@ class Assets:
         return self._materials[key]
 
     def _texture(self, image: Path | bytes) -> str | None:
-        """Of an image; None where it cannot be read, for which `picture_error` has the reason."""
+        """The texture of an image; None if it is unreadable, see `picture_error` for the reason."""
         if image not in self._textures:
             name = f"texture_{len(self._textures)}"
             pixels = _pixels(image, _changed(image))
@@ -132,19 +132,19 @@ class Assets:
 
 
 def _four(rows: Any) -> Any:
-    """The rows, the last one repeated up to four: the engine takes no lone triangle."""
+    """At least four rows, with the last one repeated: the engine rejects single triangles."""
     some = np.asarray(rows, dtype=np.float64)
     return np.concatenate([some, np.repeat(some[-1:], max(0, 4 - len(some)), axis=0)])
 
 
 def picture_error(image: Path | bytes) -> PictureError | None:
-    """Why an image is not shown."""
+    """Why an image cannot be shown, or None."""
     found = _pixels(image, _changed(image))
     return found if isinstance(found, PictureError) else None
 
 
 def _changed(image: Path | bytes) -> int:
-    """When a file was written, ns; 0 where it is gone."""
+    """When a file was modified, ns; 0 if it does not exist."""
     try:
         return image.stat().st_mtime_ns if isinstance(image, Path) else 0
     except OSError:
@@ -153,14 +153,14 @@ def _changed(image: Path | bytes) -> int:
 
 @lru_cache(maxsize=256)
 def _pixels(image: Path | bytes, _changed: int) -> Any:
-    """An image as the engine wants it, shape (height, width, 3); kept, since each spawn asks.
+    """An image as the engine needs it, shape (height, width, 3); cached across spawns.
 
-    One that cannot be read is the error.
+    Returns the error if the image cannot be read.
     """
     try:
         small = thumbnail(image, _LARGEST_TEXTURE)
     except PictureError as error:
-        # Made anew: the one that was raised refers to frames that hold the picture.
+        # A new error: the raised one refers to frames that contain the image.
         return PictureError(error.name, error.reason, error.hint, code=error.code)
     return np.ascontiguousarray(np.asarray(small)[::-1])
 
@@ -168,10 +168,10 @@ def _pixels(image: Path | bytes, _changed: int) -> Any:
 def place(
     shape: Shape, pose: Pose, origin: Origin, assets: Assets, *, moves: bool = False
 ) -> tuple[dict[str, Any], Pose]:
-    """Geom arguments of a shape that is seen, and its pose: a plane's normal may turn it.
+    """Geom arguments and pose of a visual shape; the pose may include a plane's normal.
 
-    A mesh is one geom, whatever parts and colours it has. A plane that moves is a plate, since
-    the engine's planes stand still.
+    A mesh is one geom, regardless of its parts and colours. A moving plane becomes a thin plate,
+    because the engine's planes are fixed.
 
     Raises:
         CartwheelError: The shape's file cannot be used.
@@ -193,8 +193,7 @@ def place(
             x, y = (side / 2 if side < _ENDLESS else _PLANE_HALF_SIZE for side in size)
             if moves:
                 return {"type": geom.mjGEOM_BOX, "size": [x, y, _PLATE / 2]}, turned
-            # The third number is the spacing of the drawn grid: one cell, since a software
-            # renderer pays for each.
+            # The third number is the grid spacing: one cell, because software rendering is slow.
             return {"type": geom.mjGEOM_PLANE, "size": [x, y, max(x, y)]}, turned
         case Mesh() | Cone() | Polyline():
             return {"type": geom.mjGEOM_MESH, "meshname": _mesh(shape, assets)}, pose
@@ -207,16 +206,16 @@ def place(
 def solids(
     shape: Shape, pose: Pose, origin: Origin, assets: Assets, *, moves: bool = True
 ) -> list[tuple[dict[str, Any], Pose]]:
-    """Geom arguments and poses of the convex parts of a shape that collides.
+    """Geom arguments and poses of the convex parts of a collision shape.
 
-    A mesh that moves is its convex hull, one that stands still is its surface.
+    A moving mesh becomes its convex hull; a fixed mesh keeps its surface.
 
     Args:
         shape: The shape.
-        pose: In its link.
-        origin: For errors.
-        assets: Of the spec.
-        moves: Whether its link can move.
+        pose: Pose in its link.
+        origin: Origin for errors.
+        assets: The spec's assets.
+        moves: Whether the link can move.
 
     Raises:
         CartwheelError: The shape's file cannot be used.
@@ -240,12 +239,12 @@ def solids(
 
 
 def pose_arguments(pose: Pose) -> dict[str, Any]:
-    """``pos`` and ``quat`` as MuJoCo takes them."""
+    """``pos`` and ``quat`` in MuJoCo's format."""
     return {"pos": list(pose.position), "quat": list(to_wxyz(pose.orientation))}
 
 
 def _mesh(shape: Mesh | Cone | Polyline, assets: Assets) -> str:
-    """The mesh asset of a shape; where it collides, its convex hull does."""
+    """The mesh asset of a shape; collisions use its convex hull."""
     match shape:
         case Cone():
             return assets.mesh(shape, *_cone(shape))
@@ -256,7 +255,7 @@ def _mesh(shape: Mesh | Cone | Polyline, assets: Assets) -> str:
 
 
 def _plate(shape: Mesh) -> Any:
-    """The corners of a mesh without thickness, which has no hull, made a thin plate; else None."""
+    """The corners of a flat mesh, extruded to a plate because it has no hull; otherwise None."""
     vertices, _ = meshes.convex_hull_input(meshes.load_mesh(shape))
     centred = np.asarray(vertices, dtype=np.float64)
     centred = centred - centred.mean(axis=0)
@@ -268,12 +267,12 @@ def _plate(shape: Mesh) -> Any:
 
 
 def _prism(piece: outline.Loop, shape: Polyline) -> tuple[Any, Any]:
-    """A convex piece of an outline, pulled up."""
+    """A convex piece of an outline, extruded."""
     return outline.solid(Polyline(points=piece, height=shape.height))
 
 
 def _cone(shape: Cone) -> tuple[Array, Any]:
-    """Vertices and faces of a cone, centred, tip up."""
+    """Vertices and faces of a centred cone with its tip up."""
     angles = [2 * math.pi * i / _CONE_SIDES for i in range(_CONE_SIDES)]
     rim = [
         (shape.radius * math.cos(a), shape.radius * math.sin(a), -shape.length / 2) for a in angles

@@ -1,9 +1,9 @@
-"""Wheels: what turns without end about its own axis touches the ground as a tyre does.
+"""Wheels: a body with unlimited rotation about its own axis touches the ground like a tyre.
 
-A cylinder meets the ground in two points, at the ends of a line. In a turn both must slide, in
-opposite senses, and any traction then makes one of them stick: the wheel turns about the one
-or the other end and the cart's heading depends on which. A crowned tyre, an ellipsoid of the
-same radius and width, touches in the middle.
+A cylinder meets the ground at two points, the ends of a line. In a turn, both must slide in
+opposite directions, and any traction makes one of them stick. The wheel then pivots about one end
+or the other, which changes the cart's heading. A crowned tyre, an ellipsoid with the same radius
+and width, touches in the middle.
 """
 
 from __future__ import annotations
@@ -29,33 +29,37 @@ from cartwheel.description.model import (
 from cartwheel.geometry import Pose, Vec3, matrix_from_quat, quat_between, rotate
 
 _ROUND = 0.96
-"""Of its radius that a wheel of flat pieces reaches at least in every direction: twelve do."""
+"""Minimum radius of a faceted wheel in any direction, relative to its radius: twelve facets pass.
+"""
 _TREAD = 0.9
-"""Of its radius from where on a mesh counts as the tread, whose width is the tyre's."""
+"""Fraction of the radius beyond which a mesh is its tread, which defines the tyre's width."""
 _DIRECTIONS = 72
 _CENTRED, _ALONG = 0.1, 0.999
-"""Of a cylinder's radius that it may lie off the axis, and the cosine between the two: wheels
-that are drawn a little askew are wheels, and stay askew."""
+"""Maximum offset from the axis, relative to a cylinder's radius, and minimum cosine between both
+axes. Slightly misaligned wheels are wheels, and stay misaligned.
+"""
 _LEVEL = 0.5
-"""Cosine between an axle and the vertical from which on nothing rolls: rotors, lasers, turrets."""
+"""Minimum cosine between an axle and the vertical at which a body does not roll: rotors, lasers,
+turrets.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Axle:
-    """What a link turns about without end, in the link's frame."""
+    """The axis of a link with unlimited rotation, in the link's frame."""
 
     axis: Vec3
-    """Of unit length."""
+    """Unit vector."""
     point: Vec3
 
     def seen_from(self, pose: Pose) -> Axle:
-        """The same in the frame of another link, whose pose in this one is given."""
+        """The axle in the frame of another link with the given pose in this frame."""
         inverse = pose.inverse()
         return Axle(rotate(inverse.orientation, self.axis), inverse.apply(self.point))
 
 
 def axle_of(joint: Joint | None) -> Axle | None:
-    """A joint's axle where it turns without end: in SDF a revolute one without limits does."""
+    """A joint's axle if its rotation is unlimited, as for SDF revolute joints without limits."""
     if joint is None:
         return None
     unlimited = joint.axis.lower is None and joint.axis.upper is None
@@ -65,11 +69,11 @@ def axle_of(joint: Joint | None) -> Axle | None:
 
 
 def tyre(collision: Collision, axle: Axle | None) -> tuple[Shape, Pose]:
-    """The shape that collides, and its pose in the link: a wheel's is crowned.
+    """The collision shape and its pose in the link: a wheel's shape is crowned.
 
     Args:
-        collision: Of the link that turns, or of one that is fixed to it.
-        axle: What it turns about.
+        collision: A collision of the rotating link, or of a link fixed to it.
+        axle: The axle.
     """
     shape, pose = collision.shape, collision.pose
     if axle is not None and isinstance(shape, Cylinder) and _on(axle, shape, pose):
@@ -88,12 +92,12 @@ class Tread:
 
 
 def tread_of(shape: Shape, pose: Pose, axle: Axle) -> Tread | None:
-    """A wheel's tread; None for what turns without end and rolls on nothing.
+    """A wheel's tread; None for rotating bodies that do not roll.
 
     Args:
-        shape: That collides, as `tyre` has it.
-        pose: Its in the model, and so are the axle's.
-        axle: What it turns about.
+        shape: Collision shape, as returned by `tyre`.
+        pose: Pose in the model, in which the axle is also given.
+        axle: The axle.
     """
     match shape:
         case Ellipsoid(radii=radii):
@@ -108,7 +112,7 @@ def tread_of(shape: Shape, pose: Pose, axle: Axle) -> Tread | None:
 
 
 def lowest(shape: Shape, pose: Pose) -> float:
-    """How low a shape reaches at a pose, m; infinite where its mesh cannot be read."""
+    """Height of a shape's lowest point at a pose, m; infinite if its mesh cannot be read."""
     down = matrix_from_quat(pose.orientation)[2]
     match shape:
         case Box(size=size):
@@ -125,7 +129,7 @@ def lowest(shape: Shape, pose: Pose) -> float:
             try:
                 points, _ = convex_hull_input(load_mesh(shape))
             except MeshError:
-                return math.inf  # told where the shape is made
+                return math.inf  # reported when the shape is created
             depth = -float((points @ down).min()) if len(points) else -math.inf
         case _:
             return math.inf
@@ -133,7 +137,7 @@ def lowest(shape: Shape, pose: Pose) -> float:
 
 
 def _on(axle: Axle, shape: Cylinder, pose: Pose) -> bool:
-    """Whether the axle is the cylinder's own axis."""
+    """Whether the axle is the cylinder's axis."""
     own = rotate(pose.orientation, (0.0, 0.0, 1.0))
     along = sum(a * b for a, b in zip(axle.axis, own, strict=True))
     arm = [a - b for a, b in zip(pose.position, axle.point, strict=True)]
@@ -143,11 +147,11 @@ def _on(axle: Axle, shape: Cylinder, pose: Pose) -> bool:
 
 
 def _round_mesh(mesh: Mesh, pose: Pose, axle: Axle) -> tuple[Shape, Pose] | None:
-    """A mesh that is round about the axle, as a crowned tyre; None for any other."""
+    """A mesh that is round about the axle, as a crowned tyre; None for other meshes."""
     try:
         points, _ = convex_hull_input(load_mesh(mesh))
     except MeshError:
-        return None  # told where the shape is made
+        return None  # reported when the shape is created
     if not len(points):
         return None
     turn = quat_between((0.0, 0.0, 1.0), axle.axis)
@@ -162,6 +166,6 @@ def _round_mesh(mesh: Mesh, pose: Pose, axle: Axle) -> tuple[Shape, Pose] | None
         return None
     tread = points[away >= _TREAD * radius, 2]
     low, high = float(tread.min()), float(tread.max())
-    # A disc without width has nothing to stand on.
+    # A disc without width could not stand.
     half = max((high - low) / 2, 0.05 * radius)
     return Ellipsoid(radii=(radius, radius, half)), frame @ Pose((0.0, 0.0, (low + high) / 2))

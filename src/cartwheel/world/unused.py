@@ -1,4 +1,4 @@
-"""Elements of a description that have no effect on the physics: each is reported."""
+"""Reports elements of a description that have no effect on the physics."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _SURFACE = {
     "collide_without_contact": "it has no contacts, and contact sensors do not see it",
 }
 _HELD = ("fixed", "revolute", "continuous", "ball")
-"""Types of joints that hold what they should where they close a loop."""
+"""Joint types that are constrained correctly when they close a loop."""
 _CONTROL = ("ros_control", "ros2_control")
 """Parts of the names of plugins that run controllers."""
 
 
 def unused(description: RobotDescription) -> Iterator[Diagnostic]:
-    """One note for each kind of element without effect, at its first occurrence."""
+    """A note for each kind of element without effect, at its first occurrence."""
     found: dict[str, tuple[Origin, int, str]] = {}
 
     def note(what: str, origin: Origin, why: str) -> None:
@@ -80,7 +80,7 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
 
 
 def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
-    """A warning for each picture that is not shown, at the first visual that has it."""
+    """A warning for each image that cannot be shown, at the first visual that uses it."""
     seen: set[Path | bytes | None] = {None}
     for visual in (visual for link in description.links for visual in link.visuals):
         images: set[Path | bytes | None] = {visual.material.texture}
@@ -101,7 +101,7 @@ def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
 
 
 def _closing(description: RobotDescription) -> Iterator[Joint]:
-    """Joints whose child hangs on another one already."""
+    """Joints whose child already has a parent joint."""
     held: set[str] = set()
     for joint in () if description.static else description.joints:
         if joint.child in held:
@@ -110,7 +110,7 @@ def _closing(description: RobotDescription) -> Iterator[Joint]:
 
 
 def _controlled(description: RobotDescription) -> set[str]:
-    """Joints on which controllers of ros_control or ros2_control can run: those heed limits."""
+    """Joints that ros_control or ros2_control controllers can command, which respect limits."""
     if not any(word in each.filename for each in description.plugins for word in _CONTROL):
         return set()
     return {

@@ -1,4 +1,4 @@
-"""How a model's parts look: colours, light of their own, and images laid on them."""
+"""Appearance of models: colours, emission and textures."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from cartwheel.world.shapes import Assets, place, pose_arguments
 
 VISUAL_GROUP = 1
 HIDDEN_GROUP = 5
-"""Holds what a sensor does not see, for the time of one look; nothing lives there."""
+"""Temporary geom group for geoms that a sensor ignores; otherwise unused."""
 _LIT = 0.65
-"""Of a colour what is seen where no lamp shines: the scene's ambient light and the camera's."""
+"""Visible fraction of a colour without lamps, lit by the ambient light and the headlight."""
 _GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 
 
 def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> None:
-    """Adds what is seen of a link, and nothing collides with, to its body, which may move."""
+    """Adds a visual to its body as a geom without collision; the body may move."""
     common: dict[str, Any] = {
         "group": VISUAL_GROUP,
         "contype": 0,
@@ -73,9 +73,9 @@ def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> Non
 def _look(material: Material, paint: Paint, opacity: float, assets: Assets) -> dict[str, Any]:
     """A geom's colour and material.
 
-    The engine's light of its own is a factor on the colour. Light and colour are those that add
-    up to what the material's two colours do. What is transparent the engine draws twice, so it is
-    given the opacity of which two layers make the one that is meant.
+    The engine's emission is a factor on the colour. Emission and colour are chosen to add up to the
+    material's two colours. The engine draws transparent geoms twice, so the opacity is that of one
+    of two layers.
     """
     colour = paint.colour or _GREY
     emission = max(material.emissive[:3])

@@ -140,8 +140,7 @@ def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def _holding(robot: Robot, name: str, *, slides: bool) -> float:
-    """Twice the effort to hold everything a joint carries, fully extended, N or N m; at least 10.
-    """
+    """Twice the effort to hold all that a joint carries, fully extended, N or N m; at least 10."""
     joint = robot.joints.get(name)
     if joint is None or joint.child not in robot.links:
         return _LEAST_EFFORT
