@@ -61,8 +61,7 @@ class Loop:
         self._woken = False
         self._waking = threading.RLock()
         """Held while `_outer` is written to or closed, because its file descriptor may be reused
-        after
-        closing.
+        after closing.
 
         It is reentrant, because a signal handler may post while its thread does.
         """

@@ -16,8 +16,7 @@ _WAITING = 200
 
 
 class Tap:
-    """Subscribes to a topic of the graph only while it is open, so that unused messages are not
-    made.
+    """Subscribes to a topic only while it is open, so that unused messages are not made.
 
     Args:
         loop: Event loop on whose thread messages are handled.

@@ -72,8 +72,7 @@ class Gate:
 
     A connection carries one request. The gate reads it completely, and writes a new request for
     the server. After a websocket handshake, bytes are forwarded unchanged, except for text
-    messages
-    that `client` rejects.
+    messages that `client` rejects.
 
     Args:
         listener: Listening socket, which the gate owns from now on.

@@ -207,14 +207,12 @@ class Graph:
         """Set by `StaticTransforms`."""
         self.changed: int = 0
         """Incremented on every change of publishers, subscribers or joint inputs, for mirrors of
-        the
-        graph."""
+        the graph."""
         self.on_error: OnError = _raise
         """Called on the owner's thread with the exception of a subscription's callback."""
         self.on_change: list[Callable[[], None]] = []
         """Called after each change that `changed` counts, on any thread, with the graph locked.
-        The
-        functions must return at once."""
+        The functions must return at once."""
 
     def close(self) -> None:
         """Closes all topics, services and actions, and wakes threads that wait for a mailbox.

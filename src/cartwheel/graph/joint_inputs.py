@@ -16,10 +16,9 @@ class JointInput:
     """Name of the controller or plugin."""
     joints: tuple[str, ...]
     put: Callable[[Mapping[str, float], float], None]
-    """Commands positions (rad or m) by joint name, to be reached within a time in s if it is
-    positive. Runs on the graph owner's thread. If the input has a topic, the command takes the
-    same
-    path as a message on the topic."""
+    """Commands positions (rad or m) by joint name, to be reached after a time in s. Inputs that do
+    not follow trajectories ignore the time. If the input has a topic, the command takes the same
+    path as a message on the topic. Call it on the graph owner's thread."""
 
 
 class JointInputs:

@@ -32,8 +32,7 @@ class Parameters:
         self._tree: dict[str, Any] = {}
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Value of a global name, mapping for a namespace, or `default` if the name does not
-        exist.
+        """Value of a name, mapping for a namespace, or `default` if the name does not exist.
 
         ``/`` returns the mapping of all parameters.
         """

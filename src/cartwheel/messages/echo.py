@@ -19,8 +19,8 @@ _WORDS = {"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "i
 def to_yaml(message: Any, *, full: bool = False, arrays: bool = True) -> str:
     """A message as YAML in the layout of ``rostopic echo``, with a final line break.
 
-    message: A message, or a field of a message.
-        message: Any message, or a field of one.
+    Args:
+        message: A message, or a field of a message.
         full: Whether to print long arrays completely instead of `SHOWN` elements and ``...``.
         arrays: Whether to print arrays; otherwise only their type and length.
     """

@@ -68,8 +68,7 @@ class Link:
         self._counting = threading.Lock()
         self._posted = self._sent = 0
         """Bytes queued for the other process, and bytes sent. The receiver and the event loop may
-        both
-        be stalled."""
+        both be stalled."""
         self._full = False
         self.dropped = 0
         """Number of messages dropped because the queue was too long."""

@@ -96,8 +96,7 @@ class BridgeProcess:
             echo: Whether the bridge receives the messages that it publishes.
             report: Receives diagnostics for the user, on any thread.
             handlers: Additional functions that the bridge may call, by name, and whether each may
-                be
-                slow.
+                be slow.
 
         Returns:
             Description of the bridge.

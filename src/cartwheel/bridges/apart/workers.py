@@ -11,8 +11,7 @@ THREADS, WAITING = 64, 1000
 
 
 class Workers:
-    """Runs each job on a thread, which ends when the queue is empty. Shutdown does not wait for
-    them.
+    """Runs jobs on threads, which end when the queue is empty. Shutdown does not wait for them.
 
     Args:
         name: Name of the threads.

@@ -68,8 +68,7 @@ class FoxgloveBridge:
 
     The bridge subscribes to a topic only while a client does. One thread packs and sends; the
     simulation's thread only queues its messages. A client that receives nothing costs memory, up
-    to
-    its backlog, and has no effect on anything else.
+    to its backlog, and has no effect on anything else.
 
     Args:
         graph: Graph of the simulation.

@@ -13,10 +13,10 @@ _REGULAR = "re:"
 
 
 class Patterns:
-    """Topic patterns: names, ``*`` and ``?``, or ``re:`` and a regular expression for the whole
-    name.
+    """Topic patterns: names with ``*`` and ``?``, or ``re:`` and a regular expression.
 
-    A pattern with a leading ``!`` excludes topics. Without other patterns, all topics match.
+    A regular expression must match the whole name. A pattern with a leading ``!`` excludes topics.
+    Without other patterns, all topics match.
 
     Args:
         patterns: Patterns from the user.

@@ -47,8 +47,7 @@ class Writer(Protocol):
         """Stores a text next to the messages, if the format supports it."""
 
     def flush(self) -> None:
-        """Passes all messages to the operating system, so that they survive a crash of the
-        process.
+        """Passes all messages to the operating system, so that they survive a crash.
 
         Raises:
             OSError: The file cannot be written.

@@ -53,12 +53,11 @@ Report = Callable[[Diagnostic], None]
 
 
 class Ros1Bridge:
-    """Offers the topics, services and parameters of a graph as a ROS 1 node, and receives others'.
+    """Connects the topics, services and parameters of a graph to ROS 1, as a node.
 
     The bridge subscribes to the graph only while a node is connected. It implements the protocols
     itself (TCPROS, the XML-RPC interfaces), so ROS need not be installed. If no master responds,
-    it
-    starts ROS's own master.
+    it starts ROS's own master.
 
     Args:
         graph: Graph of the simulation.

@@ -1,4 +1,4 @@
-"""The graph as a node of ROS 2."""
+"""The graph as a ROS 2 node."""
 
 from cartwheel.bridges.ros2.bridge import Rmw, Ros2Bridge
 from cartwheel.bridges.ros2.parameters import Parameter

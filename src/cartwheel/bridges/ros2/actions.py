@@ -1,4 +1,4 @@
-"""Actions of the graph as ROS 2 has them: three services and two topics.
+"""Actions of the graph in ROS 2, as three services and two topics.
 
 Source: rcl_action; the design article on actions.
 """
@@ -41,25 +41,25 @@ _STATES = {
     GoalState.ABORTED: 6,
 }
 _NONE, _REFUSED, _UNKNOWN_GOAL, _TERMINATED = range(4)
-"""What an attempt to cancel has come to."""
+"""Return codes of a cancel request."""
 _STATUS_PAUSE = 0.05
-"""s between two messages with the states of all goals. Each takes the simulation's thread several
-times as long as a goal."""
+"""Minimum interval in s between status messages. Each one costs the simulation's thread several
+times as much as a goal."""
 _WAITING = 100
-"""Requests for results that may wait at a time."""
+"""Maximum number of pending result requests."""
 
 
 class OfferedAction:
-    """One action; made on the loop's thread.
+    """An offered action. Create it on the loop's thread.
 
-    Whoever asks for a result is answered when it is there, so no thread waits.
+    A result request is answered when the goal ends, so no thread waits for it.
 
     Args:
-        graph: Where the action is.
-        action: What is offered.
-        loop: The bridge's.
-        middleware: Where it is offered.
-        tell: Takes a warning.
+        graph: Graph with the action.
+        action: Action to offer.
+        loop: Event loop of the bridge.
+        middleware: Middleware to offer the action on.
+        tell: Receives warnings.
         node: See `Middleware.publish`.
     """
 
@@ -81,11 +81,11 @@ class OfferedAction:
         self._submitting = False
         self._readers = False
         self._waiting: dict[str, list[Reply]] = {}
-        """Who asks for the results of goals under way; on the owner's thread."""
+        """Pending result requests of active goals. Used on the owner's thread."""
         self._closed = False
         self._status_due = False
         self._status_at = 0.0
-        """When the states were published last; on the owner's thread, as `_status_due`."""
+        """Time of the last status message. Used on the owner's thread, like `_status_due`."""
         base, kind = f"{action.name}/_action", action.type
         self._types = {
             "send_goal": f"{kind}_SendGoal",
@@ -118,7 +118,7 @@ class OfferedAction:
         graph.post(self._join)
 
     def close(self) -> None:
-        """Offers it no longer; on the loop's thread."""
+        """Removes the action from ROS 2. Call it on the loop's thread."""
         self._closed = True
         self._graph.post(lambda: self.action.leave(self))
         for each in (self._status, self._feedback, *self._services):
@@ -177,7 +177,7 @@ class OfferedAction:
             )
 
     def _send_goal(self, request: Any, reply: Reply) -> None:
-        # Who asks is to be told that its goal is accepted before it hears how that goes on.
+        # The client must receive the acceptance before any feedback on its goal.
         self._submitting = True
         try:
             goal = self.action.submit(request.goal, identity=_identity(request.goal_id))
@@ -187,7 +187,7 @@ class OfferedAction:
         moment = stamp(self.action.time_ns())
         self._respond(reply, "send_goal", accepted=accepted, stamp=moment)
         if goal is not None and goal.state is GoalState.REJECTED:
-            # ROS 2 has no field for it.
+            # The response has no field for the reason.
             self._tell(
                 GOAL_REJECTED.diagnostic(
                     f"{self.action.name}: a goal was rejected: {goal.text}",
@@ -233,7 +233,7 @@ class OfferedAction:
             )
 
     def _known(self, identity: str) -> Goal | None:
-        """A goal by what ROS 2 calls it, where another wire has made it as well."""
+        """Finds a goal by its ROS 2 identifier, even if it was created on a different wire."""
         found = self.action.goal(identity)
         if found is not None:
             return found
@@ -248,7 +248,7 @@ class OfferedAction:
             self._respond(reply, "get_result", status=_STATES[goal.state], result=goal.result)
 
     def _have_status_told(self) -> None:
-        """Publishes the states, at once or with those of the next changes."""
+        """Publishes the goal states now, or together with the next changes."""
         if self._status_due:
             return
         wait = self._status_at + _STATUS_PAUSE - time.monotonic()
@@ -287,7 +287,7 @@ def _identity(uuid: Any) -> str:
 
 
 def _bytes(identity: str) -> bytes:
-    """The 16 bytes of a goal's name: those of ROS 2's goals, and some for any other's."""
+    """16-byte identifier of a goal. Identifiers from other wires are hashed."""
     try:
         plain = bytes.fromhex(identity)
     except ValueError:

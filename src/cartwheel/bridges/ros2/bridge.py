@@ -1,4 +1,4 @@
-"""The graph of a simulation as a node of ROS 2."""
+"""The graph of a simulation as a ROS 2 node."""
 
 from __future__ import annotations
 
@@ -45,36 +45,35 @@ from cartwheel.messages import decode_cdr
 from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
 
 READER = "ros2"
-"""Our name in the graph."""
+"""Node name of the bridge in the graph."""
 Rmw = Literal["dds", "zenoh"]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _TOLD = 500
-"""Different warnings; they name nodes, of which any number may come."""
+"""Maximum number of different warnings. They contain node names, whose number is not limited."""
 _CLOSING = 10.0
 _ROS1_PARTS = ("goal", "cancel", "status", "feedback", "result")
-"""Topics that an action has in ROS 1, and in ROS 2 in another form."""
+"""Topics of an action in ROS 1. ROS 2 represents them differently."""
 _LOOK = 0.2
-"""s between two looks whether parameters were changed by others."""
+"""Interval in s at which parameters are checked for changes by others."""
 
 Report = Callable[[Diagnostic], None]
 
 
 class Ros2Bridge:
-    """Makes topics, services and actions of a graph those of a ROS 2 node, and back.
+    """Connects the topics, services and actions of a graph to ROS 2, as a node.
 
-    Everything is lazy: the graph is subscribed to while another node reads. No part of ROS needs
-    to be installed.
+    The bridge subscribes to the graph only while a ROS node subscribes. ROS need not be installed.
 
     Args:
-        graph: Of the simulation.
+        graph: Graph of the simulation.
         node: Name of the node.
-        rmw: Which middleware the others use.
-        parameters: Of the node.
-        report: Takes what the user should know, from any thread.
-        time_ns: Simulation time, for stamps.
+        rmw: Middleware of the other nodes.
+        parameters: Parameters of the node.
+        report: Receives diagnostics for the user, on any thread.
+        time_ns: Returns the simulation time, for timestamps.
 
     Raises:
-        CartwheelError: A name or a variable of ROS makes no sense, or something is not installed.
+        CartwheelError: A name or ROS environment variable is invalid, or a package is missing.
     """
 
     def __init__(
@@ -114,14 +113,14 @@ class Ros2Bridge:
 
     @property
     def description(self) -> str:
-        """Of the middleware."""
+        """Description of the middleware."""
         return self.middleware.description
 
     def start(self) -> None:
-        """Joins ROS; the rest follows on another thread.
+        """Connects to ROS. The rest follows on a separate thread.
 
         Raises:
-            CartwheelError: It cannot be joined.
+            CartwheelError: The connection failed.
         """
         self._loop.start()
         self._loop.call(self._begin).result()
@@ -129,7 +128,7 @@ class Ros2Bridge:
         self._wake()
 
     def close(self) -> None:
-        """Leaves; takes no longer than an instant."""
+        """Disconnects. Returns at once."""
         if self._closed:
             return
         self._closed = True
@@ -145,15 +144,15 @@ class Ros2Bridge:
         self._loop.stop()
 
     def log(self, diagnostic: Diagnostic) -> None:
-        """Says something on ``/rosout``; from any thread."""
+        """Logs a diagnostic on ``/rosout``. Callable on any thread."""
         self._log.write(diagnostic)
 
     def make_way(self, last: str, told: Callable[[frozenset[str]], None]) -> None:
-        """Leaves topics to other nodes as long as those publish them.
+        """Stops publishing topics while other nodes publish them.
 
         Args:
-            last: Last part of the topics' names.
-            told: From then on told which ones that are; on the loop's thread.
+            last: Last part of the topic names.
+            told: Called with these topics whenever they change, on the loop's thread.
         """
 
         def look() -> None:
@@ -179,13 +178,13 @@ class Ros2Bridge:
         self._look_at_parameters()
 
     def _look_at_parameters(self) -> None:
-        """Others change parameters too: a page, a service, another wire."""
+        """Checks for changes by the web viewer, services and other wires."""
         if not self._closed:
             self._parameters.look()
             self._loop.after(_LOOK, self._look_at_parameters)
 
     def _wake(self) -> None:
-        """The graph has changed; on any thread, the graph locked."""
+        """Called when the graph has changed, on any thread, with the graph locked."""
         if not self._due:
             self._due = True
             self._loop.post(self._mirror)
@@ -209,7 +208,7 @@ class Ros2Bridge:
         self._mirror_nodes()
 
     def _mirror_nodes(self) -> None:
-        """As long as they have something of their own."""
+        """Creates and removes ROS 2 nodes, which exist while they have endpoints."""
         found = {
             *(publication.told[-1] for publication in self._publications.values()),
             *(subscription.told[-1] for subscription in self._subscriptions.values()),
@@ -277,19 +276,19 @@ class Ros2Bridge:
                 )
 
     def _node_of(self, node: str) -> str:
-        """The node of ROS 2 that one of the graph's is; empty for the main one."""
+        """ROS 2 node of a node in the graph; empty for the main node."""
         return self._graph.nodes.get(node, "")
 
     def _as_told(self, info: TopicInfo) -> tuple[str, str, str]:
-        """What others know of a topic that is published here: type, kind of QoS, node."""
+        """Properties of a published topic that are visible to others: type, QoS, node."""
         return info.type, info.qos, self._node_of(info.publishers[0])
 
     def _as_heard(self, info: TopicInfo) -> tuple[str, str]:
-        """What others know of a topic that is read here: type, node."""
+        """Properties of a subscribed topic that are visible to others: type, node."""
         readers = (name for name in info.subscribers if name not in BRIDGES | ONLOOKERS)
         return info.type, self._node_of(next(readers, ""))
 
-    # -- what the user should know
+    # -- diagnostics
 
     def _is_known(self, info: TopicInfo) -> bool:
         if is_ros1_only(info.type):
@@ -327,11 +326,11 @@ class Ros2Bridge:
 
 
 class _Publication:
-    """A topic from the graph to ROS."""
+    """A topic published from the graph to ROS."""
 
     def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
         self.told = bridge._as_told(info)
-        """As others know it: what it was when this was made."""
+        """Properties at creation that are visible to others."""
         self._bridge = bridge
         self._name = info.name
         self._faulty = False
@@ -371,7 +370,7 @@ class _Publication:
             return
         try:
             self._outlet.send(self._bridge._graph.cdr.encode(message))
-        except Exception as error:  # noqa: BLE001 - rosbags lets whatever it meets through
+        except Exception as error:  # noqa: BLE001 - rosbags does not catch all errors of its code
             if not self._faulty:
                 self._faulty = True
                 self._bridge._warn(
@@ -384,11 +383,11 @@ class _Publication:
 
 
 class _Subscription:
-    """A topic from ROS to the graph."""
+    """A topic that the graph receives from ROS."""
 
     def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
         self.type, node = self.told = bridge._as_heard(info)
-        """As others know it: what it was when this was made."""
+        """Properties at creation that are visible to others."""
         self._bridge = bridge
         self._name = info.name
         self.inlet = bridge.middleware.subscribe(
@@ -411,11 +410,11 @@ class _Subscription:
 
 
 class _Offered:
-    """A service of the graph."""
+    """An offered service of the graph."""
 
     def __init__(self, told: tuple[str, str], closable: Closable) -> None:
         self.told = told
-        """Its type and node, as others know them."""
+        """Type and node of the service, as visible to others."""
         self.closable = closable
 
 

@@ -1,4 +1,4 @@
-"""ROS 2 over DDS: how topics, services and nodes are written down there.
+"""ROS 2 over DDS: names and formats of topics, services and nodes.
 
 Source: the design article on topic and service name mapping, rmw_dds_common, rmw_fastrtps,
 rmw_cyclonedds.
@@ -37,29 +37,29 @@ from cartwheel.messages.ros2_types import Ros2Type, ros2_type
 _NODES = "ros_discovery_info"
 _ENTITIES = "rmw_dds_common/msg/ParticipantEntitiesInfo"
 _SOON = 0.03
-"""s in which changes of our endpoints are gathered."""
+"""Delay in s during which changes of endpoints are collected."""
 _HEADER = 16
-"""Bytes before a request's and a response's fields in rmw_cyclonedds: who asks, and which."""
+"""Bytes in front of requests and responses in rmw_cyclonedds: client and sequence number."""
 _PATIENCE, _PAUSE = 2.0, 0.02
-"""s that a response waits for the reader of it to be found."""
+"""Timeout in s for a response whose reader is not discovered yet, and the polling interval."""
 _PENDING = 100
-"""Requests and responses of a service that may wait for that at a time."""
+"""Maximum number of requests and responses per service that wait for a reader."""
 _HASH = re.compile(rb"typehash=(\w+)", re.ASCII)
 _CALLS = 100
-"""Responses that are kept at least: who asks much must not lose any."""
+"""Minimum number of responses to keep, so that clients with many requests lose none."""
 
 
 class Dds:
-    """A participant with one node.
+    """A DDS participant with one main node.
 
     Args:
-        loop: Runs it.
-        node: Its name.
-        namespace: Of the node.
-        tell: Takes a warning.
+        loop: Event loop of the bridge.
+        node: Name of the node.
+        namespace: Namespace of the node.
+        tell: Receives warnings.
 
     Raises:
-        CartwheelError: A variable of ROS makes no sense, or no port is free.
+        CartwheelError: A ROS environment variable is invalid, or no port is free.
     """
 
     def __init__(
@@ -80,14 +80,14 @@ class Dds:
         )
         self.on_others: Callable[[], None] = lambda: None
         self._endpoints: dict[Writer | Reader, str] = {}
-        """With their nodes."""
+        """Endpoints, with their nodes."""
         self._info: Writer | None = None
         self._due = False
         self._closed = False
 
     @property
     def description(self) -> str:
-        """What and where it is."""
+        """Description of the middleware and its domain."""
         where = {
             "OFF": "to no other participant",
             "LOCALHOST": "on this computer",
@@ -96,7 +96,7 @@ class Dds:
         return f"DDS domain {self._domain}, visible {where[self._reach.range]}"
 
     def start(self) -> None:
-        """Joins."""
+        """Starts discovery."""
         self.participant.on_endpoints = self._found_others
         self.participant.on_misfit = self._found_misfit
         self.participant.start()
@@ -110,7 +110,7 @@ class Dds:
         self._changed()
 
     def close(self) -> None:
-        """Leaves."""
+        """Disconnects."""
         self._closed = True
         self.participant.close()
 
@@ -179,7 +179,7 @@ class Dds:
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
         writers, _ = self.participant.others()
-        # Not another simulation's: the two would make way for each other, in turns.
+        # Ignore other simulations, because both would stop publishing for each other in turn.
         return {
             writer.topic.removeprefix("rt")
             for writer in writers
@@ -190,7 +190,7 @@ class Dds:
         self.on_others()
 
     def _found_misfit(self, ours: Endpoint, other: Endpoint, policy: str) -> None:
-        """What nodes of ROS warn of as well: somebody wonders why nothing comes."""
+        """Reports incompatible endpoints, as ROS nodes do, because no messages arrive."""
         kind, slash, name = ours.topic.partition("/")
         if kind == "rt":
             does, then = (
@@ -235,7 +235,7 @@ class Dds:
             self.loop.after(_SOON, self._tell_entities)
 
     def _tell_entities(self) -> None:
-        """What belongs to which node, for ``ros2 node info``."""
+        """Publishes the endpoints of each node, for ``ros2 node info``."""
         self._due = False
         if self._info is None or self._closed:
             return
@@ -279,10 +279,10 @@ class _Inlet:
 
 
 class _Service:
-    """A service: requests in, responses out to whom asked.
+    """A service: receives requests and sends responses to the client.
 
-    Which request a response answers is told in two ways: rmw_fastrtps does it beside the
-    payload, rmw_cyclonedds within. Each client is answered in its own.
+    A response identifies its request in one of two ways: rmw_fastrtps sends the identifier in
+    inline parameters, rmw_cyclonedds inside the payload. Each client receives its own form.
     """
 
     def __init__(
@@ -317,7 +317,7 @@ class _Service:
         readers = self._readers_of(taken.writer[:12])
         served = self._versions_of(taken.writer, readers)
         if len(served) > 1 and not readers and patience > 0:
-            # The reader of the response tells which one it is, and may be found later.
+            # The response reader, which identifies the version, may be discovered later.
             self._again(lambda: self._take(taken, patience - _PAUSE))
             return
         self._answer(taken, served[0])
@@ -326,7 +326,7 @@ class _Service:
         payload = taken.payload
         related = taken.inline.get(discovery.RELATED) or taken.inline.get(discovery.RELATED_FASTDDS)
         bare = payload[:4] + payload[4 + _HEADER :]
-        # Some tell it in both ways, so that the fields themselves must say which one it is.
+        # Some clients use both forms at once. Then the payload itself must show which one it has.
         within = len(payload) >= 4 + _HEADER and (
             taken.vendor == wire.CYCLONE or (not served.fits(payload) and served.fits(bare))
         )
@@ -335,7 +335,7 @@ class _Service:
             head, payload = payload[4 : 4 + _HEADER], bare
         asker: Guid = taken.writer
         if related is not None and len(related) >= 16 and any(related[:16]):
-            # Fast DDS names the reader of the response.
+            # Fast DDS specifies the reader of the response.
             asker = related[:16]
         inline = b"" if within else discovery.related(asker, taken.number)
 
@@ -346,13 +346,13 @@ class _Service:
         served.answer(payload, reply)
 
     def _readers_of(self, prefix: Prefix) -> list[ReaderProxy]:
-        """A participant's readers of responses."""
+        """Response readers of a participant."""
         return [one for guid, one in self._writer.proxies.items() if guid[:12] == prefix]
 
     def _versions_of(self, writer: Guid, readers: Sequence[ReaderProxy]) -> Sequence[Served]:
-        """What an asker may have for the type, by the hashes that its endpoints tell.
+        """Versions of the type that a client may use, according to the hashes of its endpoints.
 
-        They are those of the request and the response, which may be the same in two versions.
+        The hashes belong to the request and the response. Two versions may share one of them.
         """
         if len(self._served) == 1 or writer not in self._reader.proxies:
             return self._served[:1]
@@ -365,11 +365,11 @@ class _Service:
         if self._readers_of(to) or patience <= 0:
             self._writer.write(data, inline=inline, to=to)
         else:
-            # The reader of the response may be found after the writer of the request.
+            # The response reader may be discovered after the request writer.
             self._again(lambda: self._send(data, inline, to, patience - _PAUSE))
 
     def _again(self, function: Callable[[], None]) -> None:
-        """Tries it again soon, unless too many wait for that."""
+        """Retries soon, unless too many retries are pending."""
         if self._pending >= _PENDING:
             self._dds._tell(
                 CALL_LIMIT.diagnostic(
@@ -398,7 +398,7 @@ def _qos(profile: Profile) -> EndpointQos:
 
 
 def _plain(dds: str) -> str:
-    """A type's name as ROS spells it; whatever else another one says is cut short."""
+    """ROS name of a type, truncated in case a malicious peer sent it."""
     return dds.replace("::dds_::", "::").replace("::", "/").removesuffix("_")[:100]
 
 

@@ -1,4 +1,4 @@
-"""``/rosout``: what this node has to say."""
+"""Diagnostics on ``/rosout``."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _LEVELS = {"info": 20, "warning": 30, "error": 40}
 
 
 class Log:
-    """Publishes diagnostics; who comes later hears them as well.
+    """Publishes diagnostics, also to nodes that subscribe later.
 
     Args:
-        loop: Runs it.
-        node: Our name.
-        time_ns: Simulation time.
+        loop: Event loop of the bridge.
+        node: Name of the node.
+        time_ns: Returns the simulation time.
     """
 
     def __init__(self, loop: Loop, *, node: str, time_ns: Callable[[], int]) -> None:
@@ -31,13 +31,13 @@ class Log:
         self._outlet: Outlet | None = None
 
     def begin(self, middleware: Middleware) -> None:
-        """Offers the topic; on the loop's thread."""
+        """Advertises the topic. Call it on the loop's thread."""
         self._outlet = middleware.publish(
             TOPIC, ros2_type(TYPE), profile_of(TOPIC, "latched"), lambda _: None
         )
 
     def write(self, diagnostic: Diagnostic) -> None:
-        """Says something; from any thread."""
+        """Logs a diagnostic. Callable on any thread."""
         origin = diagnostic.origin
         message: Any = message_class(TYPE)(
             stamp=stamp(self._time_ns()),

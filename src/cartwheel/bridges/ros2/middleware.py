@@ -1,4 +1,4 @@
-"""What the bridge needs of a middleware of ROS 2."""
+"""Interface of ROS 2 middlewares for the bridge."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from cartwheel.messages import decode_cdr, encode_cdr
 from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
 
 Reply = Callable[[bytes], None]
-"""Sends a response: CDR with its encapsulation."""
+"""Sends a response: CDR with encapsulation."""
 Answer = Callable[[bytes, Reply], None]
-"""Takes a request's CDR; replies at once or later, on the loop's thread."""
+"""Handles a request (CDR). Replies at once or later, on the loop's thread."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Profile:
-    """ROS 2's quality of service, as far as it differs among our topics."""
+    """ROS 2 QoS settings that differ between topics."""
 
     reliable: bool = True
     transient_local: bool = False
     depth: int = 10
     lifespan: int = 0
-    """s after which a message is none any more; 0 is never."""
+    """Time in s after which a message expires; 0 means never."""
 
 
 LATCHED = Profile(transient_local=True, depth=1)
 SENSOR = Profile(reliable=False, depth=5)
 DEFAULT = Profile()
 CALLS, PARAMETER_CALLS = 10, 1000
-"""Depths of services, and of those for parameters. Source: rmw's qos_profiles.h."""
+"""Queue depths of services, and of parameter services. Source: rmw's qos_profiles.h."""
 _BY_TOPIC = {
     "/tf": Profile(depth=100),
     "/tf_static": LATCHED,
@@ -43,7 +43,7 @@ _BY_TOPIC = {
 
 
 def profile_of(topic: str, qos: Qos) -> Profile:
-    """How a topic of the graph is sent.
+    """QoS of a topic in the graph.
 
     Source: rmw's ``qos_profile_sensor_data``, tf2_ros, robot_state_publisher, rcl's rosout.
     """
@@ -55,13 +55,13 @@ def profile_of(topic: str, qos: Qos) -> Profile:
 
 @dataclass(frozen=True, slots=True)
 class Served:
-    """A version of a service's type with what answers those who have it."""
+    """A version of a service type, and the handler for its requests."""
 
     type: Ros2Service
     answer: Answer
 
     def fits(self, data: bytes) -> bool:
-        """Whether bytes can be a request."""
+        """Whether the bytes can be decoded as a request."""
         try:
             again = encode_cdr(decode_cdr(data, self.type.request))
         except GraphError:
@@ -69,43 +69,43 @@ class Served:
         return data[:4] != b"\0\1\0\0" or (data.startswith(again) and len(data) - len(again) < 4)
 
     def is_of(self, hash_: str) -> bool:
-        """Whether that is the hash of the type, or of a part of it: others tell either."""
+        """Whether this is the hash of the type, request or response, which others may use."""
         return hash_ in (self.type.hash, self.type.request_hash, self.type.response_hash)
 
 
 class Outlet(Protocol):
-    """A topic that we publish."""
+    """A published topic."""
 
     @property
     def dropped(self) -> int:
-        """Messages that readers have missed, as far as the middleware tells; on any thread."""
+        """Messages that subscribers missed, if the middleware counts them. Thread-safe."""
 
     def send(self, payload: bytes) -> None:
-        """Sends a message's CDR to all readers."""
+        """Sends a CDR message to all subscribers."""
 
     def close(self) -> None:
-        """Takes it off."""
+        """Removes the topic."""
 
 
 class Closable(Protocol):
-    """A subscription or service of ours."""
+    """A subscription or service."""
 
     def close(self) -> None:
-        """Takes it off."""
+        """Removes the subscription or service."""
 
 
 class Middleware(Protocol):
-    """DDS or Zenoh; on the loop's thread."""
+    """DDS or Zenoh. Used on the loop's thread."""
 
     @property
     def description(self) -> str:
-        """What and where it is, for the user."""
+        """Description of the middleware and its domain, for the user."""
 
     def start(self) -> None:
-        """Joins."""
+        """Connects to other nodes."""
 
     def close(self) -> None:
-        """Leaves."""
+        """Disconnects."""
 
     def publish(
         self,
@@ -116,14 +116,14 @@ class Middleware(Protocol):
         *,
         node: str = "",
     ) -> Outlet:
-        """Offers a topic.
+        """Advertises a topic.
 
         Args:
-            topic: Its name.
-            type_: Its type.
-            profile: How it is sent.
-            on_readers: Told when the first reader comes and the last goes.
-            node: The node whose it is, with its namespace; the main one where it is empty.
+            topic: Topic name.
+            type_: Message type.
+            profile: QoS of the topic.
+            on_readers: Called when the first subscriber appears and when the last one disappears.
+            node: Full name of the publishing node; empty for the main node.
         """
 
     def subscribe(
@@ -135,20 +135,20 @@ class Middleware(Protocol):
         *,
         node: str = "",
     ) -> Closable:
-        """Reads a topic; see `publish`."""
+        """Subscribes to a topic; see `publish`."""
 
     def serve(self, name: str, served: Sequence[Served], *, depth: int, node: str = "") -> Closable:
         """Offers a service.
 
         Args:
-            name: Of the service.
-            served: Its type with what answers; then older versions that others may have.
-            depth: Requests, and responses, that are kept.
+            name: Service name.
+            served: Type and handler, followed by older versions that clients may use.
+            depth: Queue depth for requests, and for responses.
             node: See `publish`.
         """
 
     def topics_of_others(self) -> set[str]:
-        """The topics that other nodes publish; another simulation's do not count."""
+        """Topics that other nodes publish, without those of other simulations."""
 
     on_others: Callable[[], None]
-    """Told when what other nodes offer has changed."""
+    """Called when the endpoints of other nodes change."""

@@ -1,4 +1,4 @@
-"""What every node of ROS 2 has, for those of the graph that are nodes of their own there."""
+"""Standard endpoints for those nodes of the graph that appear as separate ROS 2 nodes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from cartwheel.messages.ros2_types import ros2_type
 
 
 class OwnNode:
-    """The endpoints of a node that says nothing and whose types are told; on the loop's thread.
+    """Standard endpoints of a node: log, parameter events, and type descriptions.
+
+    Nothing is published on the topics. Used on the loop's thread.
 
     Args:
-        middleware: Where they are offered.
+        middleware: Middleware to advertise the topics on.
         offers: Offers services.
-        name: Of the node, with its namespace.
+        name: Full name of the node, with namespace.
     """
 
     def __init__(self, middleware: Middleware, offers: Services, name: str) -> None:
@@ -33,6 +35,6 @@ class OwnNode:
         )
 
     def close(self) -> None:
-        """Takes them off."""
+        """Removes the endpoints."""
         for part in self._parts:
             part.close()

@@ -1,4 +1,4 @@
-"""A node's parameters: the six services that every ROS 2 node has, and ``/parameter_events``."""
+"""Parameters of a node: six standard ROS 2 services, and ``/parameter_events``."""
 
 from __future__ import annotations
 
@@ -28,27 +28,27 @@ Offer = Callable[[str, str, Callable[[Any], Any]], Closable]
 EVENTS, EVENT = "/parameter_events", "rcl_interfaces/msg/ParameterEvent"
 _NAMES = {1: "bool", 2: "integer", 3: "double", 4: "string"}
 _SETTLING = 50
-"""Looks that a value may take to hold after it was set: the simulation may be busy."""
+"""Maximum number of checks until a new value takes effect, as the simulation may be busy."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Parameter:
-    """One parameter; `get` and `set` are called on the bridge's thread and must not wait."""
+    """A parameter. `get` and `set` are called on the bridge's thread and must not wait."""
 
     name: str
     description: str
     get: Callable[[], Value]
     set: Callable[[Any], None] | None = None
-    """Raises a CartwheelError where the value makes no sense; None is read-only."""
+    """Sets a value, or raises a CartwheelError if it is invalid. None means read-only."""
 
 
 class NodeParameters:
-    """Serves the parameters of a node.
+    """Offers the parameters of a node.
 
     Args:
-        node: Its name with its namespace.
-        parameters: All of them.
-        time_ns: Simulation time, for events.
+        node: Full name of the node, with namespace.
+        parameters: All parameters.
+        time_ns: Returns the simulation time, for events.
     """
 
     def __init__(
@@ -59,12 +59,12 @@ class NodeParameters:
         self._parameters = {one.name: one for one in parameters}
         self._events: Outlet | None = None
         self._told: dict[str, Value] = {}
-        """Values by name, as others know them."""
+        """Values by name, as last published."""
         self._settling: dict[str, int] = {}
-        """Looks that what was set may still take to hold."""
+        """Remaining checks until a new value must have taken effect."""
 
     def begin(self, middleware: Middleware, offer: Offer) -> None:
-        """Offers everything; on the loop's thread."""
+        """Offers the services and the topic. Call it on the loop's thread."""
         self._told = {name: one.get() for name, one in self._parameters.items()}
         self._events = middleware.publish(
             EVENTS, ros2_type(EVENT), profile_of(EVENTS, "default"), lambda _: None
@@ -80,7 +80,7 @@ class NodeParameters:
             offer(f"{self._node}/{name}", f"rcl_interfaces/srv/{type_name}", handler)
 
     def look(self) -> None:
-        """Tells what something else has changed since the last look; on the loop's thread."""
+        """Publishes changes since the last check. Call it on the loop's thread."""
         changed = []
         for name, one in self._parameters.items():
             value = one.get()
@@ -175,7 +175,7 @@ class NodeParameters:
         if found == wanted:
             return known, getattr(given.value, FIELDS[found])
         if (wanted, found) == (3, 2):
-            # What a shell's 2 is meant to be.
+            # ``ros2 param set`` sends 2 as an integer.
             return known, float(given.value.integer_value)
         raise CartwheelError(
             f'parameter "{given.name}" must be of type {_NAMES[wanted]}',

@@ -1,4 +1,4 @@
-"""Services on the wire: requests unpacked, handlers called, responses packed."""
+"""Services: decodes requests, calls handlers, and encodes responses."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from cartwheel.messages.ros2_types import Ros2Service, ros2_service
 from cartwheel.messages.versions import OlderService, older_versions
 
 _MOST_CALLS = 32
-"""At a time."""
+"""Maximum number of simultaneous calls."""
 
 
 class Services:
-    """Offers services; on the loop's thread.
+    """Offers services. Used on the loop's thread.
 
     Args:
-        loop: The bridge's.
-        middleware: Where they are offered.
-        tell: Takes a warning.
+        loop: Event loop of the bridge.
+        middleware: Middleware to offer services on.
+        tell: Receives warnings.
     """
 
     def __init__(
@@ -50,10 +50,10 @@ class Services:
         """Offers a service.
 
         Args:
-            name: Of the service.
+            name: Service name.
             type_name: ``pkg/srv/Name``.
-            handler: Takes a request, gives the response or raises.
-            threaded: Whether it may take long, and has a thread of its own for each call.
+            handler: Takes a request, and returns the response or raises.
+            threaded: Whether the handler may be slow, and so runs on a separate thread per call.
             depth: See `Middleware.serve`.
             node: See `Middleware.publish`.
         """
@@ -94,7 +94,7 @@ class Services:
             try:
                 response = handler(request)
                 data = encode_cdr(response)
-            except Exception as error:  # noqa: BLE001 - who asks waits for an answer
+            except Exception as error:  # noqa: BLE001 - the client waits for a response
                 data = encode_cdr(self._failure(name, type_, error))
             self._loop.post(lambda: reply(data))
 
@@ -124,7 +124,7 @@ class Services:
         threading.Thread(target=run, name=f"ros2 call {name}", daemon=True).start()
 
     def _failure(self, name: str, type_: Ros2Service, error: Exception) -> Any:
-        """ROS 2 knows no errors of services: where the response can say it, it does."""
+        """Response for a failed call, with the error in a text field if there is one."""
         response = zero(type_.response)
         for field in ("status_message", "message"):
             if isinstance(getattr(response, field, None), str):

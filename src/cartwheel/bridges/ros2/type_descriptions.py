@@ -1,4 +1,4 @@
-"""``get_type_description``, which every node of Jazzy and later has."""
+"""``get_type_description``, a service of all nodes in Jazzy and later."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TYPE = "type_description_interfaces/srv/GetTypeDescription"
 
 
 def get_type_description(request: Any) -> Any:
-    """Answers with what a type is made of; without source texts, as for types made at run time."""
+    """Returns the structure of a type, without source text, as for types created at run time."""
     response = zero(f"{TYPE}_Response")
     try:
         known = ros2_hash_of(request.type_name)

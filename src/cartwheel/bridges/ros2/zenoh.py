@@ -1,4 +1,4 @@
-"""ROS 2 over Zenoh, as rmw_zenoh has it: keys, liveliness tokens, attachments, queryables.
+"""ROS 2 over Zenoh as in rmw_zenoh: keys, liveliness tokens, attachments, queryables.
 
 Source: rmw_zenoh's design document.
 """
@@ -26,33 +26,33 @@ from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages.ros2_types import Ros2Type
 
 PORT = 7447
-"""Where a Zenoh router is looked for, and opened where there is none."""
+"""Port of the Zenoh router. If no router responds there, the session listens on it."""
 _INSTALL = "pip install 'cartwheel[ros2]'"
 _ENDING = 1.0
-"""s that threads which are ending are waited for."""
+"""Timeout in s for threads to end."""
 _LONGEST_ID = 16
-"""Bytes by which a caller is known."""
+"""Maximum length of a caller's identifier in bytes."""
 _TOKENS = 20_000
-"""Publishers of others that are known at a time."""
+"""Maximum number of publishers of other nodes."""
 _GATHER = 0.03
-"""s in which changes of others are gathered."""
+"""Delay in s during which changes of other nodes are collected."""
 _ARRIVALS, _ARRIVING = 2000, 128 << 20
-"""Messages and calls, and their bytes, that wait for the loop."""
+"""Maximum number of messages and calls that wait for the loop, and of their bytes."""
 _NOTICE = 0.5
-"""s that a router may take to answer."""
+"""Timeout in s for a router to respond."""
 
 
 class Zenoh:
-    """A session with one node. Where no router answers, the session is one.
+    """A Zenoh session with one main node. If no router responds, the session acts as a router.
 
     Args:
-        loop: Runs it.
-        node: Its name.
-        namespace: Of the node.
-        tell: Takes a warning.
+        loop: Event loop of the bridge.
+        node: Name of the node.
+        namespace: Namespace of the node.
+        tell: Receives warnings.
 
     Raises:
-        CartwheelError: Zenoh is not installed, or a variable makes no sense.
+        CartwheelError: Zenoh is not installed, or an environment variable is invalid.
     """
 
     def __init__(
@@ -79,21 +79,21 @@ class Zenoh:
         self._session: Any = None
         self._zid = ""
         self._lead = ""
-        """Of all tokens' keys."""
+        """Prefix of all token keys."""
         self._nodes: dict[str, NodeToken] = {}
         self._entities = itertools.count(1)
         self._kept: list[Any] = []
         self._callers: list[threading.Thread] = []
-        """Zenoh's, one for each function of ours that it calls."""
+        """Threads of Zenoh, one for each registered callback."""
         self._others: dict[str, str] = {}
-        """Topics that others publish, by their tokens."""
+        """Topics that other nodes publish, by token."""
         self._told_due = False
         self.on_others: Callable[[], None] = lambda: None
         self.arrivals = Arrivals(loop, tell)
 
     @property
     def description(self) -> str:
-        """What and where it is."""
+        """Description of the middleware and its domain."""
         place = (
             (f"with its own router on port {PORT}")
             if self._is_router
@@ -102,7 +102,7 @@ class Zenoh:
         return f"Zenoh domain {self._domain} {place}"
 
     def start(self) -> None:
-        """Joins.
+        """Connects to other nodes.
 
         Raises:
             CartwheelError: No session can be opened.
@@ -116,7 +116,7 @@ class Zenoh:
             ) from None
         self._zid = str(self._session.zid())
         self._lead = f"@ros2_lv/{self._domain}/{self._zid}"
-        # It is there without any endpoint.
+        # The main node exists even without endpoints.
         self._nodes[self._name] = main = NodeToken(self._session, self._lead, 0, self._name)
         main.enter()
         with self.calling():
@@ -127,11 +127,11 @@ class Zenoh:
             )
 
     def close(self) -> None:
-        """Leaves."""
+        """Disconnects."""
         if self._session is not None:
             with contextlib.suppress(self._zenoh.ZError):
                 self._session.close()
-        # They end by themselves now. One that is still there when the interpreter goes would
+        # The threads end on their own now. A thread that still runs at interpreter shutdown would
         # abort the process.
         deadline = time.monotonic() + _ENDING
         for thread in self._callers:
@@ -139,7 +139,7 @@ class Zenoh:
 
     @contextlib.contextmanager
     def calling(self) -> Iterator[None]:
-        """Around what has Zenoh call a function of ours: it starts a thread that does."""
+        """Wraps the registration of a callback, and stores the thread that Zenoh starts."""
         before = set(threading.enumerate())
         yield
         begun = [thread for thread in threading.enumerate() if thread not in before]
@@ -200,13 +200,13 @@ class Zenoh:
     # -- names
 
     def key(self, name: str, dds: str, hash_: str) -> str:
-        """Under which a topic's or service's data goes."""
+        """Key for the data of a topic or service."""
         return f"{self._domain}/{name.strip('/')}/{dds}/{hash_}"
 
     def token(
         self, kind: str, name: str, dds: str, hash_: str, profile: Profile, *, node: str
     ) -> Token:
-        """Tells others of an endpoint, and of its node where it is the first of that."""
+        """Declares an endpoint to other nodes, and its node with the first endpoint."""
         node = node or self._name
         if node not in self._nodes:
             self._nodes[node] = NodeToken(self._session, self._lead, next(self._entities), node)
@@ -220,10 +220,10 @@ class Zenoh:
         )
 
     def _seen(self, sample: Any) -> None:
-        """A token came or went; on one of Zenoh's threads."""
+        """Handles a token that appeared or disappeared. Called on a thread of Zenoh."""
         key = str(sample.key_expr)
         found = published(key)
-        # Not another simulation's: the two would make way for each other, in turns.
+        # Ignore other simulations, because both would stop publishing for each other in turn.
         if found is None or found.session == self._zid or found.node == self._node:
             return
         topic = found.topic
@@ -305,11 +305,11 @@ class Zenoh:
 
 
 class Arrivals:
-    """What comes on Zenoh's threads, on its way to the loop's: no more than fits.
+    """A bounded queue from Zenoh's threads to the loop's thread.
 
     Args:
-        loop: Takes it.
-        tell: Takes a warning.
+        loop: Event loop on which the functions run.
+        tell: Receives warnings.
     """
 
     def __init__(self, loop: Loop, tell: Callable[[Diagnostic], None]) -> None:
@@ -319,11 +319,11 @@ class Arrivals:
         self._count = self._bytes = 0
 
     def post(self, size: int, function: Callable[[], None]) -> bool:
-        """Runs a function on the loop's thread; whether there was room for it.
+        """Runs a function on the loop's thread. Returns False if the queue is full.
 
         Args:
-            size: Bytes that it holds.
-            function: What to run.
+            size: Bytes of data that the function uses.
+            function: Function to run.
         """
         with self._lock:
             full = self._count >= _ARRIVALS or (self._count and self._bytes + size > _ARRIVING)
@@ -350,7 +350,7 @@ class Arrivals:
 
 
 class _Declared:
-    """What ends with its token."""
+    """Closes Zenoh declarations together with their token."""
 
     def __init__(self, *declared: Any) -> None:
         self._declared = declared
@@ -378,9 +378,9 @@ class _Outlet:
         self._token = zenoh.token("MP", topic, type_.dds, type_.hash, profile, node=node)
         key = zenoh.key(topic, type_.dds, type_.hash)
         api, session = zenoh._zenoh, zenoh._session
-        # Nobody can make us wait: what a reader does not take is dropped.
+        # Never wait for subscribers. Messages that a subscriber does not receive are dropped.
         drop = api.CongestionControl.DROP
-        # What is read here is read from the graph, which gives it to whom it is for.
+        # Local subscribers receive messages through the graph.
         others = api.Locality.REMOTE
         self._closed = False
         if profile.transient_local:
@@ -392,7 +392,7 @@ class _Outlet:
                 cache=api.ext.CacheConfig(max_samples=profile.depth),
                 publisher_detection=True,
             )
-            # Who comes late asks the cache, which must have something.
+            # New subscribers request messages from the cache, so it must have content.
             on_readers(True)
             return
         self._publisher = session.declare_publisher(
@@ -410,7 +410,7 @@ class _Outlet:
 
     @property
     def dropped(self) -> int:
-        # Zenoh does not tell what it drops.
+        # Zenoh does not report the number of dropped messages.
         return 0
 
     def send(self, payload: bytes) -> None:
@@ -425,7 +425,7 @@ class _Outlet:
 
 
 class _Service:
-    """A queryable for each version of the type, whose hash is in the key; one token."""
+    """A queryable for each version of the type, whose hash is part of the key, and one token."""
 
     def __init__(
         self, zenoh: Zenoh, name: str, served: Sequence[Served], profile: Profile, *, node: str
@@ -449,7 +449,7 @@ class _Service:
         self._token.undeclare()
 
     def _asked(self, answer: Answer, query: Any) -> None:
-        """On one of Zenoh's threads."""
+        """Called on a thread of Zenoh."""
         data = query.payload.to_bytes() if query.payload is not None else b""
         stamp = query.attachment.to_bytes() if query.attachment is not None else b""
         if not self._zenoh.arrivals.post(len(data), lambda: take_query(answer, query, data, stamp)):
@@ -457,13 +457,14 @@ class _Service:
 
 
 def take_query(answer: Answer, query: Any, data: bytes, stamp: bytes) -> None:
-    """Answers a call, or ends it where its attachment is not that of one.
+    """Answers a call, or ends it if its attachment is invalid.
 
     Args:
-        answer: Of the service.
-        query: Zenoh's.
-        data: The request.
-        stamp: Number of the call, its time, and who calls, behind a byte that counts its bytes.
+        answer: Handler of the service.
+        query: Query of Zenoh.
+        data: Request.
+        stamp: Sequence number of the call, its time, and the caller's identifier after its length
+            byte.
     """
     if not 17 <= len(stamp) <= 17 + _LONGEST_ID or len(stamp) != 17 + stamp[16]:
         query.drop()

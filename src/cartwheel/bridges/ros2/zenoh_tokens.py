@@ -1,4 +1,4 @@
-"""Liveliness tokens, by which rmw_zenoh tells of nodes and endpoints.
+"""Liveliness tokens, with which rmw_zenoh announces nodes and endpoints.
 
 Source: rmw_zenoh's design document.
 """
@@ -12,19 +12,19 @@ from typing import Any
 from cartwheel.bridges.ros2.middleware import Profile
 
 _LONGEST_KEY = 4096
-"""Characters; a type, a topic and a node have names of 255 at most."""
+"""Maximum length in characters. The names of a type, a topic and a node have at most 255 each."""
 _PARTS = 10
-"""Of an endpoint's key at least."""
+"""Minimum number of parts in an endpoint's key."""
 
 
 class NodeToken:
-    """A node, told of while it has endpoints.
+    """A node, declared while it has endpoints.
 
     Args:
-        session: Zenoh's.
-        lead: Of the token's key.
-        number: Of the node in its session.
-        name: With its namespace.
+        session: Session of Zenoh.
+        lead: Prefix of the token's key.
+        number: Number of the node in its session.
+        name: Full name, with namespace.
     """
 
     def __init__(self, session: Any, lead: str, number: int, name: str) -> None:
@@ -37,28 +37,28 @@ class NodeToken:
         self._endpoints = 0
 
     def enter(self) -> None:
-        """An endpoint has come."""
+        """Counts a new endpoint, and declares the node if it is the first."""
         self._endpoints += 1
         if self._endpoints == 1:
             self._token = self.session.liveliness().declare_token(self._key)
 
     def leave(self) -> None:
-        """An endpoint is gone."""
+        """Removes an endpoint, and undeclares the node if it was the last."""
         self._endpoints -= 1
         if not self._endpoints:
             self._token.undeclare()
 
 
 class Token:
-    """An endpoint, told of until it is undeclared.
+    """An endpoint, declared until `undeclare`.
 
     Args:
-        node: Whose it is.
-        number: Of the endpoint in its session.
-        kind: MP and MS of topics, SS and SC of services.
-        name: Of the topic or service.
-        type_: Its name in DDS, and its hash.
-        profile: How it is sent.
+        node: Node of the endpoint.
+        number: Number of the endpoint in its session.
+        kind: MP and MS for topics, SS and SC for services.
+        name: Name of the topic or service.
+        type_: DDS name of the type, and its hash.
+        profile: QoS of the endpoint.
     """
 
     def __init__(
@@ -78,28 +78,28 @@ class Token:
         )
         self._node = node
         self.identity = hashlib.md5(key.encode(), usedforsecurity=False).digest()
-        """What it is known by."""
+        """Identifier of the endpoint."""
         node.enter()
         self._token = node.session.liveliness().declare_token(key)
 
     def undeclare(self) -> None:
-        """It is gone."""
+        """Undeclares the endpoint."""
         self._token.undeclare()
         self._node.leave()
 
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """A topic that somebody publishes."""
+    """A topic with a publisher."""
 
     session: str
     node: str
-    """Its name without its namespace."""
+    """Node name without its namespace."""
     topic: str
 
 
 def published(key: str) -> Published | None:
-    """What a token's key tells of a publisher; None where it is something else's."""
+    """Decodes a publisher's token. Returns None for other tokens."""
     parts = key.split("/")
     if len(key) > _LONGEST_KEY or len(parts) < _PARTS or parts[5] != "MP":
         return None
@@ -116,7 +116,7 @@ def _mangled_node(node: str) -> str:
 
 
 def _qos(profile: Profile) -> str:
-    """A profile as rmw_zenoh writes it: what is as usual is left out."""
+    """QoS as in rmw_zenoh, which omits default values."""
     reliability = "" if profile.reliable else "2"
     durability = "1" if profile.transient_local else ""
     lifespan = f"{profile.lifespan},0" if profile.lifespan else ","

@@ -1,4 +1,4 @@
-"""RTPS, the wire of DDS: discovery, and samples as bytes.
+"""RTPS, the wire protocol of DDS: discovery and samples.
 
-Source: OMG DDSI-RTPS 2.3; what of it ROS 2's middlewares use over UDP and IPv4.
+Source: OMG DDSI-RTPS 2.3, limited to what ROS 2 middlewares use over UDP and IPv4.
 """

@@ -1,4 +1,4 @@
-"""A timer that is finer than the millisecond in which a loop waits."""
+"""A timer with a better resolution than the loop's milliseconds."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _MONOTONIC, _FLAGS = 1, os.O_NONBLOCK | os.O_CLOEXEC
 
 
 class Alarm:
-    """Calls a function once, some time after it is set; on the loop's thread.
+    """Calls a function once after a delay. Used on the loop's thread.
 
-    Where the system has no timers that can be watched, it is as fine as the loop.
+    Without system timers that can be polled, it has the resolution of the loop.
 
     Args:
-        loop: Waits for it.
+        loop: Event loop.
     """
 
     def __init__(self, loop: Loop) -> None:
@@ -33,30 +33,30 @@ class Alarm:
             self._file = self._system.timerfd_create(_MONOTONIC, _FLAGS)
 
     def fileno(self) -> int:
-        """Of the system's timer."""
+        """File descriptor of the system timer."""
         return self._file
 
     def start(self, ring: Callable[[], None]) -> None:
-        """Begins to watch, and calls `ring` each time."""
+        """Starts watching the timer, and calls `ring` each time it expires."""
         self._ring = ring
         if self._file >= 0:
             self._loop.watch(self, READ, self._ready)
 
     def after(self, seconds: float) -> None:
-        """Sets it, unless it is set already."""
+        """Sets the timer, unless it is already set."""
         if self._set:
             return
         self._set = True
         if self._file < 0:
             self._loop.after(seconds, self._done)
             return
-        # An interval of zero is once; a time of zero would be never.
+        # An interval of zero means once. A time of zero would disable the timer.
         whole = int(seconds)
         rest = max(1, int((seconds - whole) * 1e9))
         self._system.timerfd_settime(self._file, 0, struct.pack("4q", 0, 0, whole, rest), None)
 
     def close(self) -> None:
-        """Ends it."""
+        """Closes the timer."""
         if self._file >= 0:
             self._loop.forget(self)
             os.close(self._file)
@@ -65,7 +65,7 @@ class Alarm:
     def _ready(self, _: int) -> None:
         self._done()
         if not self._set and self._file >= 0:
-            # One that is set anew is not ready any more; this one would be for ever.
+            # An expired timer stays readable until it is read or set again.
             with contextlib.suppress(BlockingIOError):
                 os.read(self._file, 8)
 

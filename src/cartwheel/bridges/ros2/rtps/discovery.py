@@ -1,4 +1,4 @@
-"""What participants and endpoints tell of themselves."""
+"""Discovery data of participants and endpoints."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
 PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
 SUBSCRIPTIONS_WRITER, SUBSCRIPTIONS_READER = b"\x00\x00\x04\xc2", b"\x00\x00\x04\xc7"
 ENDPOINTS = 0x3F
-"""Announcer and detector of participants, publications and subscriptions."""
+"""Built-in endpoints: announcer and detector of participants, publications and subscriptions."""
 
 _SENTINEL, _LEASE, _TOPIC, _TYPE = 0x01, 0x02, 0x05, 0x07
 _DOMAIN, _VERSION, _VENDOR, _RELIABILITY, _LIVELINESS = 0x0F, 0x15, 0x16, 0x1A, 0x1B
@@ -23,13 +23,13 @@ _DURABILITY, _USER_DATA, _USER_LOCATOR, _META_LOCATOR = 0x1D, 0x2C, 0x31, 0x32
 _ENDPOINT_LOCATOR, _HISTORY, _PARTICIPANT_GUID, _ENDPOINTS = 0x2F, 0x40, 0x50, 0x58
 _ENDPOINT_GUID, _ENTITY_NAME, _KEY_HASH, _STATUS, _REPRESENTATION = 0x5A, 0x62, 0x70, 0x71, 0x73
 RELATED, RELATED_FASTDDS = 0x0083, 0x800F
-"""Which sample another one answers: the standard's parameter, and Fast DDS's own."""
+"""Identity of the request that a sample answers: parameters of the standard and of Fast DDS."""
 _LONGEST_NAME = 1024
-"""Bytes of a topic's or type's name; Fast DDS has 255 at most."""
+"""Maximum length in bytes of a topic or type name. Fast DDS allows 255."""
 _LONGEST_DATA = 1024
-"""Bytes of an endpoint's user data, of which ROS uses some 200."""
+"""Maximum length in bytes of an endpoint's user data. ROS uses about 200."""
 LONGEST_LEASE = 100.0
-"""s without a sign of life after which anybody is taken for gone, whatever it says; others announce
+"""Maximum lease duration in s, which also limits longer values from peers. Peers announce
 themselves every 3 to 30 s. Source: DDSI-RTPS's default."""
 _FOREVER_SECONDS = 0x7FFFFFFF
 _FOREVER = struct.pack("<iI", _FOREVER_SECONDS, 0xFFFFFFFF)
@@ -40,23 +40,23 @@ Address = tuple[str, int]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EndpointQos:
-    """What an endpoint offers or asks for."""
+    """QoS that an endpoint offers or requests."""
 
     reliable: bool = True
     transient_local: bool = False
     depth: int = 10
-    """Samples kept of each writer."""
+    """Number of samples kept per writer."""
     deadline: float = math.inf
-    """s that at most pass between two samples."""
+    """Maximum interval between two samples in s."""
     liveliness: int = 0
-    """By what a writer shows that it is there: 0 is that its participant is."""
+    """Liveliness kind of a writer: 0 is automatic, by its participant."""
     lease: float = math.inf
-    """s after which a writer that does not show it is taken for gone."""
+    """Liveliness lease in s, after which a writer counts as gone."""
     lifespan: float = math.inf
-    """s after which a sample is worth nothing any more."""
+    """Time in s after which a sample expires."""
 
     def misfit(self, asked: EndpointQos) -> str:
-        """The policy in which a reader asks for more than is offered here; empty where none."""
+        """The policy in which a reader requests more than this offer; empty if compatible."""
         asks_for_more = {
             "RELIABILITY": asked.reliable and not self.reliable,
             "DURABILITY": asked.transient_local and not self.transient_local,
@@ -68,7 +68,7 @@ class EndpointQos:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Endpoint:
-    """A writer or a reader."""
+    """A writer or reader."""
 
     guid: Guid
     topic: str
@@ -76,24 +76,24 @@ class Endpoint:
     qos: EndpointQos
     user_data: bytes = b""
     locators: tuple[Address, ...] = ()
-    """Its own, where it does not share the participant's."""
+    """Addresses of the endpoint; empty if it uses those of the participant."""
 
     @property
     def is_writer(self) -> bool:
-        """Whether it is no reader; told by the last byte's lower bits."""
+        """Whether the endpoint is a writer, according to the lower bits of its last byte."""
         return self.guid[15] & 0x3F in (0x02, 0x03)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ParticipantData:
-    """A participant."""
+    """Discovery data of a participant."""
 
     prefix: Prefix
     meta: tuple[Address, ...]
-    """Where discovery is sent to."""
+    """Addresses for discovery traffic."""
     user: tuple[Address, ...]
     lease: float = 20.0
-    """s without a sign of life after which it is taken for gone."""
+    """Lease duration in s, after which the participant counts as gone."""
     vendor: bytes = VENDOR
     name: str = ""
     user_data: bytes = b""
@@ -103,7 +103,7 @@ class ParticipantData:
 
 
 def encode_participant(data: ParticipantData, *, domain: int) -> bytes:
-    """What SPDP sends."""
+    """Encodes a participant for SPDP."""
     return _list(
         (_VERSION, VERSION + b"\0\0"),
         (_VENDOR, data.vendor + b"\0\0"),
@@ -119,9 +119,9 @@ def encode_participant(data: ParticipantData, *, domain: int) -> bytes:
 
 
 def encode_endpoint(data: Endpoint) -> bytes:
-    """What SEDP sends of a writer or reader."""
+    """Encodes a writer or reader for SEDP."""
     qos = data.qos
-    # Reliability's 1 and 2 are the wire's; so is the time a writer may wait, which it never does.
+    # RTPS encodes reliability as 1 or 2, followed by a blocking time, which is never used.
     reliability = struct.pack("<IiI", 2 if qos.reliable else 1, 0, 0x19999999)
     lifespan = () if math.isinf(qos.lifespan) else ((_LIFESPAN, _seconds(qos.lifespan)),)
     return _list(
@@ -142,22 +142,22 @@ def encode_endpoint(data: Endpoint) -> bytes:
 
 
 def encode_key(guid: Guid, *, participant: bool = False) -> bytes:
-    """The key of a participant or endpoint that is disposed of."""
+    """Encodes the key of a disposed participant or endpoint."""
     return _list((_PARTICIPANT_GUID if participant else _ENDPOINT_GUID, guid))
 
 
 def disposed(guid: Guid) -> bytes:
-    """The inline parameters that say so."""
+    """Inline parameters that mark a participant or endpoint as disposed."""
     return inline((_KEY_HASH, guid), (_STATUS, b"\0\0\0\x03"))
 
 
 def inline(*pairs: tuple[int, bytes]) -> bytes:
-    """Parameters before a payload."""
+    """Encodes parameters in front of a payload."""
     return _parameters(pairs)
 
 
 def related(guid: Guid, number: int) -> bytes:
-    """The inline parameters that name the request that a sample answers."""
+    """Inline parameters that identify the request that a sample answers."""
     identity = guid + struct.pack("<iI", number >> 32, number & 0xFFFFFFFF)
     return inline((RELATED, identity), (RELATED_FASTDDS, identity))
 
@@ -197,12 +197,12 @@ def _locator(address: Address) -> bytes:
 
 
 def is_disposal(parameters: dict[int, bytes]) -> bool:
-    """Whether a sample's inline parameters say that its subject is gone."""
+    """Whether a sample's inline parameters mark its subject as disposed."""
     return bool(parameters.get(_STATUS, b"\0\0\0\0")[3:4] > b"\0")
 
 
 def key_of(parameters: dict[int, bytes], payload: bytes) -> Guid | None:
-    """Whom a disposal is about."""
+    """GUID of the disposed participant or endpoint."""
     if len(parameters.get(_KEY_HASH, b"")) >= 16:
         return parameters[_KEY_HASH][:16]
     found = _decode(payload) if payload else {}
@@ -213,10 +213,10 @@ def key_of(parameters: dict[int, bytes], payload: bytes) -> Guid | None:
 
 
 def decode_participant(payload: bytes) -> ParticipantData:
-    """What SPDP received.
+    """Decodes a participant from SPDP.
 
     Raises:
-        MalformedError: It is none.
+        MalformedError: The data is invalid.
     """
     found = _decode(payload)
     order = _order(payload)
@@ -232,16 +232,16 @@ def decode_participant(payload: bytes) -> ParticipantData:
 
 
 def domain_of(payload: bytes) -> int | None:
-    """The domain that a participant says it is in."""
+    """Domain in a participant's announcement, or None."""
     value = _decode(payload).get(_DOMAIN, [b""])[0]
     return struct.unpack_from(f"{_order(payload)}I", value)[0] if len(value) >= 4 else None
 
 
 def decode_endpoint(payload: bytes, *, writer: bool) -> Endpoint:
-    """What SEDP received, of a writer or a reader, whose reliability has different defaults.
+    """Decodes a writer or reader from SEDP. They have different default reliabilities.
 
     Raises:
-        MalformedError: It is none.
+        MalformedError: The data is invalid.
     """
     found = _decode(payload)
     order = _order(payload)
@@ -309,7 +309,7 @@ def _first(found: dict[int, list[bytes]], name: int, length: int) -> bytes:
 
 
 def _duration(value: bytes, order: str) -> float:
-    """In s; without end where nothing is said."""
+    """Duration in s; infinite if unspecified."""
     if len(value) < 8:
         return math.inf
     seconds, fraction = struct.unpack_from(f"{order}iI", value)

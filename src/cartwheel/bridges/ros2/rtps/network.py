@@ -1,4 +1,4 @@
-"""Sockets, ports and how far discovery reaches."""
+"""Sockets, ports and discovery range."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ LOOPBACK = "127.0.0.1"
 _BASE, _PER_DOMAIN, _PER_PARTICIPANT, _UNICAST = 7400, 250, 2, 10
 _LAST_DOMAIN = 232
 PARTICIPANTS = 120
-"""On one computer: as many have ports."""
+"""Maximum number of participants per computer, because there is one port for each."""
 _PEERS = 32
-"""Participants on a computer that are looked for one by one."""
+"""Number of participants per computer that are searched individually."""
 _BUFFER = 8 << 20
 _SIOCGIFADDR = 0x8915
 
@@ -31,21 +31,21 @@ Range = Literal["OFF", "LOCALHOST", "SUBNET"]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reach:
-    """How far discovery goes."""
+    """Discovery range."""
 
     range: Range = "LOCALHOST"
     peers: tuple[str, ...] = ()
-    """Hosts that are told of us one by one."""
+    """Hosts to which announcements are sent individually."""
 
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> Reach:
-        """What ROS's variables say; this computer alone where they say nothing.
+        """Range from ROS environment variables. The default is this computer only.
 
         Source: REP 2017's ``ROS_AUTOMATIC_DISCOVERY_RANGE`` and ``ROS_STATIC_PEERS``, and the
         older ``ROS_LOCALHOST_ONLY``.
 
         Raises:
-            CartwheelError: A value is none of ROS's.
+            CartwheelError: A variable has an invalid value.
         """
         peers = tuple(
             peer.strip()
@@ -80,10 +80,10 @@ class Reach:
 
 
 def domain_id(environment: Mapping[str, str] = os.environ) -> int:
-    """``ROS_DOMAIN_ID``; 0 where there is none.
+    """``ROS_DOMAIN_ID``; 0 if unset.
 
     Raises:
-        CartwheelError: It is no domain.
+        CartwheelError: The domain is invalid.
     """
     given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
     if not given.isdecimal() or int(given) > _LAST_DOMAIN:
@@ -97,12 +97,12 @@ def domain_id(environment: Mapping[str, str] = os.environ) -> int:
 
 
 def own_addresses() -> dict[str, str]:
-    """IPv4 addresses of this computer by its interfaces' names."""
+    """IPv4 addresses of this computer, by interface name."""
     found: dict[str, str] = {}
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         for _, name in socket.if_nameindex():
             request = struct.pack("256s", name.encode()[:15])
-            # One without an address.
+            # An interface without an address.
             with contextlib.suppress(OSError):
                 answer = fcntl.ioctl(probe.fileno(), _SIOCGIFADDR, request)
                 found[name] = socket.inet_ntoa(answer[20:24])
@@ -110,11 +110,11 @@ def own_addresses() -> dict[str, str]:
 
 
 class Network:
-    """A participant's sockets.
+    """Sockets of a participant.
 
     Args:
         domain: See `domain_id`.
-        reach: How far others are looked for and heard.
+        reach: Discovery range.
 
     Raises:
         CartwheelError: No port is free.
@@ -132,10 +132,10 @@ class Network:
         self.locators: tuple[Address, ...] = tuple(
             (host, port) for host in ((LOOPBACK,) if local or not outer else outer)
         )
-        """Where others reach us."""
+        """Addresses under which other participants reach this one."""
         self.multicast: socket.socket | None = None
         self.announce: list[Address] = []
-        """Where our existence is told, beside the group."""
+        """Addresses that receive announcements in addition to the multicast group."""
         self._casters: list[socket.socket] = []
         self._group = (GROUP, base)
         if reach.range == "OFF":
@@ -148,20 +148,20 @@ class Network:
         with contextlib.suppress(OSError):
             self.multicast = self._join(base)
         for address in sorted(self._own) if reach.range == "SUBNET" else [LOOPBACK]:
-            # An interface without multicast: those behind it must look for us.
+            # An interface without multicast. Participants behind it must search for this one.
             with contextlib.suppress(OSError):
                 self._casters.append(self._caster(address))
 
     def hears(self, host: str) -> bool:
-        """Whether datagrams of that host are for us."""
+        """Whether datagrams from a host are accepted."""
         return self.reach.range == "SUBNET" or host in self._heard
 
     def is_own(self, host: str) -> bool:
-        """Whether a host is this computer."""
+        """Whether an address belongs to this computer."""
         return host in self._own
 
     def cast(self, data: bytes) -> None:
-        """Sends to everybody in reach."""
+        """Sends to all participants in the discovery range."""
         for caster in self._casters:
             with contextlib.suppress(OSError):
                 caster.sendto(data, self._group)
@@ -199,7 +199,7 @@ class Network:
         sock.setblocking(False)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         sock.bind((GROUP, port))
-        # All interfaces: programs of this computer may announce themselves on any.
+        # All interfaces, because programs on this computer may announce themselves on any.
         for address in self._own:
             with contextlib.suppress(OSError):
                 sock.setsockopt(

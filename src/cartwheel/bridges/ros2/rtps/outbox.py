@@ -1,4 +1,4 @@
-"""What is sent in several datagrams, some at a time: a receiver needs moments to take them."""
+"""Paced sending of large samples, because receivers need time to empty their buffers."""
 
 from __future__ import annotations
 
@@ -11,40 +11,42 @@ from dataclasses import dataclass
 from cartwheel.bridges.ros2.rtps.discovery import Address
 
 Parts = Sequence[bytes | memoryview]
-"""Of a datagram."""
+"""Parts of a datagram."""
 Send = Callable[[Parts, Address], bool]
-"""Sends one datagram; never waits long, and may lose it. False where the system did not take it."""
+"""Sends a datagram, without waiting long. It may be lost. Returns False if the system refuses
+it."""
 
 _BURST = 2
-"""Full datagrams in a row; a receiver of default settings has room for three."""
+"""Number of full datagrams in a burst. Receivers with default settings have space for three."""
 _PAUSE = 0.0003
-"""s that a receiver gets to make room."""
+"""Pause in s in which the receiver makes space."""
 _PAUSE_AGAIN = 0.001
-"""s between bursts of what is sent again, to all who ask: 120 MB/s, whoever asks for how much."""
+"""Interval in s between bursts of repeated samples to all receivers, which limits them to 120
+MB/s."""
 _BETWEEN = 1000
-"""Small datagrams that may wait for a moment between large ones."""
+"""Maximum number of small datagrams that wait between large ones."""
 _WAITING = 64 << 20
-"""Bytes that may wait for one receiver, where they are more than one sample."""
+"""Maximum queued bytes per receiver, unless they are a single sample."""
 
 
 @dataclass(slots=True, eq=False)
 class _Job:
-    """A sample on its way to one receiver."""
+    """A sample in transmission to one receiver."""
 
     source: object
     pieces: Iterator[Parts]
     size: int
     lost: Callable[[], None]
-    """Called where the system did not take all of it."""
+    """Called if the system refused a part of the sample."""
     whole: bool = True
 
 
 class Outbox:
-    """Sends samples to receivers, each at its pace; on the loop's thread.
+    """Sends samples to each receiver at its own pace. Used on the loop's thread.
 
     Args:
         send: See `Send`.
-        wake: Calls `tick` after so many seconds; None sends everything at once.
+        wake: Schedules `tick` after a delay in s. None sends everything at once.
     """
 
     def __init__(self, send: Send, wake: Callable[[float], None] | None = None) -> None:
@@ -54,7 +56,7 @@ class Outbox:
         self._sizes: dict[Address, int] = {}
         self._between: dict[Address, deque[tuple[Parts, Callable[[], None]]]] = {}
         self._again: dict[object, tuple[Iterator[Parts], Address]] = {}
-        """What is sent again, by who asked."""
+        """Repeated samples by requesting reader."""
         self._again_at = 0.0
 
     def put(
@@ -67,16 +69,17 @@ class Outbox:
         lost: Callable[[], None],
         most: int,
     ) -> None:
-        """Sends a sample after those that wait already.
+        """Sends a sample after all samples that are already queued.
 
         Args:
-            source: Its writer.
-            pieces: Its datagrams, made when they are sent.
-            size: Of all of them, in bytes.
-            address: Of the receiver.
-            lost: Called where the system did not take all of it, or too much waits already.
-            most: Samples of the source that may wait; the oldest is dropped for a new one. A
-                receiver that was slow for a while would else get only old samples from then on.
+            source: Writer of the sample.
+            pieces: Datagrams of the sample, created when they are sent.
+            size: Total size in bytes.
+            address: Address of the receiver.
+            lost: Called if the system refused a part of the sample, or the queue is full.
+            most: Maximum number of queued samples of the source. A new sample replaces the oldest.
+                Otherwise a receiver that was slow for a while would receive only old samples from
+                then on.
         """
         waiting = self._jobs.get(address)
         if waiting is None:
@@ -94,7 +97,7 @@ class Outbox:
             self._sleep()
 
     def _drop_oldest(self, source: object, address: Address, most: int) -> None:
-        """Makes room for a sample of a source, if as many as may wait do. One is on its way."""
+        """Makes space if the source has reached its limit. The first sample is never dropped."""
         waiting = self._jobs[address]
         own = [job for job in itertools.islice(waiting, 1, None) if job.source is source]
         if len(own) >= most:
@@ -103,9 +106,9 @@ class Outbox:
             own[0].lost()
 
     def put_between(self, parts: Parts, address: Address, lost: Callable[[], None]) -> None:
-        """Sends a datagram: at once, or where larger samples are under way, before their next part.
+        """Sends a datagram at once, or before the next part of a larger sample.
 
-        Right behind their last part it would meet a receiver that has no room.
+        Directly after the last part, the receiver would have no space.
         """
         if address not in self._jobs:
             if not self._send(parts, address):
@@ -118,11 +121,11 @@ class Outbox:
             between.append((parts, lost))
 
     def is_sending(self, source: object, address: Address) -> bool:
-        """Whether a sample of a writer is under way."""
+        """Whether a sample of a writer is in transmission."""
         return any(job.source is source for job in self._jobs.get(address, ()))
 
     def put_again(self, asker: object, pieces: Iterator[Parts], address: Address) -> None:
-        """Sends what somebody asked for again, unless it is being sent to it already."""
+        """Repeats what a reader requested, unless a repetition is already in progress."""
         if asker not in self._again:
             self._again[asker] = pieces, address
             if self._wake is None or time.monotonic() >= self._again_at:
@@ -130,7 +133,7 @@ class Outbox:
             self._sleep()
 
     def tick(self) -> None:
-        """Sends what is due."""
+        """Sends all datagrams that are due."""
         for address in list(self._jobs):
             self._go_on(address)
         if self._again and time.monotonic() >= self._again_at:
@@ -164,7 +167,7 @@ class Outbox:
     def _go_on_again(self) -> None:
         left = _BURST
         while self._again and (left or self._wake is None):
-            # All who ask take turns.
+            # All requesting readers take turns.
             asker = next(iter(self._again))
             pieces, address = self._again.pop(asker)
             parts = next(pieces, None)

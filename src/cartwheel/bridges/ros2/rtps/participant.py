@@ -1,4 +1,4 @@
-"""A participant of DDS: finds others, and connects its writers and readers with theirs."""
+"""A DDS participant: discovers others, and connects its writers and readers with theirs."""
 
 from __future__ import annotations
 
@@ -31,61 +31,63 @@ from cartwheel.codes.wires import PEER_LIMIT
 from cartwheel.errors import Diagnostic
 
 _ANNOUNCE_FIRST, _ANNOUNCE = (0.0, 0.1, 0.3, 0.6, 1.0), 3.0
-"""s after the start, and between further announcements."""
+"""Times in s of the first announcements after startup, and the interval of all later ones."""
 _AGAIN = (0.05, 0.1, 0.2, 0.4, 0.8)
-"""s after which one who is new is told of us again: its program may hear us before it listens."""
+"""Delays in s of repeated announcements to a new participant, which may not receive data yet."""
 _TICK = 0.05
 _PARTICIPANTS = 512
-"""Others, on all computers; on each of them `network.PARTICIPANTS`."""
+"""Maximum number of other participants. On each computer, the limit is `network.PARTICIPANTS`."""
 _UNANSWERED = 10.0
-"""s that one may take to answer. A real one answers at once, or else is found again."""
+"""Timeout in s for a participant to respond. Real ones respond at once, or are discovered
+again."""
 _FRESH = 1.0
-"""s for which one that has not answered yet does not make way for another."""
+"""Time in s for which a participant without a response is not replaced."""
 _EXCHANGED = 200
-"""Participants that make way for others in a second."""
+"""Maximum number of replaced participants per s."""
 _PROVED = 512
-"""Participants that are remembered because they answered us, though there was no place for them."""
+"""Number of responding participants that are remembered although the limit was reached."""
 _ENDPOINTS = 2000
-"""Of one participant: what no ROS program comes near to."""
+"""Maximum number of endpoints per participant, far above that of any ROS program."""
 _ENDPOINTS_IN_ALL = 20_000
-"""Of all: 60 MB at most. Two hundred nodes have some 8,000."""
+"""Maximum number of endpoints in total, at most 60 MB. Two hundred nodes have some 8,000."""
 _MATCHES = 1000
-"""Endpoints of others that are connected with one of ours."""
+"""Maximum number of remote endpoints connected to one local endpoint."""
 _AT_ONCE = 64
 _AT_ONCE_SECONDS = 0.005
-"""Datagrams that are taken before anything else is done, and s that this may take."""
+"""Datagrams that are handled before anything else, and the time limit for this in s."""
 _GATHER = 0.03
-"""s in which changes of others' endpoints are gathered."""
+"""Delay in s during which changes of remote endpoints are collected."""
 _BUILTIN = EndpointQos(reliable=True, transient_local=True, depth=5000)
 
 
 @dataclass(slots=True)
 class _Remote:
-    """Another participant."""
+    """A remote participant."""
 
     data: ParticipantData
     address: Address
     host: str
-    """Where its datagrams come from; this computer has one name."""
+    """Source of its datagrams. All addresses of this computer count as one."""
     found: float
     heard: float
     knows_us: bool = False
-    """Whether it has answered. Until then it gets no samples and its endpoints are not connected:
-    it may have been made up, to have us send to somebody else or to fill our memory."""
+    """Whether it has responded. Before, it receives no samples and its endpoints are not
+    connected, because it may be fake: an attempt to redirect traffic to a victim, or to fill the
+    memory."""
     writers: dict[Guid, Endpoint] = field(default_factory=dict)
     readers: dict[Guid, Endpoint] = field(default_factory=dict)
 
 
 class Participant:
-    """One participant; on the loop's thread but where said otherwise.
+    """A DDS participant. Used on the loop's thread, unless stated otherwise.
 
     Args:
-        loop: Runs it.
-        domain: Of ROS.
-        reach: How far others are looked for.
-        name: For those who list participants.
-        user_data: Of the participant.
-        tell: Takes a warning.
+        loop: Event loop of the bridge.
+        domain: ROS domain ID.
+        reach: Discovery range.
+        name: Name for lists of participants.
+        user_data: User data of the participant.
+        tell: Receives warnings.
 
     Raises:
         CartwheelError: No port is free.
@@ -105,14 +107,15 @@ class Participant:
         self._domain = domain
         self._tell = tell
         self._network = Network(domain, reach)
-        # Vendor, host, process, and a random part as several may be in one process.
+        # Vendor, host, process, and a random part for several participants in one process.
         self.prefix: Prefix = (
             wire.VENDOR + os.urandom(2) + struct.pack("<I", os.getpid()) + os.urandom(4)
         )
         self.on_endpoints: Callable[[], None] = lambda: None
-        """Told when others' writers or readers come or go."""
+        """Called when remote writers or readers appear or disappear."""
         self.on_misfit: Callable[[Endpoint, Endpoint, str], None] = lambda *_: None
-        """Told of two that do not fit, ours first, and the policy; empty where types differ."""
+        """Called with an incompatible local and remote endpoint, and the policy; empty for the
+        type."""
         self._data = ParticipantData(
             prefix=self.prefix,
             meta=self._network.locators,
@@ -126,13 +129,13 @@ class Participant:
         )
         self._remotes: dict[Prefix, _Remote] = {}
         self._hosts: Counter[str] = Counter()
-        """How many of them are on each computer."""
+        """Number of remote participants per computer."""
         self._proved: OrderedDict[Prefix, None] = OrderedDict()
-        """Those that have answered us, though they were not known at that time."""
+        """Participants that responded while they were not connected."""
         self._exchanged = 0.0
-        """Participants that made way for others, less those of which a second has passed."""
+        """Replaced participants, minus the number that the rate limit has released."""
         self._count = 0
-        """Endpoints of others."""
+        """Number of remote endpoints."""
         self._told_due = False
         self._room = Room()
         self._alarm = Alarm(loop)
@@ -142,14 +145,14 @@ class Participant:
         self._next_entity = 1
         self._closed = False
         self.malformed = 0
-        """Datagrams that were no RTPS."""
+        """Number of invalid datagrams."""
         self._publications = self._builtin_writer(discovery.PUBLICATIONS_WRITER)
         self._subscriptions = self._builtin_writer(discovery.SUBSCRIPTIONS_WRITER)
         self._builtin_reader(discovery.PUBLICATIONS_READER, self._found_writer)
         self._builtin_reader(discovery.SUBSCRIPTIONS_READER, self._found_reader)
 
     def start(self) -> None:
-        """Begins; on the loop's thread."""
+        """Starts discovery. Call it on the loop's thread."""
         self._alarm.start(self._outbox.tick)
         for sock in (self._network.unicast, self._network.multicast):
             if sock is not None:
@@ -160,7 +163,7 @@ class Participant:
         self._tick()
 
     def close(self) -> None:
-        """Says good-bye and closes the sockets."""
+        """Announces the end and closes the sockets."""
         if self._closed:
             return
         self._closed = True
@@ -183,7 +186,7 @@ class Participant:
     # -- endpoints
 
     def writer(self, topic: str, type_: str, qos: EndpointQos, *, user_data: bytes = b"") -> Writer:
-        """A new writer."""
+        """Creates a writer."""
         endpoint = self._endpoint(b"\x03", topic, type_, qos, user_data)
         writer = self._writers[endpoint.guid[12:]] = self._made_writer(endpoint)
         self._publications.write(discovery.encode_endpoint(endpoint))
@@ -202,7 +205,7 @@ class Participant:
         *,
         user_data: bytes = b"",
     ) -> Reader:
-        """A new reader."""
+        """Creates a reader."""
         endpoint = self._endpoint(b"\x04", topic, type_, qos, user_data)
         reader = Reader(endpoint, self._send, take, room=self._room)
         self._readers[endpoint.guid[12:]] = reader
@@ -214,7 +217,7 @@ class Participant:
         return reader
 
     def remove(self, endpoint: Writer | Reader) -> None:
-        """Takes a writer or reader away."""
+        """Removes a writer or reader."""
         guid = endpoint.endpoint.guid
         known = self._writers if isinstance(endpoint, Writer) else self._readers
         teller = self._publications if isinstance(endpoint, Writer) else self._subscriptions
@@ -222,7 +225,7 @@ class Participant:
             teller.write(discovery.encode_key(guid), inline=discovery.disposed(guid), keyed=True)
 
     def others(self) -> tuple[list[Endpoint], list[Endpoint]]:
-        """All writers and all readers of other participants."""
+        """All writers and all readers of remote participants."""
         remotes = self._remotes.values()
         return (
             [one for remote in remotes for one in remote.writers.values()],
@@ -266,7 +269,7 @@ class Participant:
             if made_up or now - remote.heard > remote.data.lease:
                 self._lose(prefix)
             else:
-                # It may be where no announcement gets.
+                # The participant may be in a network that announcements do not reach.
                 self._send((self._announcement,), remote.address)
         for reader in self._readers.values():
             reader.give_up(now)
@@ -289,7 +292,7 @@ class Participant:
         try:
             self._network.unicast.sendmsg(parts, (), 0, address)
         except OSError:
-            # A full buffer or a network that is down: reliability mends it, if anything does.
+            # The buffer is full or the network is down. Reliable endpoints recover from this.
             return False
         return True
 
@@ -358,7 +361,7 @@ class Participant:
         head = wire.data_head(
             reader=wire.UNKNOWN if not inline else discovery.SPDP_READER,
             writer=discovery.SPDP_WRITER,
-            # A farewell is news; an announcement is the same one again.
+            # The final message has a new number. An announcement repeats the same number.
             number=2 if inline else 1,
             inline=inline,
             size=len(payload),
@@ -370,7 +373,7 @@ class Participant:
         if discovery.is_disposal(data.inline):
             gone = self._remotes.get(prefix)
             guid = discovery.key_of(data.inline, data.payload)
-            # Nobody says farewell for others.
+            # A participant can only announce its own end.
             here = LOOPBACK if self._network.is_own(host) else host
             if gone is not None and gone.host == here and (guid is None or guid[:12] == prefix):
                 self._lose(prefix)
@@ -393,14 +396,14 @@ class Participant:
         remote = _Remote(told, self._nearest(told.meta, host), place, now, now)
         self._remotes[told.prefix] = remote
         self._hosts[place] += 1
-        # Before what follows, so that it knows whose that is.
+        # Send it before all else, so that the receiver can assign the following messages.
         self._send((self._announcement,), remote.address)
         self._greet(remote)
         for wait in _AGAIN:
             self._loop.after(wait, lambda: self._tell_again(remote))
 
     def _has_place(self, prefix: Prefix, host: str) -> bool:
-        """Whether one more can be taken, in whose favour one that has not answered may go."""
+        """Whether one more participant is allowed. It may replace one that has not responded."""
         full = self._hosts.get(host, 0) >= PARTICIPANTS
         if not full and len(self._remotes) < _PARTICIPANTS:
             return True
@@ -424,7 +427,7 @@ class Participant:
         return False
 
     def _believe(self, remote: _Remote) -> None:
-        """One has answered: what it told of its endpoints counts from now on."""
+        """Connects the endpoints of a participant that has responded for the first time."""
         remote.knows_us = True
         for other in remote.writers.values():
             for reader in list(self._readers.values()):
@@ -449,7 +452,7 @@ class Participant:
             self._send((self._announcement,), remote.address)
 
     def _greet(self, remote: _Remote) -> None:
-        """Connects the endpoints by which both tell of their endpoints."""
+        """Connects the built-in endpoints that exchange discovery data."""
         for entity, other in (
             (discovery.PUBLICATIONS_WRITER, discovery.PUBLICATIONS_READER),
             (discovery.SUBSCRIPTIONS_WRITER, discovery.SUBSCRIPTIONS_READER),
@@ -486,9 +489,9 @@ class Participant:
         self._others_changed()
 
     def _nearest(self, addresses: Sequence[Address], host: str) -> Address:
-        """One of a participant's addresses that is where its datagrams come from.
+        """The participant's address that matches the source of its datagrams.
 
-        Never another: nobody can have us send to whom it names.
+        No other address is used, so that nobody can redirect traffic to a victim.
         """
         for address in addresses:
             if address[0] == host:

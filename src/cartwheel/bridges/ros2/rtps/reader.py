@@ -1,4 +1,4 @@
-"""A reader: puts what its writers send into order, and asks for what is missing."""
+"""A reader: sorts received samples, and requests missing ones."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from cartwheel.bridges.ros2.rtps.room import LARGEST, Room
 from cartwheel.bridges.ros2.rtps.wire import Guid
 
 _WAITING = 256
-"""Samples of a writer that wait for one before them: as many as can be asked for at a time."""
+"""Maximum number of samples per writer that wait for earlier ones; one request covers as many."""
 _ASSEMBLED = 8
-"""Samples of a writer of which parts are there."""
+"""Maximum number of incomplete samples per writer."""
 _SMALLEST = 512
-"""Bytes of a fragment that is not the last: half of the smallest that the standard has, so that
-what keeps track of them stays less than they are."""
+"""Minimum size in bytes of a fragment, except for the last. It is half of the standard's minimum.
+The overhead of tracking fragments thus stays smaller than the fragments."""
 _PATIENCE = 3.0
-"""s after which a missing sample, or part of one, is given up."""
+"""Timeout in s for a missing sample or fragment."""
 _REPLY = 0.001
-"""s at least between two answers to a writer, which gets them later otherwise."""
+"""Minimum interval in s between responses to a writer. Additional responses are delayed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """A sample that came in."""
+    """A received sample."""
 
     payload: bytes
     inline: dict[int, bytes]
@@ -38,7 +38,7 @@ class Taken:
 
 
 class _Assembly:
-    """A sample of which fragments have come; holds no more memory than they have."""
+    """A sample with missing fragments. It needs no more memory than the received fragments."""
 
     def __init__(self, size: int, fragment_size: int, now: float) -> None:
         self.size = size
@@ -49,7 +49,7 @@ class _Assembly:
         self.touched = now
 
     def split(self, first: int, payload: bytes) -> dict[int, bytes]:
-        """The fragments of a datagram that are new; none where one is not as long as it must be."""
+        """New fragments in a datagram; empty if one has the wrong length."""
         found = {}
         step = self.fragment_size
         for offset in range(0, len(payload), step):
@@ -57,7 +57,7 @@ class _Assembly:
             part = payload[offset : offset + step]
             wanted = step if number < self.count else self.size - (self.count - 1) * step
             if number == self.count:
-                # Padding may follow.
+                # Padding may follow the data.
                 part = part[:wanted]
             if number > self.count or len(part) != wanted:
                 return {}
@@ -66,14 +66,14 @@ class _Assembly:
         return found
 
     def whole(self) -> bytes | None:
-        """The sample, once all of it is there."""
+        """The sample, once it is complete."""
         if len(self.parts) < self.count:
             return None
         return b"".join(self.parts[number] for number in range(1, self.count + 1))
 
 
 class WriterProxy:
-    """A writer as its reader knows it."""
+    """A matched writer."""
 
     def __init__(self, endpoint: Endpoint, address: Address, *, reliable: bool) -> None:
         self.guid = endpoint.guid
@@ -82,26 +82,26 @@ class WriterProxy:
         self.address = address
         self.next = 1
         self.waiting: dict[int, Taken | None] = {}
-        """None where there is nothing to wait for."""
+        """Samples by number. None means that the sample will not arrive."""
         self.waiting_since = 0.0
         self.assemblies: dict[int, _Assembly] = {}
         self.count = 0
         self.heartbeat_count = -1
         self.last = 0
-        """The last sample that its writer says it has."""
+        """Number of the last sample that the writer has announced."""
         self.asked_at = 0.0
         self.must_ask = False
-        """Whether an answer is due that was put off."""
+        """Whether a delayed response is due."""
 
 
 class Reader:
-    """One reader; on the loop's thread.
+    """A reader. Used on the loop's thread.
 
     Args:
-        endpoint: Ours.
-        send: Sends one datagram.
-        take: Takes each sample, in the order in which its writer wrote.
-        room: For what is not complete yet; its own where none is given.
+        endpoint: Discovery data of the reader.
+        send: Sends a datagram.
+        take: Called with each sample, in the order of writing.
+        room: Memory budget for incomplete samples. None creates one for this reader.
     """
 
     def __init__(
@@ -119,7 +119,7 @@ class Reader:
         self._take = take
 
     def match(self, endpoint: Endpoint, address: Address) -> None:
-        """A writer is there."""
+        """Adds a writer, or updates its address."""
         known = self.proxies.get(endpoint.guid)
         if known is not None:
             known.address = address
@@ -128,11 +128,11 @@ class Reader:
         proxy = WriterProxy(endpoint, address, reliable=reliable)
         self.proxies[endpoint.guid] = proxy
         if reliable:
-            # What was sent before we knew of the writer is asked for in this way.
+            # This requests the samples that were sent before the writer was discovered.
             self._ask(proxy, ())
 
     def unmatch(self, guid: Guid) -> None:
-        """A writer is gone."""
+        """Removes a writer."""
         proxy = self.proxies.pop(guid, None)
         if proxy is None:
             return
@@ -143,7 +143,7 @@ class Reader:
                 self._room.free(guid[:12], len(taken.payload))
 
     def take_data(self, guid: Guid, vendor: bytes, data: wire.Data) -> None:
-        """A sample, or a part of one."""
+        """Handles a sample or fragment."""
         proxy = self.proxies.get(guid)
         if proxy is None or data.number < proxy.next or data.number in proxy.waiting:
             return
@@ -163,7 +163,7 @@ class Reader:
         self._wait(proxy, data.number, taken)
 
     def take_heartbeat(self, guid: Guid, told: wire.Heartbeat) -> None:
-        """A writer says what it has."""
+        """Handles a writer's announcement of its samples."""
         proxy = self.proxies.get(guid)
         if proxy is None or not proxy.reliable:
             return
@@ -183,7 +183,7 @@ class Reader:
         self._ask_up_to(proxy, end)
 
     def take_gap(self, guid: Guid, told: wire.Gap) -> None:
-        """A writer says what is nothing to wait for."""
+        """Handles a writer's list of samples that will not arrive."""
         proxy = self.proxies.get(guid)
         if proxy is None or not proxy.reliable or told.start < 1:
             return
@@ -197,7 +197,7 @@ class Reader:
                 self._wait(proxy, number, None)
 
     def remind(self) -> None:
-        """Gives the answers that were put off; several times a second."""
+        """Sends delayed responses. Call it several times per s."""
         for proxy in self.proxies.values():
             if proxy.must_ask:
                 self._ask_up_to(proxy, min(proxy.last, proxy.next + 255))
@@ -207,7 +207,7 @@ class Reader:
         self._ask(proxy, [number for number in missing if number not in proxy.waiting])
 
     def give_up(self, now: float) -> None:
-        """Goes on without what does not come; once a second or so."""
+        """Skips samples after a timeout. Call it about once per s."""
         for proxy in self.proxies.values():
             for number, assembly in list(proxy.assemblies.items()):
                 if now - assembly.touched > _PATIENCE:
@@ -241,7 +241,7 @@ class Reader:
         return whole
 
     def _make_room(self, proxy: WriterProxy, number: int) -> bool:
-        """Drops what is worth least: of reliable samples the last, of others the first."""
+        """Drops an incomplete sample: the newest of a reliable writer, otherwise the oldest."""
         worst = max(proxy.assemblies) if proxy.reliable else min(proxy.assemblies)
         if proxy.reliable and number > worst:
             return False
@@ -249,7 +249,7 @@ class Reader:
         return True
 
     def _drop(self, proxy: WriterProxy, number: int) -> None:
-        """Holds the parts of a sample no longer."""
+        """Drops an incomplete sample."""
         self._room.free(proxy.guid[:12], proxy.assemblies.pop(number).held)
 
     def _wait(self, proxy: WriterProxy, number: int, taken: Taken | None) -> None:
@@ -267,7 +267,7 @@ class Reader:
         proxy.waiting[number] = taken
         if first:
             proxy.waiting_since = time.monotonic()
-            # The one before got lost, or was written before we knew its writer.
+            # The previous sample was lost, or was written before the writer was discovered.
             self._ask(proxy, range(proxy.next, min(number, proxy.next + 255)))
 
     def _skip_to(self, proxy: WriterProxy, number: int) -> None:
@@ -288,7 +288,7 @@ class Reader:
         proxy.waiting_since = time.monotonic()
 
     def _pass(self, proxy: WriterProxy, taken: Taken | None) -> None:
-        """Hands on what has waited."""
+        """Delivers a sample that has waited."""
         if taken is not None:
             self._room.free(proxy.guid[:12], len(taken.payload))
             self._take(taken)

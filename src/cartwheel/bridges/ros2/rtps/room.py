@@ -1,4 +1,4 @@
-"""How much memory others may make us hold for samples that are not complete yet."""
+"""Memory limits for incomplete samples from other participants."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from collections import Counter
 from cartwheel.bridges.ros2.rtps.wire import Prefix
 
 LARGEST = 128 << 20
-"""Bytes of a sample: a cloud of 1920 x 1080 points has 66 MB, and what is larger than twice that is
-no command for a simulation."""
+"""Maximum size of a sample in bytes. A point cloud with 1920 x 1080 points has 66 MB. A message
+of twice that size is not a command for a simulation."""
 _OF_PARTICIPANT = LARGEST + (32 << 20)
-"""Bytes of one participant: its largest sample, and what came after it."""
+"""Maximum bytes per participant: its largest sample and the samples after it."""
 _IN_ALL = 2 * _OF_PARTICIPANT
-"""Bytes of all: two such participants at a time."""
+"""Maximum bytes in total, for two such participants at a time."""
 
 
 class Room:
-    """What all readers of a participant of ours hold, by whose samples it is."""
+    """Bytes of incomplete samples by participant, shared by all local readers."""
 
     def __init__(self) -> None:
         self._of: Counter[Prefix] = Counter()
@@ -24,11 +24,11 @@ class Room:
 
     @property
     def held(self) -> int:
-        """Bytes."""
+        """Reserved bytes in total."""
         return self._in_all
 
     def take(self, prefix: Prefix, size: int) -> bool:
-        """Whether there is room for some bytes more, which then are held."""
+        """Reserves bytes. Returns False if the limit is exceeded."""
         if self._of[prefix] + size > _OF_PARTICIPANT or self._in_all + size > _IN_ALL:
             if not self._of[prefix]:
                 del self._of[prefix]
@@ -38,7 +38,7 @@ class Room:
         return True
 
     def free(self, prefix: Prefix, size: int) -> None:
-        """They are held no longer."""
+        """Releases bytes."""
         self._in_all -= size
         self._of[prefix] -= size
         if not self._of[prefix]:

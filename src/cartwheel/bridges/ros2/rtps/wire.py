@@ -1,4 +1,4 @@
-"""The messages of RTPS as bytes, and back."""
+"""Encoding and decoding of RTPS messages."""
 
 from __future__ import annotations
 
@@ -8,36 +8,38 @@ from dataclasses import dataclass
 
 VERSION = b"\x02\x03"
 VENDOR = b"\x01\x64"
-"""Ours; the numbers that are given to vendors are below."""
+"""Vendor ID of Cartwheel, above the assigned ones."""
 CYCLONE = b"\x01\x10"
 
 Prefix = bytes
-"""The 12 bytes of a participant."""
+"""12-byte prefix of a participant."""
 Guid = bytes
-"""The 16 bytes of an endpoint: its participant's and 4 of its own."""
+"""16-byte identifier of an endpoint: the participant's prefix and 4 bytes of its own."""
 
 UNKNOWN = b"\0\0\0\0"
-"""Whom it may concern, as an entity."""
+"""Entity ID for all matching endpoints."""
 LARGEST = 60000
-"""Bytes of a sample in one datagram; what is larger goes in fragments of this size."""
+"""Maximum bytes of a sample in one datagram. Larger samples are split into fragments of this
+size."""
 
 _ACKNACK, _HEARTBEAT, _GAP, _INFO_TS, _INFO_SRC, _INFO_DST = 0x06, 0x07, 0x08, 0x09, 0x0C, 0x0E
 _NACK_FRAG, _HEARTBEAT_FRAG, _DATA, _DATA_FRAG = 0x12, 0x13, 0x15, 0x16
 _LITTLE, _INLINE, _PAYLOAD, _KEY = 0x01, 0x02, 0x04, 0x08
 _FINAL = 0x02
 _MOST_BITS = 256
-"""Of a set of numbers."""
+"""Maximum number of bits in a sequence number set."""
 _MOST_SUBMESSAGES = 256
-"""In a datagram: others put some ten into one, and each may be answered."""
+"""Maximum number of submessages per datagram. Common are some ten, and each may need a
+response."""
 
 
 class MalformedError(ValueError):
-    """Bytes that are no RTPS."""
+    """The bytes are not a valid RTPS message."""
 
 
 @dataclass(frozen=True, slots=True)
 class Data:
-    """A sample, or a part of one."""
+    """A sample, or a fragment of one."""
 
     reader: bytes
     writer: bytes
@@ -45,17 +47,17 @@ class Data:
     inline: dict[int, bytes]
     payload: bytes
     keyed: bool
-    """The payload is but a key: of something that is disposed of."""
+    """Whether the payload is only the key of a disposed participant or endpoint."""
     fragment: int = 0
-    """One-based number of the first fragment within; 0 for a whole sample."""
+    """One-based number of the first fragment; 0 for a complete sample."""
     fragment_size: int = 0
     size: int = 0
-    """Of the whole sample, where this is a part of it."""
+    """Size of the complete sample, if this is a fragment."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heartbeat:
-    """What a writer has."""
+    """Sample numbers that a writer has."""
 
     reader: bytes
     writer: bytes
@@ -63,12 +65,12 @@ class Heartbeat:
     last: int
     count: int
     final: bool
-    """No answer is needed by whom nothing is missing."""
+    """Whether a reader without missing samples need not respond."""
 
 
 @dataclass(frozen=True, slots=True)
 class Acknack:
-    """What a reader has and lacks: all below `base`, and not `missing`."""
+    """Samples that a reader has or lacks: it has all below `base`, and lacks `missing`."""
 
     reader: bytes
     writer: bytes
@@ -80,13 +82,13 @@ class Acknack:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Samples that a reader needs not wait for."""
+    """Samples that a reader must not wait for."""
 
     reader: bytes
     writer: bytes
     start: int
     base: int
-    """All from `start` to below this."""
+    """The samples from `start` to below this number belong to the gap."""
     more: tuple[int, ...]
 
 
@@ -102,13 +104,13 @@ class NackFrag:
 
 @dataclass(frozen=True, slots=True)
 class Received:
-    """A submessage with what the message around it says."""
+    """A submessage with the data from its message header."""
 
     prefix: Prefix
-    """Of the sender."""
+    """Prefix of the sender."""
     vendor: bytes
     to: Prefix | None
-    """Of the receiver; None for everybody."""
+    """Prefix of the receiver; None for all."""
     content: Data | Heartbeat | Acknack | Gap | NackFrag
 
 
@@ -116,7 +118,7 @@ class Received:
 
 
 def message(sender: Prefix, *submessages: bytes, to: Prefix | None = None) -> bytes:
-    """The head of a message, and submessages."""
+    """Encodes a message header and submessages."""
     parts = [b"RTPS", VERSION, VENDOR, sender]
     if to is not None:
         parts += (struct.pack("<BBH", _INFO_DST, _LITTLE, 12), to)
@@ -124,14 +126,14 @@ def message(sender: Prefix, *submessages: bytes, to: Prefix | None = None) -> by
 
 
 def timestamp(seconds: int, fraction: int) -> bytes:
-    """When what follows was written; `fraction` in 1/2³² s."""
+    """Encodes the write time of the following submessages; `fraction` in 1/2³² s."""
     return struct.pack("<BBHII", _INFO_TS, _LITTLE, 8, seconds & 0xFFFFFFFF, fraction & 0xFFFFFFFF)
 
 
 def data_head(
     *, reader: bytes, writer: bytes, number: int, inline: bytes, size: int, keyed: bool = False
 ) -> bytes:
-    """A sample's submessage but for its payload of `size` bytes, a multiple of 4."""
+    """Encodes a sample's header for a payload of `size` bytes, a multiple of 4."""
     flags = _LITTLE | (_INLINE if inline else 0)
     if size:
         flags |= _KEY if keyed else _PAYLOAD
@@ -154,7 +156,7 @@ def fragment_head(
     length: int,
     size: int,
 ) -> bytes:
-    """A fragment's submessage but for its `length` bytes of a sample of `size`."""
+    """Encodes a fragment's header for `length` bytes of a sample of `size` bytes."""
     return (
         struct.pack(
             "<BBHHH", _DATA_FRAG, _LITTLE | (_INLINE if inline else 0), 32 + len(inline) + length,
@@ -192,9 +194,9 @@ def acknack(
 
 
 def gap(*, reader: bytes, writer: bytes, numbers: Sequence[int]) -> bytes:
-    """That samples are nothing to wait for: numbers in order, the first of which counts most.
+    """Encodes samples that a reader must not wait for. The numbers must be sorted.
 
-    Those that are too far above it to be named are left out.
+    Numbers beyond `_MOST_BITS` from the end of the first contiguous range are omitted.
     """
     end = numbers[0]
     for number in numbers:
@@ -222,10 +224,10 @@ def _number_set(base: int, numbers: Iterable[int]) -> bytes:
 
 
 def read(data: memoryview) -> Iterator[Received]:
-    """The submessages of a datagram.
+    """Decodes the submessages of a datagram.
 
     Raises:
-        MalformedError: It is no RTPS, from some point on.
+        MalformedError: The datagram is invalid from this point on.
     """
     try:
         yield from _read(data)
@@ -248,7 +250,7 @@ def _read(data: memoryview) -> Iterator[Received]:
         order = "<" if flags & _LITTLE else ">"
         (length,) = struct.unpack_from(f"{order}H", data, at + 2)
         at += 4
-        # Zero in the last one is "up to the end".
+        # A length of zero in the last submessage means "up to the end".
         if length == 0 and kind not in (_INFO_TS, 0x01):
             length = len(data) - at
         body = data[at : at + length]
@@ -319,7 +321,7 @@ def _read_data(kind: int, flags: int, order: str, body: memoryview) -> Data:
 
 
 def read_parameters(order: str, body: memoryview, at: int) -> tuple[dict[int, bytes], int]:
-    """A list of parameters, the first of each kind, and where it ends."""
+    """Decodes a parameter list. Returns the first parameter of each kind, and the end offset."""
     found: dict[int, bytes] = {}
     while True:
         name, length = struct.unpack_from(f"{order}HH", body, at)

@@ -1,4 +1,4 @@
-"""A writer: sends samples to its readers, and keeps those that may be asked for again."""
+"""A writer: sends samples to its readers, and keeps samples for repetition."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from cartwheel.bridges.ros2.rtps.outbox import Outbox, Parts, Send
 from cartwheel.bridges.ros2.rtps.wire import UNKNOWN, Guid, Prefix
 
 _FIRST_AGAIN, _LAST_AGAIN = 0.05, 2.0
-"""s between two reminders to a reader that does not answer."""
+"""Initial and maximum interval in s between reminders to a reader that does not respond."""
 _SILENCE = 3.0
-"""s without an answer after which a reader is taken for frozen."""
+"""Time in s without a response after which a reader counts as unresponsive."""
 _REPLY = 0.001
-"""s at least between two answers to a reader, who is reminded otherwise: it cannot make us talk."""
+"""Minimum interval in s between responses to a reader, which limits the traffic it can cause."""
 _SOON = 0.05
-"""s after which one who got no answer for that reason is reminded."""
+"""Delay in s of a reminder in place of a suppressed response."""
 _KEPT_BYTES = 64 << 20
-"""Of all kept samples of a writer."""
+"""Maximum bytes of all samples that a writer keeps."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """What was written once."""
+    """A written sample."""
 
     payload: bytes
     inline: bytes
     to: Prefix | None
-    """The only participant it is for."""
+    """The only receiving participant; None for all."""
     written: bytes
-    """Its timestamp's submessage."""
+    """Encoded timestamp submessage."""
     at: int
-    """The same in ns."""
+    """Timestamp in ns."""
     keyed: bool = False
 
 
 class ReaderProxy:
-    """A reader as its writer knows it."""
+    """A matched reader."""
 
     def __init__(self, endpoint: Endpoint, address: Address, *, start: int) -> None:
         self.guid = endpoint.guid
@@ -49,33 +49,33 @@ class ReaderProxy:
         self.reliable = endpoint.qos.reliable
         self.address = address
         self.start = start
-        """The first sample that it is to get."""
+        """Number of the first sample that the reader receives."""
         self.acked = start - 1
         self.patience = _FIRST_AGAIN
         self.remind_at = 0.0
         self.asked_at = 0.0
-        """When it was first reminded since it last answered."""
+        """Time of the first reminder since the last response."""
         self.greeted = True
-        """Whether it got what there was before it came; not before it has answered anything."""
+        """Whether it received the earlier samples, which requires a first response."""
         self.replied_at = 0.0
         self.wanted: dict[int, set[int] | None] = {}
-        """What it asked for again: samples, or fragments of them; at most those that are kept."""
+        """Requested samples or fragments to repeat; at most the kept samples."""
         self.gone = 0
-        """The last sample that is known to have gone without it."""
+        """Number of the last sample that the reader is known to have missed."""
         self.last_count = -1
 
 
 class Writer:
-    """One writer; on the loop's thread.
+    """A writer. Used on the loop's thread.
 
-    A reliable one keeps as many samples as its depth says, whoever has them yet: nobody can
-    make it wait, and who is slower than that misses some.
+    A reliable writer keeps as many samples as its depth, regardless of who has received them. It
+    never waits for readers, so slower readers miss samples.
 
     Args:
-        endpoint: Ours.
+        endpoint: Discovery data of the writer.
         send: See `Send`.
-        outbox: Sends what does not go in one datagram; all of it at once where there is none.
-        clock: Gives the time of a sample, in ns since 1970.
+        outbox: Sends samples that need several datagrams. None sends them at once.
+        clock: Returns the timestamp of a sample in ns since 1970.
     """
 
     def __init__(
@@ -89,16 +89,17 @@ class Writer:
         self.endpoint = endpoint
         self.proxies: dict[Guid, ReaderProxy] = {}
         self.dropped = 0
-        """Samples that readers have missed: asked for in vain, gone while one was frozen, or, of
-        those that nobody asks for again, not taken by the system."""
+        """Samples that readers missed, for one of three reasons: they were requested too late,
+        they were discarded while a reader did not respond, or the system refused to send them and
+        the reader is not reliable."""
         self.on_readers: Callable[[], None] = lambda: None
-        """Told when readers come or go."""
+        """Called when the first reader appears, and when the last one disappears."""
         self.on_drop: Callable[[], None] = lambda: None
-        """Told when a reader has asked in vain."""
+        """Called when a reader has requested a sample that is no longer kept."""
         self.on_refusal: Callable[[], None] = lambda: None
-        """Told when the system took no more of what is sent but once."""
+        """Called when the system refused to send a sample that is not repeated."""
         self.on_silence: Callable[[], None] = lambda: None
-        """Told when samples go that a frozen reader has not got."""
+        """Called when samples were discarded that an unresponsive reader has not received."""
         self._prefix, self._entity = endpoint.guid[:12], endpoint.guid[12:]
         self._send = send
         self._outbox = outbox or Outbox(send)
@@ -115,12 +116,13 @@ class Writer:
     # -- readers
 
     def match(self, endpoint: Endpoint, address: Address, *, proved: bool = True) -> None:
-        """A reader is there.
+        """Adds a reader, or updates its address.
 
         Args:
-            endpoint: Of it.
-            address: Where it is.
-            proved: Whether its participant has ever answered; one that has not gets no samples.
+            endpoint: Discovery data of the reader.
+            address: Address of the reader.
+            proved: Whether its participant has ever responded. Before that, it receives no
+                samples.
         """
         known = self.proxies.get(endpoint.guid)
         if known is not None:
@@ -139,13 +141,13 @@ class Writer:
             self._greet(proxy)
         if proxy.reliable:
             self._heartbeat(proxy, final=False)
-            # It may not know of us yet.
+            # The reader may not have discovered this writer yet.
             proxy.remind_at = time.monotonic() + proxy.patience
         if len(self.proxies) == 1:
             self.on_readers()
 
     def unmatch(self, guid: Guid) -> None:
-        """A reader is gone."""
+        """Removes a reader."""
         gone = self.proxies.pop(guid, None)
         if gone is None:
             return
@@ -166,13 +168,13 @@ class Writer:
         to: Prefix | None = None,
         keyed: bool = False,
     ) -> None:
-        """Sends a sample: CDR with its encapsulation.
+        """Sends a sample.
 
         Args:
-            payload: Its bytes.
-            inline: Parameters before it.
-            to: The only participant to get it; None for all.
-            keyed: The payload is a key.
+            payload: CDR with encapsulation.
+            inline: Parameters in front of the payload.
+            to: The only receiving participant; None for all.
+            keyed: Whether the payload is a key.
         """
         payload += b"\0" * (-len(payload) % 4)
         now = self._clock()
@@ -187,21 +189,21 @@ class Writer:
             if to is not None and prefix != to:
                 self._pass_over(proxy, self._last)
             elif prefix not in reached and proxy.greeted:
-                # One datagram serves all readers of a participant.
+                # One datagram is enough for all readers of a participant.
                 reached.add(prefix)
                 self._send_sample(self._last, sample, proxy, UNKNOWN)
             if proxy.reliable and not proxy.remind_at:
                 proxy.remind_at = time.monotonic() + proxy.patience
 
     def remind(self, now: float) -> None:
-        """Tells readers that lack something what there is; several times a second."""
+        """Announces the kept samples to readers that lack some. Call it several times per s."""
         for proxy in self.proxies.values():
             if proxy.reliable and proxy.remind_at and now >= proxy.remind_at:
                 if proxy.acked >= self._last:
                     proxy.remind_at = 0.0
                     continue
                 if self._outbox.is_sending(self, proxy.address) or proxy.wanted:
-                    # It would ask for what is on its way.
+                    # The reader would request samples that are already being sent.
                     proxy.remind_at = now + proxy.patience
                     continue
                 proxy.asked_at = proxy.asked_at or now
@@ -212,7 +214,7 @@ class Writer:
                 self._heartbeat(proxy, final=False)
 
     def take_acknack(self, guid: Guid, told: wire.Acknack) -> None:
-        """A reader says what it has and lacks."""
+        """Handles a reader's report of received and missing samples."""
         proxy = self.proxies.get(guid)
         if proxy is None or not proxy.reliable:
             return
@@ -227,7 +229,7 @@ class Writer:
         if proxy.acked < self._last:
             proxy.remind_at = time.monotonic() + proxy.patience
         if not proxy.greeted:
-            # Its participant is really there: nobody else knows what to answer to.
+            # The participant is real, because only it knows what to respond to.
             proxy.greeted = True
             self._greet(proxy)
             if not told.final:
@@ -245,7 +247,7 @@ class Writer:
             else:
                 lost.append(number)
                 if number >= proxy.start and number > proxy.gone and sample is None:
-                    # Counted once, however often it is asked for.
+                    # Count the sample once, even if it is requested again.
                     proxy.gone = number
                     self.dropped += 1
         if self.dropped > gone:
@@ -255,7 +257,7 @@ class Writer:
             self._reply(proxy, lost)
 
     def take_nack_frag(self, guid: Guid, told: wire.NackFrag) -> None:
-        """A reader lacks parts of a sample."""
+        """Handles a reader's report of missing fragments."""
         proxy = self.proxies.get(guid)
         sample = self._kept.get(told.number)
         if proxy is None or sample is None or not proxy.reliable or not proxy.greeted:
@@ -270,7 +272,7 @@ class Writer:
             self._send_again(proxy)
 
     def _greet(self, proxy: ReaderProxy) -> None:
-        """Sends what was kept for who comes late."""
+        """Sends the kept samples to a new reader."""
         for number, sample in self._kept.items():
             if number > proxy.acked and number >= proxy.start:
                 self._send_sample(number, sample, proxy, proxy.guid[12:])
@@ -281,18 +283,18 @@ class Writer:
             self._outbox.put_again(proxy, self._pieces_again(proxy), proxy.address)
 
     def _pieces_again(self, proxy: ReaderProxy) -> Iterator[Parts]:
-        """What a reader asked for again, until there is nothing left of it."""
+        """Requested samples and fragments, until none are left."""
         while proxy.wanted:
             number = next(iter(proxy.wanted))
             fragments = proxy.wanted.pop(number)
-            # It may have gone since.
+            # It may have been discarded since.
             sample = self._kept.get(number)
             if sample is not None:
                 reader = proxy.guid[12:]
                 yield from self._pieces(number, sample, proxy, reader, fragments)
 
     def _reply(self, proxy: ReaderProxy, lost: Sequence[int]) -> None:
-        """Says what there is, and what there is no more."""
+        """Announces the kept samples, and those that are no longer kept."""
         now = time.monotonic()
         if now - proxy.replied_at < _REPLY:
             proxy.remind_at = min(proxy.remind_at or math.inf, now + _SOON)
@@ -302,7 +304,7 @@ class Writer:
         self._post(proxy, *gaps, self._heartbeat_of(proxy, final=True))
 
     def _count_gone(self, proxy: ReaderProxy) -> None:
-        """Counts what a frozen reader has not got and will not get."""
+        """Counts discarded samples that an unresponsive reader has not received."""
         gone = next(iter(self._kept), self._last + 1) - 1
         before = max(proxy.gone, proxy.acked)
         if gone > before:
@@ -311,7 +313,7 @@ class Writer:
             self.on_silence()
 
     def _count_refused(self, prefix: Prefix) -> None:
-        """Counts a sample that no reader of a participant got who does not ask for it again."""
+        """Counts a sample that was refused for a participant's readers that are not reliable."""
         lost = sum(
             not proxy.reliable for guid, proxy in self.proxies.items() if guid[:12] == prefix
         )
@@ -332,7 +334,7 @@ class Writer:
         self._kept_bytes -= len(oldest.payload)
 
     def _expire(self) -> None:
-        """Forgets what is too old to be worth anything."""
+        """Discards expired samples."""
         lifespan = self.endpoint.qos.lifespan
         while self._kept and lifespan < math.inf:
             if self._clock() - next(iter(self._kept.values())).at <= lifespan * 1e9:
@@ -388,7 +390,7 @@ class Writer:
         reader: bytes,
         only: set[int] | None = None,
     ) -> Iterator[Parts]:
-        """The datagrams of a sample, or of some of its fragments."""
+        """Datagrams of a sample, or of some of its fragments."""
         if len(sample.payload) <= wire.LARGEST:
             head = wire.message(
                 self._prefix,
