@@ -1,4 +1,4 @@
-"""Robots that somebody else wrote, tried one by one: what `cartwheel corpus` tells of a folder."""
+"""Tests robots from other authors one by one: the results of `cartwheel corpus`."""
 
 from cartwheel.corpus.finding import robots_in
 from cartwheel.corpus.trial import try_robot

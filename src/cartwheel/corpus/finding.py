@@ -1,4 +1,4 @@
-"""The robots in a folder: the files that a user would name, not those that these include."""
+"""Finds the robots in a folder: files that a user would load, without included files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cartwheel.errors import DescriptionError
 
 _SUFFIXES = (".xacro", ".urdf", ".sdf")
 _SEMANTICS = (".srdf", ".srdf.xacro")
-"""MoveIt's, which begin as a robot does."""
+"""MoveIt's files, which begin like a robot."""
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__", "worlds"})
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
@@ -26,15 +26,15 @@ _VARIABLE = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 
 
 def robots_in(folder: Path, *, package_path: Sequence[Path] = ()) -> list[Path]:
-    """The descriptions in a folder and below that stand for themselves, in order of their paths.
+    """The complete robot descriptions in a folder and its subfolders, sorted by path.
 
-    Left out are worlds, files that only define macros, and parts: what another description of
-    the folder includes and is no whole robot without it. Any other file that cannot be read is
-    kept: its trial says why.
+    Worlds, macro-only files and parts are omitted. Parts are files that another description in the
+    folder includes and that are not complete robots without it. Other unreadable files are kept, so
+    that the test reports the error.
 
     Args:
-        folder: Or one description, which is then the only one.
-        package_path: Further folders in which packages are looked for.
+        folder: A folder, or a single description.
+        package_path: Additional folders to search for packages.
     """
     if folder.is_file():
         return [folder]
@@ -59,7 +59,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _text(path: Path) -> str | None:
-    """A description's text without its comments; None for any other file."""
+    """A description's text without comments; None for any other file."""
     try:
         text = _COMMENT.sub("", read_regular_text(path))
     except OSError:
@@ -68,7 +68,7 @@ def _text(path: Path) -> str | None:
 
 
 def _pattern(name: str) -> re.Pattern[str] | None:
-    """What the path of an included file ends with; None where nothing of it is known."""
+    """A pattern for the end of an included file's path; None if nothing of the path is known."""
     known = _VARIABLE.sub("*", _FIND.sub(r"\1", name.strip()))
     known = known.removeprefix("file://").removeprefix("package://").lstrip("./")
     parts = [re.escape(part).replace(r"\*", "[^/]*") for part in known.split("/") if part]
@@ -94,7 +94,7 @@ def _is_robot(path: Path, package_path: Sequence[Path], *, part: bool) -> bool:
 
 
 def _is_chosen(path: Path) -> bool:
-    """Whether a model's file is the one that its model.config names, which has older ones too."""
+    """Whether a model file is the one in its model.config, which may also list older versions."""
     if not (path.parent / "model.config").is_file():
         return True
     return path.samefile(find_description(path.parent))

@@ -1,4 +1,4 @@
-"""Measurements on one robot in a world of its own: standing, driving, reaching."""
+"""Measures one robot in its own world: standing, driving, moving joints."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from cartwheel.graph import TWIST_STAMPED, JointInput, TopicInfo
 from cartwheel.simulation.clock import NANOSECONDS
 
 VELOCITY, TURN = 0.2, 0.4
-"""m/s and rad/s that a base is told: slow enough for the smallest."""
+"""m/s and rad/s commanded to a base: slow enough for the smallest robots."""
 _SPEED_UP = 4.0
-"""s until a base has the speed it was told, whatever its limits of acceleration."""
+"""Maximum time for a base to reach the commanded speed, s."""
 _MEASURED = 2.0
 _RATE = 20.0
-"""Hz of commands."""
+"""Rate of commands, Hz."""
 _STEP, _SLIDE = 0.2, 0.02
-"""rad and m by which a joint is moved."""
+"""Joint movement, rad and m."""
 _TRAJECTORY = 2.0
-"""s that a trajectory takes."""
+"""Duration of a trajectory, s."""
 _REACHING = 5.0
 _SLICE = 0.5
-"""s between two looks at the wall clock."""
+"""Interval of wall-clock checks, s."""
 
 
 def stand(world: World, model: Model, description: RobotDescription, seconds: float) -> Stand:
-    """Lets time go on, and tells how the robot stood.
+    """Simulates the robot without commands and measures how it stands.
 
-    A simulation that is much slower than real time is not waited for: it gets as many seconds
-    of wall time as it was to simulate, and at least the last one simulated is looked at.
+    A simulation much slower than real time is cut short: its wall time is limited to the requested
+    simulation time, but the last second is always measured.
 
     Raises:
         SimulationError: The simulation diverged.
@@ -60,7 +60,7 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
 
 
 def drives(world: World, model: Model) -> Iterator[Drive]:
-    """Drives by each topic that takes velocities, ahead and around, each from the start."""
+    """Drives on each topic with velocity commands, forward and turning, each after a reset."""
     for info in world.graph.topics():
         if not info.drives:
             continue
@@ -77,7 +77,7 @@ def drives(world: World, model: Model) -> Iterator[Drive]:
 
 
 def reaches(world: World, model: Model, description: RobotDescription) -> list[Reach]:
-    """Commands all that take positions at once, and tells where their joints came."""
+    """Commands all position-controlled joints at once and measures where they end."""
     world.reset()
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
@@ -103,7 +103,7 @@ def reaches(world: World, model: Model, description: RobotDescription) -> list[R
 def _driven(
     world: World, model: Model, topic: TopicInfo, command: tuple[float, float]
 ) -> tuple[float, float]:
-    """m/s ahead and rad/s to the left of a base that is told so for a while."""
+    """Forward speed in m/s and turn rate in rad/s, to the left, after a constant command."""
     world.reset()
     world.run(0.5)
     _drive_on(world, topic, command, _SPEED_UP)
@@ -128,7 +128,7 @@ def _drive_on(world: World, topic: TopicInfo, command: tuple[float, float], seco
 
 
 def _target(joint: Joint, position: float) -> float:
-    """A place that is near, and within the joint's limits."""
+    """A nearby position within the joint's limits."""
     step = _SLIDE if joint.type == "prismatic" else _STEP
     lower, upper = joint.axis.lower, joint.axis.upper
     if joint.type == "continuous" or lower is None or upper is None:
@@ -143,7 +143,7 @@ def _yaw(pose: Pose) -> float:
 
 
 def _turned(one: Pose, other: Pose) -> float:
-    """rad between two orientations."""
+    """Angle between two orientations, rad."""
     w = abs(sum(a * b for a, b in zip(one.orientation, other.orientation, strict=True)))
     return 2 * math.acos(min(1.0, w))
 

@@ -1,4 +1,4 @@
-"""One robot tried as its user would: loaded, left standing, listened to, driven, and moved."""
+"""Tests one robot as a user would: load, stand, listen, drive and move joints."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from cartwheel.plugins.control.suggestion import suggested
 from cartwheel.plugins.world_plugins import BUILT_IN
 
 STANDING = 10.0
-"""s that a robot is left alone."""
+"""Simulation time without commands, s."""
 _LISTENING = 1.0
-"""s in which a topic that states a rate of some Hz has something to say."""
+"""Time in which a topic with a stated rate of some Hz must publish, s."""
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
 _OF_WHEELS = frozenset(
     each.code for each in RULES if each.code.name.startswith(("drive", "wheel", "caster"))
 )
-"""Rules of `check` that tell why a base does not drive as it is told."""
+"""Rules of `check` that explain why a base does not follow its commands."""
 
 
 def try_robot(
@@ -43,18 +43,18 @@ def try_robot(
     controllers: Sequence[Path] | None = None,
     standing: float = STANDING,
 ) -> Verdict:
-    """Tries a description, with its default arguments where none are given.
+    """Tests a description, with default arguments unless some are given.
 
     Args:
-        file: A xacro, URDF or SDF.
-        arguments: Of the xacro.
-        package_path: Folders in which packages are looked for first.
-        controllers: YAML files whose controllers start; None takes those beside the robot that
-            `cartwheel run` would name, but for what only a launch file could fill in.
-        standing: s that it is left alone.
+        file: A xacro, URDF or SDF file.
+        arguments: Arguments of the xacro.
+        package_path: Folders to search for packages first.
+        controllers: YAML files whose controllers start. None uses the files near the robot that
+            `cartwheel run` would suggest, except those that need values from a launch file.
+        standing: Simulation time without commands, s.
 
     Returns:
-        What was found, errors of the description included.
+        The results, including errors in the description.
     """
     verdict = Verdict(file=file)
     try:
@@ -64,7 +64,7 @@ def try_robot(
             controllers = [each for each in suggested(robot) if _is_complete(each, robot)]
         with World(lenient=True) as world:
             pose = _place(robot)
-            # A ground_plane stands there already.
+            # A ground_plane already exists.
             name = f"{robot.name}_tried" if robot.name in world.models else robot.name
             model = world.spawn(
                 robot, name=name, x=pose.x, y=pose.y, z=pose.z, roll=pose.rpy[0], pitch=pose.rpy[1],
@@ -88,7 +88,7 @@ def try_robot(
 
 
 def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
-    """What is known without a world."""
+    """Results known without a world."""
     tags = [
         *robot.plugins,
         *(tag for link in robot.links for one in link.sensors for tag in one.plugins),
@@ -111,7 +111,7 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:
-    """Whether a file of controllers names no argument that only a launch file could fill in."""
+    """Whether a controller file contains no arguments that only a launch file could set."""
     try:
         for_robot(read_parameters(path), path, robot)
     except PluginError:
@@ -120,9 +120,9 @@ def _is_complete(path: Path, robot: RobotDescription) -> bool:
 
 
 def _place(robot: RobotDescription) -> Pose:
-    """Where the lowest of its collisions touches the ground; high above it where it is held.
+    """The pose at which the lowest collision touches the ground; well above it for a fixed robot.
 
-    An arm that reaches out at zero would reach into the ground.
+    An arm may extend below the ground at zero.
     """
     if robot.static:
         return robot.pose
@@ -144,7 +144,7 @@ def _place(robot: RobotDescription) -> Pose:
 def _moved(
     verdict: Verdict, world: World, model: Model, robot: RobotDescription, standing: float
 ) -> Iterator[Verdict]:
-    """The verdict after each part of the trial, so that what was found outlives an error."""
+    """The verdict after each part of the test, so that an error keeps earlier results."""
     stood = motion.stand(world, model, robot, standing)
     verdict = replace(verdict, stand=stood)
     yield verdict
@@ -158,9 +158,9 @@ def _moved(
 
 
 def _listened(world: World) -> tuple[int, tuple[str, ...]]:
-    """How many topics state a rate, and those of them that carried nothing."""
+    """The number of topics with a stated rate, and those without messages."""
     graph = world.graph
-    # Two controllers of one joint take turns.
+    # Two controllers of one joint are used alternately.
     idle = {each.node for each in ControllerFiles.of(graph).loaded if not each.running}
     rated = {each.topic: each for each in graph.publishers() if each.rate and each.node not in idle}
     boxes = {topic: world.mailbox(topic, size=1) for topic in rated}

@@ -1,4 +1,4 @@
-"""What a trial of a robot found."""
+"""The results of testing a robot."""
 
 from __future__ import annotations
 
@@ -9,39 +9,39 @@ from pathlib import Path
 from cartwheel.errors import Diagnostic
 
 TOLERANCE = 0.05
-"""Of a commanded velocity."""
+"""Relative tolerance of a commanded velocity."""
 SUNK = 0.02
-"""m that a robot may sit lower after a while than it was put: springs and soft tyres."""
+"""m; maximum settling of a standing robot, for springs and soft tyres."""
 TILTED = 0.1
-"""rad that it may lean."""
+"""rad; maximum tilt."""
 CREEPING = 0.01
-"""m/s and rad/s of a robot that stands."""
+"""m/s and rad/s; maximum motion of a standing robot."""
 ANGLE, LENGTH = 0.1, 0.01
-"""rad and m that a joint may be off what was commanded: a PID on efforts gives way to gravity."""
+"""rad and m; maximum error of a joint position: a PID with effort output yields to gravity."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Stand:
-    """How a robot stood while nobody commanded it."""
+    """How a robot stood without commands."""
 
     fixed: bool
-    """It is held by the world, or static."""
+    """Whether it is fixed to the world, or static."""
     simulated: float
-    """s that were."""
+    """Simulation time, s."""
     wall: float
-    """s that it took, while nobody listened."""
+    """Wall time without subscribers, s."""
     sunk: float
-    """m that its root is lower in the end than it was put; negative is higher."""
+    """Decrease in the root's height, m; negative if it rose."""
     tilt: float
-    """rad between its root's upward axis then and now."""
+    """Angle between the root's initial and final upward axes, rad."""
     speed: float
-    """m/s of its root during the last second."""
+    """The root's speed during the last second, m/s."""
     turn: float
-    """rad/s of the same."""
+    """The root's angular speed during the last second, rad/s."""
 
     @property
     def state(self) -> str:
-        """``fixed``, ``yes``, or what it did instead."""
+        """``fixed``, ``yes``, or what the robot did instead."""
         if self.fixed:
             return "fixed"
         if self.speed > CREEPING or self.turn > CREEPING:
@@ -55,40 +55,40 @@ class Stand:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drive:
-    """How a base did what one topic commanded."""
+    """How a base followed the commands on one topic."""
 
     topic: str
     commanded: float
-    """m/s ahead."""
+    """Commanded forward speed, m/s."""
     measured: float
     commanded_turn: float
-    """rad/s about the vertical, commanded by itself."""
+    """Separately commanded turn rate about the vertical, rad/s."""
     measured_turn: float
 
     @property
     def error(self) -> float:
-        """Share by which it went too fast; negative is too slow."""
+        """Relative error of the speed; negative if too slow."""
         return self.measured / self.commanded - 1.0
 
     @property
     def error_turn(self) -> float:
-        """The same of its turning: -1 is a base that does not turn where it stands."""
+        """Relative error of the turn rate; -1 for a base that cannot turn in place."""
         return self.measured_turn / self.commanded_turn - 1.0
 
     @property
     def follows(self) -> bool:
-        """Whether it went ahead as commanded."""
+        """Whether it moved forward as commanded."""
         return abs(self.error) <= TOLERANCE
 
     @property
     def turns(self) -> bool:
-        """Whether it turned as commanded where it stood, which not every base can."""
+        """Whether it turned in place as commanded, which not every base can do."""
         return abs(self.error_turn) <= TOLERANCE
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reach:
-    """Where a controller took a joint."""
+    """The final position of a joint commanded by a controller."""
 
     controller: str
     joint: str
@@ -99,7 +99,7 @@ class Reach:
 
     @property
     def error(self) -> float:
-        """rad or m."""
+        """Position error, rad or m."""
         return self.reached - self.target
 
     @property
@@ -109,44 +109,44 @@ class Reach:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Verdict:
-    """What became of one description."""
+    """The results for one description."""
 
     file: Path
     name: str = ""
     error: str = ""
-    """Why it did not load, or why its simulation ended; empty where all went well."""
+    """Why loading or the simulation failed; empty for success."""
     loaded: bool = False
     mass: float = math.nan
-    """kg."""
+    """Mass, kg."""
     links: int = 0
     missing_meshes: int = 0
     plugins: tuple[str, ...] = ()
-    """Those it names that act, without path, ``lib`` and ``.so``."""
+    """Supported plugins, without path, ``lib`` and ``.so``."""
     missing: tuple[str, ...] = ()
-    """Those it names that are not supported."""
+    """Unsupported plugins."""
     controllers: tuple[str, ...] = ()
-    """That ran."""
+    """Controllers that ran."""
     controller_files: tuple[Path, ...] = ()
-    """That started them, where the robot does not name its own."""
+    """Files that started the controllers, if the robot does not specify any."""
     stand: Stand | None = None
     topics: int = 0
-    """That state a rate."""
+    """Number of topics with a stated rate."""
     silent: tuple[str, ...] = ()
-    """Topics of those that carried nothing."""
+    """Those topics without messages."""
     drives: tuple[Drive, ...] = ()
     reasons: tuple[str, ...] = ()
-    """What the description says of its wheels that is not so, where it does not drive as told."""
+    """Wrong statements about the wheels that explain why the robot does not follow its commands."""
     reaches: tuple[Reach, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
 
     @property
     def speed(self) -> float:
-        """Simulated seconds in one of wall time, while nobody listened; nan where none were."""
+        """Real-time factor without subscribers; nan if nothing was simulated."""
         return self.stand.simulated / self.stand.wall if self.stand is not None else math.nan
 
     @property
     def good(self) -> bool:
-        """Whether it loads and does what it should; a plugin that is missing does not count."""
+        """Whether it loads and works; missing plugins are ignored."""
         return (
             self.loaded
             and not self.error

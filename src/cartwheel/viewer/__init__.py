@@ -1,4 +1,4 @@
-"""The viewer in the browser: one more client of a session."""
+"""The web viewer, a client of a session."""
 
 from cartwheel.viewer.description_viewer import DescriptionViewer
 from cartwheel.viewer.viewer import Viewer

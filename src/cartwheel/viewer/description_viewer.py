@@ -1,4 +1,4 @@
-"""A description alone in the browser: joints by sliders, frames, shapes, masses; no physics."""
+"""Shows a description in the browser with joint sliders, frames, shapes and masses; no physics."""
 
 from __future__ import annotations
 
@@ -34,20 +34,20 @@ _TOGGLES = (
     "inertia",
     "grid",
 )
-"""Fields of `Display`."""
+"""Fields in `Display`."""
 
 
 class DescriptionViewer:
-    """Shows what a description says, at `url`.
+    """Shows a description at `url`.
 
     Args:
-        description: Of a robot or a model.
-        access: Who may see it; None is whoever is on this computer.
-        port: 0 takes any that is free.
-        refused: Takes the origin of each web page that is refused, from any thread.
+        description: Description of a robot or model.
+        access: Who may connect; None for users of this computer.
+        port: 0 selects a free port.
+        refused: Called with the origin of each rejected web page, on any thread.
 
     Raises:
-        ControlError: The port cannot be had.
+        ControlError: The port is not available.
     """
 
     def __init__(
@@ -80,23 +80,23 @@ class DescriptionViewer:
 
     @property
     def url(self) -> str:
-        """Where the page is."""
+        """URL of the web interface."""
         return self._page.url
 
     def run(self) -> None:
-        """Answers the sliders until `close`."""
+        """Handles the sliders until `close`."""
         try:
             self._page.run(self._stopped)
         finally:
             self._page.close()
 
     def start(self) -> None:
-        """`run` on a thread of its own."""
+        """Starts `run` on a separate thread."""
         self._thread = threading.Thread(target=self.run, name="viewer", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Takes the page off the air."""
+        """Stops the web server."""
         self._stopped.set()
         self._page.wake()
 
@@ -139,7 +139,7 @@ class DescriptionViewer:
         self._move()
 
     def _clients_changed(self) -> None:
-        """Each browser has toggles of its own."""
+        """Each browser has separate toggles."""
         handles = self._page.server.get_clients()
         self._seats = {n: seat for n, seat in self._seats.items() if n in self._page.clients}
         for number in sorted(self._page.clients - set(self._seats)):

@@ -1,4 +1,4 @@
-"""All panels around the scene, and when each of them works."""
+"""Creates all panels around the scene and updates them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ P = TypeVar("P", bound=Panel)
 
 @dataclass
 class _Place:
-    """What belongs to one browser."""
+    """The panels of one browser."""
 
     seat: Seat
     look: Callable[[], None]
@@ -44,14 +44,15 @@ class _Place:
 
 
 class Desk:
-    """The page of a session: scene in the middle, control to the right, world to the left.
+    """The web interface of a session: scene in the middle, controls on the right, world on the
+    left.
 
-    What shows the simulation is made once and is the same in all browsers; what a user chooses,
-    selects or drives with is made for each of them, in the tabs that they share.
+    Panels that show the simulation are created once for all browsers. Panels for choosing,
+    selecting and driving are created for each browser, in shared tabs.
 
     Args:
-        page: To build it on.
-        session: To show.
+        page: The page to build on.
+        session: The session to show.
     """
 
     def __init__(self, page: Page, session: Session) -> None:
@@ -90,12 +91,12 @@ class Desk:
             place.overlays.update(pose, now)
 
     def close(self) -> None:
-        """Lets go of all subscriptions."""
+        """Closes all subscriptions."""
         for panel in self._all_panels():
             panel.leave()
 
     def panel(self, kind: type[P], number: int | None = None) -> P:
-        """The panel of a kind, of all browsers or of one; of the first one by default."""
+        """The panel of a kind, shared or for one browser; by default the first browser's."""
         places = self._places.values() if number is None else [self._places[number]]
         own = [panel for place in places for panel in place.panels]
         return next(panel for panel in (*self._panels, *own) if isinstance(panel, kind))
@@ -122,7 +123,7 @@ class Desk:
                 (panel.watch if self._places else panel.leave)()
 
     def _welcome(self, seat: Seat) -> _Place:
-        """Makes what belongs to a browser, as things are now."""
+        """Creates the panels of a new browser in the current state."""
         stage = self.stage
         look = Look(seat)
 
@@ -145,14 +146,14 @@ class Desk:
         return _Place(seat, show, Overlays(seat, stage.trail), panels)
 
     def _stop(self, number: int) -> None:
-        """A browser does not answer any more: what it drives is stopped."""
+        """Stops driving for a browser that no longer responds."""
         place = self._places.get(number)
         for panel in place.panels if place is not None else ():
-            if isinstance(panel, DrivePanel):  # a recording has none
+            if isinstance(panel, DrivePanel):  # recordings have no drive panel
                 panel.leave()
 
     def build(self) -> list[Panel]:
-        """Makes what all browsers share."""
+        """Creates the shared panels."""
         gui, icons = self.page.gui, self.page.viser.Icon
         gui.main_panel.dock_right()
         gui.main_panel.set_width(320)
@@ -179,11 +180,11 @@ class Desk:
         return panels
 
     def build_main(self) -> list[Panel]:
-        """The panels of the main column, above the camera."""
+        """The panels in the main column, above the camera."""
         return [ClockPanel(self.stage), BumperPanel(self.stage)]
 
     def build_left(self, left: Any) -> list[Panel]:
-        """The panels to the left, above the toggles of the scene."""
+        """The panels on the left, above the scene toggles."""
         icons = self.page.viser.Icon
         self._tabs["world"] = left.add_tab("World", icons.WORLD)
         self.stage.scene.clicked = self._clicked
@@ -196,12 +197,12 @@ class Desk:
         return [insert, joints]
 
     def build_own(self, seat: Seat, look: Callable[[], None], panels: list[Panel]) -> None:
-        """Adds what belongs to one browser: driving, selecting and choosing.
+        """Adds the panels of one browser: driving, selecting and choosing.
 
         Args:
             seat: The browser.
-            look: Draws its scene anew.
-            panels: To add to.
+            look: Redraws its scene.
+            panels: The list to extend.
         """
         panels.append(DrivePanel(self.stage, seat))
         with self._tabs["world"]:
@@ -211,7 +212,7 @@ class Desk:
         self.build_looking(seat, look, panels)
 
     def build_looking(self, seat: Seat, look: Callable[[], None], panels: list[Panel]) -> None:
-        """Adds what chooses what one browser shows."""
+        """Adds the panels that select what a browser shows."""
         with self._tabs["camera"]:
             panels.append(CameraPanel(self.stage, seat))
         with self._tabs["view"]:

@@ -1,4 +1,4 @@
-"""What of the scene is to be seen."""
+"""The visible parts of the scene."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ class Display:
     transparent: bool = False
     wireframe: bool = False
     axes: bool = False
-    """Every link's frame."""
+    """The frame of each link."""
     names: bool = False
-    """Every link's name."""
+    """The name of each link."""
     inertia: bool = False
-    """Centres of mass, and boxes of the same inertia."""
+    """Centres of mass, and boxes with the same inertia."""
     grid: bool = True
     trail: bool = False
-    """Where the robot has been."""
+    """The path of the robot."""
     camera: bool = True
-    """What the cameras see, as a pyramid with the image at its end."""
+    """The cameras' views, as pyramids with the image as the base."""
     scans: bool = True
-    """Where the rays of laser scanners end."""
+    """The end points of laser rays."""
     clouds: bool = False
-    """Point clouds, which cost more to measure and to send."""
+    """Point clouds, which are more expensive to measure and send."""
     contacts: bool = False
-    """Points and forces that the bumpers report."""
+    """Contact points and forces from bumpers."""
     follow: bool = False
-    """The browser's camera goes with the robot."""
+    """The browser's camera follows the robot."""
 
     def changes(self) -> str:
         """The toggles that differ from their defaults, separated by dots."""
@@ -42,7 +42,7 @@ class Display:
 
     @classmethod
     def of(cls, changes: str) -> Self:
-        """The toggles with such changes; unknown names are ignored."""
+        """Toggles from such a text; unknown names are ignored."""
         changed = changes.split(".")
         return cls(
             **{f.name: (f.name in changed) is not f.default for f in dataclasses.fields(cls)}

@@ -1,10 +1,10 @@
-"""What is done less often than it could be."""
+"""Limits the rate of an action."""
 
 from __future__ import annotations
 
 
 class Every:
-    """Says when something that is done at most `rate` times a second of wall time is due."""
+    """Returns whether an action with a maximum `rate` in Hz of wall time is due."""
 
     def __init__(self, rate: float) -> None:
         self._period = 1.0 / rate

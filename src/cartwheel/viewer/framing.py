@@ -1,4 +1,4 @@
-"""From where a browser looks at a robot first: near enough, and past what stands in between."""
+"""The initial view of a robot: near enough, and not blocked by other models."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from cartwheel.viewer.page import Page
 from cartwheel.viewer.scene_view import pose_in
 
 _AHEAD = 0.4
-"""Where the middle of the picture lies, in sizes before the robot: it shows what is there."""
+"""Offset of the target point ahead of the robot, in robot sizes."""
 _DISTANCE = 3.2
-"""In sizes."""
+"""Distance of the camera, in robot sizes."""
 _AZIMUTH = math.radians(-138.0)
-"""Of the eye, against the robot's heading: behind it and to its right."""
+"""Azimuth of the camera relative to the robot's heading: behind it and to its right."""
 _TURNS = (0, 45, -45, 90, -90, 135, -135, 180)
-"""Degrees from there, in the order in which they are tried."""
+"""Azimuth offsets in degrees, in the order in which they are tried."""
 _ELEVATIONS = (19.0, 45.0, 70.0)
-"""Degrees, likewise."""
+"""Elevations in degrees, in the order in which they are tried."""
 _SMALLEST, _LARGEST = 0.15, 30.0
-"""m, of robots that are framed by their size."""
+"""m; limits of the robot size used for framing."""
 
 
 class Framing:
-    """Aims at the first robot that there is, for browsers that come and for "Reset View".
+    """Points the camera at the first robot, for new browsers and for "Reset View".
 
     Args:
-        page: Whose camera it is.
-        simulation: That knows what stands in the way.
+        page: The page with the camera.
+        simulation: Tests the line of sight.
     """
 
     def __init__(self, page: Page, simulation: Simulation) -> None:
@@ -42,7 +42,7 @@ class Framing:
         self._robot: str | None = None
 
     def update(self, snapshot: Snapshot) -> None:
-        """Aims anew where the first robot is another one than before."""
+        """Updates the view if the first robot has changed."""
         robot = robot_of(snapshot.scene)
         if robot is None or robot == self._robot:
             return
@@ -62,7 +62,7 @@ class Framing:
 
 
 def robot_of(scene: Scene) -> str | None:
-    """The first model that does something by itself, else the first that can move."""
+    """The first model with active parts, or the first movable model."""
     movable = [model for model in scene.models if not model.description.static]
     active = [model for model in movable if _is_active(model.description)]
     return next((model.name for model in (*active, *movable)), None)
@@ -73,7 +73,7 @@ def _is_active(description: RobotDescription) -> bool:
 
 
 def views(description: RobotDescription, pose: Pose) -> tuple[Vec3, list[Vec3]]:
-    """The point of a model to look at, and points to look from, the best first; m, in the world."""
+    """The point to look at and possible viewpoints, the best first; m, in the world."""
     low, high = bounds(description) or (np.zeros(3), np.zeros(3))
     size = min(_LARGEST, max(_SMALLEST, float(np.max(high - low))))
     x, y, z = pose.apply(((low + high) / 2).tolist())

@@ -1,8 +1,8 @@
-"""What browsers send, checked before viser sees it: kinds, types, numbers, sizes, who asks.
+"""Validates messages from browsers before viser: types, values, sizes and permissions.
 
-viser sets whatever property a message names, asserts on the rest, keeps parts of files without a
-bound and opens a public tunnel for whoever asks. Only what this page itself can send is handed on;
-the rest is dropped and counted, with one warning.
+viser sets any property in a message, uses assertions for other checks, buffers parts of files
+without limit and opens a public tunnel on request. Only messages that this web interface can send
+are passed on. Others are dropped and counted, with one warning.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from cartwheel.codes.wires import MALFORMED_MESSAGE
 from cartwheel.viewer.uploads import PART_BYTES, UploadError, Uploads
 
 MOST_BYTES = PART_BYTES + 4096
-"""Of one message: a part of a file is the largest."""
+"""Maximum message size: a part of a file is the largest message."""
 MOST_WAITING = 500
-"""Jobs of the page's thread; while there are more, nothing is read from any browser."""
+"""Maximum queued jobs of the page's thread; above it, no messages are read from browsers."""
 _PATIENCE = 0.02
-"""s between two looks whether there are fewer."""
+"""Interval of the checks whether the queue is shorter, s."""
 
 SILENCE = 10.0
-"""s without an answer after which a browser counts as gone, and nothing is driven for it."""
+"""s; a browser that does not respond for this time counts as gone, and its robot is stopped."""
 _ASKED_EVERY = 2.0
-"""s."""
+"""Interval of pings, s."""
 
 _log = logging.getLogger(__name__)
 
@@ -44,11 +44,11 @@ _Count = Annotated[int, msgspec.Meta(ge=0, le=1 << 40)]
 
 
 class Incoming(msgspec.Struct, tag_field="type", forbid_unknown_fields=True):
-    """A message of a browser."""
+    """A message from a browser."""
 
 
 class Camera(Incoming, tag="ViewerCameraMessage"):
-    """From where it looks."""
+    """The browser's camera has moved."""
 
     wxyz: _Turn
     position: _Place
@@ -69,13 +69,13 @@ class Change(Incoming, tag="GuiUpdateMessage"):
 
 
 class Command(Incoming, tag="CommandTriggerMessage"):
-    """A key or an entry of the list of commands."""
+    """A key or an entry in the command list was used."""
 
     uuid: _Name
 
 
 class Click(Incoming, tag="SceneNodeClickMessage"):
-    """On something in the scene."""
+    """A click in the scene."""
 
     name: _Name
     instance_index: int | None
@@ -87,7 +87,7 @@ class Click(Incoming, tag="SceneNodeClickMessage"):
 
 
 class Drag(Incoming, tag="TransformControlsUpdateMessage"):
-    """A gizmo moves."""
+    """A gizmo was moved."""
 
     name: _Name
     wxyz: _Turn
@@ -96,21 +96,21 @@ class Drag(Incoming, tag="TransformControlsUpdateMessage"):
 
 
 class DragStart(Incoming, tag="TransformControlsDragStartMessage"):
-    """A gizmo is held."""
+    """A gizmo drag has started."""
 
     name: _Name
     owner: _Name = ""
 
 
 class DragEnd(Incoming, tag="TransformControlsDragEndMessage"):
-    """It is let go."""
+    """A gizmo drag has ended."""
 
     name: _Name
     owner: _Name = ""
 
 
 class UploadStart(Incoming, tag="FileTransferStartUpload"):
-    """A file is announced."""
+    """A file upload has started."""
 
     source_component_uuid: _Name
     transfer_uuid: _Name
@@ -121,7 +121,7 @@ class UploadStart(Incoming, tag="FileTransferStartUpload"):
 
 
 class UploadPart(Incoming, tag="FileTransferPart"):
-    """A part of it."""
+    """A part of a file."""
 
     source_component_uuid: _Name
     transfer_uuid: _Name
@@ -135,17 +135,17 @@ _DECODER = msgspec.msgpack.Decoder(
 
 
 class MalformedError(Exception):
-    """A message that the page of ours cannot have sent."""
+    """A message that this web interface cannot have sent."""
 
 
 class Inbox:
-    """Stands between the connections of a server and viser.
+    """Filters the messages between a server's connections and viser.
 
     Args:
-        server: viser's.
-        waiting: How many jobs the page's thread has still to do.
-        refused: Called with a browser's number and a text for its user.
-        silent: Called with a browser's number when it has not answered for `SILENCE` s.
+        server: The viser server.
+        waiting: Returns the number of queued jobs of the page's thread.
+        refused: Called with a browser's number and a message for its user.
+        silent: Called with the number of a browser that did not respond for `SILENCE` s.
     """
 
     def __init__(
@@ -156,7 +156,7 @@ class Inbox:
         silent: Callable[[int], None],
     ) -> None:
         self.dropped = 0
-        """Messages that were not handed on."""
+        """Number of dropped messages."""
         self._server = server
         self._waiting = waiting
         self._refused = refused
@@ -167,21 +167,21 @@ class Inbox:
         websocks = server._websock_server
         websocks.on_client_connect(self._attach)
         websocks.on_client_disconnect(self._detach)
-        # What fails all the same is not for the terminal, and concerns the sender alone.
+        # Remaining errors concern only the sender and are not printed in the terminal.
         websocks._background_event_loop.set_exception_handler(self._failed)
-        # Whoever was faster than these lines comes again.
+        # Browsers that connected before this point must reconnect.
         websocks.disconnect_all_clients()
 
     def check(self, client: int, raw: object) -> None:
-        """Looks at a message.
+        """Validates a message.
 
         Args:
             client: The browser's number.
-            raw: What came.
+            raw: The received data.
 
         Raises:
-            MalformedError: The page cannot have sent it.
-            UploadError: It is a file, or a part of one, that cannot be taken.
+            MalformedError: The web interface cannot have sent the message.
+            UploadError: The message belongs to a file that cannot be accepted.
         """
         if not isinstance(raw, bytes):
             raise MalformedError("text")
@@ -192,7 +192,7 @@ class Inbox:
         if isinstance(message, Camera):
             if not any(message.wxyz):
                 raise MalformedError("a quaternion is zero")
-            # viser takes a browser for connected only from here on, and cleans up after it.
+            # viser treats a browser as connected only from here on, and cleans up after it.
             self._known.add(client)
             return
         if client not in self._known:
@@ -217,7 +217,7 @@ class Inbox:
             raise MalformedError("browsers may not set this property")
         handle = self._control(client, message.uuid)
         if handle is None:
-            return  # Removed meanwhile, which is no fault; viser ignores it.
+            return  # the control was just removed; viser ignores the message
         value, now = message.updates["value"], handle.value
         options = getattr(handle, "options", None)
         if options is not None:
@@ -234,7 +234,7 @@ class Inbox:
             raise MalformedError("the value is invalid for the control")
 
     def _control(self, client: int, uuid: str) -> Any:
-        """What a browser may use: the page's own controls and those made for it alone."""
+        """A control that a browser may use: shared ones and its own."""
         shared = self._server.gui._gui_input_handle_from_uuid.get(uuid)
         own = self._server.get_clients().get(client)
         if shared is not None or own is None:
@@ -254,7 +254,7 @@ class Inbox:
         self._uploads.drop(connection.client_id)
 
     async def _receive(self, client: int, receive: Callable[[], Any]) -> bytes:
-        """The next message that may be handed on."""
+        """The next valid message."""
         while True:
             while self._waiting() > MOST_WAITING:
                 await asyncio.sleep(_PATIENCE)
@@ -270,7 +270,7 @@ class Inbox:
                 return raw
 
     async def _watch(self, client: int, websocket: Any) -> None:
-        """Asks the browser itself, no script of the page, whether it is still there."""
+        """Pings the browser itself, not a script in the page, to check the connection."""
         with contextlib.suppress(WebSocketException):
             while True:
                 pong = await websocket.ping()

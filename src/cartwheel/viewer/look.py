@@ -1,4 +1,4 @@
-"""The models as one browser wants them drawn."""
+"""Draws the models with one browser's display settings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class _Layer:
 
 
 class Look:
-    """Adds to a browser's own scene what differs from what all are sent.
+    """Adds a browser's differences from the shared scene.
 
     Args:
         seat: The browser.
@@ -33,11 +33,11 @@ class Look:
         self._through: str | None = None
 
     def show(self, models: Mapping[str, ModelView], *, through: str | None = None) -> None:
-        """Draws models as the toggles say.
+        """Draws models with the current toggles.
 
         Args:
-            models: All of them, by name.
-            through: The model that clicks pass through, as a gizmo stands in it.
+            models: All models, by name.
+            through: The model that clicks pass through, because a gizmo is inside it.
         """
         wanted: dict[tuple[str, str], tuple[ModelView, object, Callable[[], list[Any]]]] = {}
         for name, view in models.items():
@@ -64,7 +64,7 @@ class Look:
     def _styles(
         self, view: ModelView, clickable: bool
     ) -> dict[str, tuple[object, Callable[[], list[Any]]]]:
-        """Of each layer, how it is drawn, and how it is added; a style of None is not drawn."""
+        """The style of each layer, and a function that adds it; a style of None is not drawn."""
         display: Display = self._seat.display
         scene = self._seat.scene
         opacity = _SEE_THROUGH if display.transparent else 1.0

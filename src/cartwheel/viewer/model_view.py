@@ -1,4 +1,4 @@
-"""One model in the browser's scene: a frame for each link, and what hangs on it."""
+"""A model in the browser's scene: a frame for each link, with its shapes."""
 
 from __future__ import annotations
 
@@ -33,22 +33,24 @@ from cartwheel.viewer.skins import glb_of
 COLLISION: Rgba = (0.96, 0.55, 0.15, 0.45)
 INERTIA: Rgba = (0.55, 0.30, 0.75, 0.30)
 _STILL = 1e-5
-"""m, and parts of a unit quaternion: no screen shows less, and resting bodies shiver less."""
+"""Threshold for changes in m and quaternion components: smaller than a pixel, but larger than the
+jitter of resting bodies.
+"""
 
 
 class ModelView:
-    """A model's nodes, under ``/models/<name>``.
+    """The scene nodes of a model, under ``/models/<name>``.
 
-    The root node is the canonical link's frame; the other links are given in it. What is fixed
-    to that link, on a driving robot nearly everything, then moves with a single message. All
-    browsers get the links and their visual shapes; `Look` adds more to the scene of one.
+    The root node is the canonical link's frame, and the other links are relative to it. Links fixed
+    to it, which are most links of a driving robot, then move with a single message. All browsers
+    get the links and their visuals; `Look` adds parts for one browser.
 
     Args:
-        scene: viser's.
-        name: Of the model.
-        description: Its links.
-        problem: Told of what cannot be drawn.
-        clicked: viser callback for a click on the model; None where it cannot be selected.
+        scene: The viser scene.
+        name: Model name.
+        description: Description with the links.
+        problem: Called with errors about shapes that cannot be drawn.
+        clicked: viser callback for a click on the model; None if it cannot be selected.
     """
 
     def __init__(
@@ -70,7 +72,7 @@ class ModelView:
             i for i, link in enumerate(description.links) if link.name == description.canonical_link
         )
         self.size = _size_of(description)
-        """m, of its largest extent: for things drawn in proportion."""
+        """Largest extent, m, used to scale drawn elements."""
         self._frames = [self._frame(link) for link in description.links]
         self._shown = np.full((len(self._frames), 7), np.nan)
         self._told: set[str] = set()
@@ -78,12 +80,12 @@ class ModelView:
 
     @property
     def visual_nodes(self) -> list[str]:
-        """The scene nodes of the visual shapes."""
+        """Scene nodes of the visuals."""
         return [handle.name for handle in self._visuals]
 
     @property
     def solids(self) -> list[Any]:
-        """viser's handles of the visual shapes that take clicks."""
+        """viser handles of the clickable visuals."""
         names = (handle.name.rsplit("/", 1)[1] for handle in self._visuals)
         return [
             handle
@@ -92,13 +94,13 @@ class ModelView:
         ]
 
     def path(self, link: str) -> str:
-        """The scene node of a link's frame."""
+        """Scene node of a link's frame."""
         if link == self.description.canonical_link:
             return self._root
         return f"{self._root}/{_node(link)}"
 
     def move(self, positions: Array, quaternions: Array) -> bool:
-        """Puts the links where they are; sends only what moved, and says whether anything did.
+        """Moves the links, sends only changes, and returns whether anything changed.
 
         Args:
             positions: Shape (links, 3), m, in the world.
@@ -116,10 +118,10 @@ class ModelView:
         return bool(len(moved))
 
     def remove(self) -> None:
-        """Takes everything out of the scene."""
+        """Removes all nodes from the scene."""
         self._frames[self._canonical].remove()
 
-    # -- layers, in the scene of all or of one browser
+    # -- layers, in the shared scene or for one browser
 
     def add_visuals(
         self,
@@ -129,12 +131,12 @@ class ModelView:
         wireframe: bool = False,
         clickable: bool = True,
     ) -> list[Any]:
-        """Adds the visual shapes; in a browser's own scene they hide those that all have.
+        """Adds the visuals; in a browser's own scene, they replace the shared ones.
 
         Args:
-            scene: viser's.
-            opacity: Of what is opaque otherwise; the ground stays as it is.
-            wireframe: Draws edges only.
+            scene: The viser scene.
+            opacity: Opacity of opaque shapes except the ground.
+            wireframe: Draw only edges.
             clickable: Whether a click selects the model.
         """
         nodes = []
@@ -162,7 +164,7 @@ class ModelView:
             surfaces: list[Surface] = []
             for collision in link.collisions:
                 if isinstance(collision.shape, Plane):
-                    continue  # without end: it would only colour the ground
+                    continue  # infinite planes would only colour the ground
                 try:
                     surfaces += surfaces_of_collision(collision, COLLISION)
                 except CartwheelError as error:
@@ -175,7 +177,7 @@ class ModelView:
         return nodes
 
     def add_inertias(self, scene: Any) -> list[Any]:
-        """Adds the centres of mass, and boxes of the same inertia."""
+        """Adds the centres of mass, and boxes with the same inertia."""
         nodes = []
         for link in self.description.links:
             if link.inertial is None or self.description.static:
@@ -207,14 +209,14 @@ class ModelView:
         return nodes
 
     def add_names(self, scene: Any) -> list[Any]:
-        """Adds the names of the links."""
+        """Adds the link names."""
         return [
             scene.add_label(f"{self.path(link.name)}/name", link.name, font_screen_scale=0.75)
             for link in self._shown_links()
         ]
 
     def add_axes(self, scene: Any) -> list[Any]:
-        """Adds the frames of the links."""
+        """Adds the link frames."""
         length = min(0.4, max(0.04, 0.18 * self.size))
         return [
             scene.add_frame(
@@ -230,7 +232,7 @@ class ModelView:
         return () if self.description.static else self.description.links
 
     def _surfaces(self, link: Link, kind: str) -> list[Surface]:
-        # A plane that is the ground receives shadows and takes no clicks: it is everywhere.
+        # A ground plane receives shadows but no clicks, because it is everywhere.
         surfaces: list[Surface] = []
         for visual in link.visuals:
             if isinstance(visual.shape, Plane) != (kind == "ground"):
@@ -242,7 +244,7 @@ class ModelView:
         return surfaces
 
     def _say(self, error: CartwheelError) -> None:
-        """Tells once of what cannot be drawn, however many browsers ask for it."""
+        """Reports a shape that cannot be drawn once, for all browsers."""
         if str(error) not in self._told:
             self._told.add(str(error))
             self._problem(error)
@@ -261,13 +263,14 @@ class ModelView:
         alpha = surface.rgba[3] * opacity
         common: dict[str, Any] = {
             "cast_shadow": not ground and surface.rgba[3] >= 1.0,
-            # On a large plane the browser's cascades of shadows differ in darkness; a fixed one
-            # has no seams.
+            # On a large plane, the browser's shadow cascades differ in darkness; a fixed value
+            # avoids seams.
             "receive_shadow": 0.28 if ground else True,
-            # Just below the height that it collides at, and below the grid that lies there.
+            # Just below its collision height, and below the grid.
             "position": (0.0, 0.0, -0.004 if ground else 0.0),
         }
-        # The browser draws images neither see-through nor as wires: their mean colour then.
+        # The browser cannot draw images transparent or as wireframes: use their mean colour
+        # instead.
         if surface.picture is not None and opacity >= 1.0 and not wireframe:
             handle = scene.add_glb(node, glb_of(surface), **common)
         else:
@@ -290,12 +293,12 @@ class ModelView:
 
 
 def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:
-    """The uniform box of the same mass and inertia: its pose in the link, its edges in m."""
+    """The uniform box with the same mass and inertia: its pose in the link, and its edges, m."""
     moments, axes = np.linalg.eigh(tensor(inertial.diagonal, inertial.products))
     if np.linalg.det(axes) < 0:
         axes[:, 2] = -axes[:, 2]
     total = float(moments.sum())
-    # I_x = m (b² + c²) / 12 and its kin, solved for a².
+    # I_x = m (b² + c²) / 12 and the same for y and z, solved for a².
     edges = [
         math.sqrt(max(1e-8, 6 * (total - 2 * moment) / inertial.mass))
         for moment in moments.tolist()
@@ -305,7 +308,7 @@ def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:
 
 
 def footprint(description: RobotDescription) -> tuple[float, float]:
-    """How far it reaches from its frame's origin in the plane, and how far below it, m."""
+    """Maximum extent from the frame's origin in the plane, and depth below the origin, m."""
     found = bounds(description)
     if found is None:
         return 0.1, 0.0
@@ -320,7 +323,7 @@ def _size_of(description: RobotDescription) -> float:
 
 
 def bounds(description: RobotDescription) -> tuple[Any, Any] | None:
-    """The corners of a box around its collisions, in its frame, m; None where it has none."""
+    """Corners of the bounding box of all collisions in the model frame, m; None without any."""
     corners: list[Surface] = []
     for link in description.links:
         for collision in link.collisions:
@@ -329,13 +332,13 @@ def bounds(description: RobotDescription) -> tuple[Any, Any] | None:
             try:
                 found = surfaces_of_collision(collision, COLLISION)
             except CartwheelError:
-                continue  # said already by the view that draws it
+                continue  # already reported by the view that draws it
             corners += [Surface(place(link.pose, s.vertices), s.faces, s.rgba) for s in found]
     return bounds_of(corners)
 
 
 def _within(positions: Array, quaternions: Array, root: int) -> tuple[Array, Array]:
-    """All frames in that of row `root`, which itself stays in the world."""
+    """All frames relative to the frame in row `root`, which stays relative to the world."""
     w, x, y, z = quaternions[root]
     turn = matrix_from_quat((x, y, z, w))
     inside = (positions - positions[root]) @ turn
@@ -349,14 +352,14 @@ def _within(positions: Array, quaternions: Array, root: int) -> tuple[Array, Arr
         ],
         axis=1,
     )
-    # q and -q are one rotation: one of the two, or a still link would seem to turn.
+    # q and -q are the same rotation: normalize the sign, or a resting link seems to rotate.
     turned[turned[:, 0] < 0] *= -1
     inside[root], turned[root] = positions[root], quaternions[root]
     return inside, turned
 
 
 def _lighten(rgba: Rgba) -> Rgba:
-    """Half way to white: the ground is the stage, and shadows and dark robots show on it."""
+    """A colour halfway to white, so that shadows and dark robots are visible on the ground."""
     red, green, blue, alpha = rgba
     return ((red + 1) / 2, (green + 1) / 2, (blue + 1) / 2, alpha)
 
@@ -367,5 +370,5 @@ def _rgb(rgba: Sequence[float]) -> tuple[int, int, int]:
 
 
 def _node(name: str) -> str:
-    """A name as one level of viser's scene tree."""
+    """A name as one level in viser's scene tree."""
     return name.replace("/", "|") or "_"

@@ -1,4 +1,4 @@
-"""What is drawn besides the models: camera pyramids, the trail, the camera that follows."""
+"""Camera pyramids, the robot's trail, and the following camera."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from cartwheel.viewer.scene_view import SceneView
 from cartwheel.viewer.seat import Seat
 
 _TRAIL_STEP = 0.03
-"""m between two points of the trail."""
+"""Distance between two trail points, m."""
 _TRAIL_POINTS = 1500
 _OPTICAL = Pose.from_xyz_rpy((0, 0, 0), (-math.pi / 2, 0, -math.pi / 2))
-"""REP 103's optical axes, z ahead and y down, within the camera's x-ahead ones."""
+"""REP 103's optical axes (z ahead, y down) in the camera's frame with x ahead."""
 
 
 class Frustums:
-    """What the cameras see, as pyramids with the image at their end; browsers may hide them.
+    """Pyramids with the cameras' images, which each browser can hide.
 
     Args:
-        page: To draw on.
-        scene: With the models.
+        page: The page to draw on.
+        scene: The scene with the models.
     """
 
     def __init__(self, page: Page, scene: SceneView) -> None:
@@ -39,9 +39,9 @@ class Frustums:
         self._image_due = Every(4)
 
     def show(self) -> None:
-        """Makes the pyramids those of the models that stand there."""
+        """Updates the pyramids to the current models."""
         present = self._scene.models
-        # Models that have left took their pyramids with them.
+        # The pyramids of deleted models were removed with them.
         self._pyramids = {k: v for k, v in self._pyramids.items() if k[0] in present}
         wanted: dict[tuple[str, str, str], tuple[RobotDescription, Pose, CameraIntrinsics]] = {}
         for name, view in self._scene.models.items():
@@ -61,11 +61,11 @@ class Frustums:
 
     @property
     def nodes(self) -> list[str]:
-        """Their scene nodes."""
+        """Scene nodes of the pyramids."""
         return [pyramid.name for pyramid in self._pyramids.values()]
 
     def show_image(self, topic: str, picture: Any) -> None:
-        """Hangs a camera's image into its pyramid, a few times a second."""
+        """Shows a camera's image in its pyramid, a few times per second."""
         if not self._pyramids or not self._image_due(time.monotonic()):
             return
         parts = topic.split("/")
@@ -94,14 +94,14 @@ class Frustums:
 
 
 class Trail:
-    """Where the robot has been, the model that the page is about."""
+    """The path of the page's robot."""
 
     def __init__(self) -> None:
         self.points: deque[Array] = deque(maxlen=_TRAIL_POINTS)
         self._time_ns = 0
 
     def update(self, snapshot: Snapshot, pose: Pose | None) -> None:
-        """Goes on to where the robot is; None where there is none."""
+        """Extends the trail; `pose` is None without a robot."""
         if snapshot.time_ns < self._time_ns:
             self.points.clear()
         self._time_ns = snapshot.time_ns
@@ -113,11 +113,11 @@ class Trail:
 
 
 class Overlays:
-    """One browser's trail, and its camera where that follows the robot.
+    """A browser's trail, and its camera if it follows the robot.
 
     Args:
         seat: The browser.
-        trail: Of the robot.
+        trail: The robot's trail.
     """
 
     def __init__(self, seat: Seat, trail: Trail) -> None:
@@ -129,11 +129,11 @@ class Overlays:
         self._followed: Array | None = None
 
     def update(self, pose: Pose | None, now: float) -> None:
-        """Moves the trail and the following camera on.
+        """Updates the trail and the following camera.
 
         Args:
-            pose: The robot's; None where there is none.
-            now: s of wall time.
+            pose: The robot's pose; None without a robot.
+            now: Wall time, s.
         """
         self._draw_trail(now)
         self._follow(None if pose is None else np.array(pose.position))
@@ -149,7 +149,7 @@ class Overlays:
             return
         self._drawn = points[-1]
         flat = np.array(points, dtype=np.float32)
-        flat[:, 2] = 0.012  # on the ground, where the robot has been and not what it hides
+        flat[:, 2] = 0.012  # on the ground, so that the trail does not hide the robot
         segments = np.stack([flat[:-1], flat[1:]], axis=1)
         self._line = self._seat.scene.add_line_segments(
             "/trail", segments, (240, 140, 0), thickness=0.015
@@ -165,7 +165,7 @@ class Overlays:
         self._followed = place
         client = self._seat.client
         with client.atomic():
-            # Position first: setting it would turn the view, and the target turns it back.
+            # Position first: setting it rotates the view, and setting the target rotates it back.
             position, target = client.camera.position + step, client.camera.look_at + step
             client.camera.position = position
             client.camera.look_at = target

@@ -1,4 +1,4 @@
-"""The page: one web server, one thread that does all of the viewer's work, errors as notes."""
+"""The web interface's server, the thread that does all of its work, and error notifications."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ _log = logging.getLogger(__name__)
 _FOLDER = Path(__file__).parent
 _KEEP_SECONDS = 8.0
 _BEAT = 1.0
-"""s between two signs of life; `page.js` waits for ten of them."""
+"""Interval of heartbeats, s; `page.js` disconnects after ten missing ones."""
 _LIGHTLY: Any = "f9"
-"""Key of the command that a browser without a GPU gives by itself; viser's types know no F9."""
+"""Key for the command that a browser without a GPU sends itself; viser's types do not include F9.
+"""
 
 T = TypeVar("T")
 
@@ -36,17 +37,17 @@ def _title(code: Code, kind: str = "Error") -> str:
 
 
 class Page:
-    """What the parts of the viewer share.
+    """Shared services of the viewer's parts.
 
-    viser calls back on a pool of threads and the simulation on its own; both only leave a
-    note here, and `run` does what they say, one after the other, in order.
+    viser calls callbacks on a thread pool and the simulation on its own thread. Both only queue
+    jobs here, and `run` executes them in order.
 
     Args:
-        listener: Where browsers come.
-        access: Who of them may.
-        title: Of the browser's tab.
-        keys: That are commands; every other key counts as ``k``.
-        refused: Takes the origin of each web page that is refused, from any thread.
+        listener: The socket for browsers.
+        access: Who may connect.
+        title: Title of the browser's tab.
+        keys: Keys with commands; all other keys count as ``k``.
+        refused: Called with the origin of each rejected web page, on any thread.
     """
 
     def __init__(
@@ -58,38 +59,38 @@ class Page:
         keys: tuple[str, ...] = (),
         refused: Callable[[str], None] = lambda _: None,
     ) -> None:
-        # 0.2 s that must not come before the simulation's first clock.
+        # The import takes 0.2 s, which must not delay the simulation's first clock message.
         import viser
         from viser import _messages
 
         from cartwheel.gate.gate import Gate
 
         self.viser = viser
-        # Whatever knocks at the port, a scanner say: its errors are not for the terminal.
+        # Errors of arbitrary connections, such as port scanners, are not printed in the terminal.
         logging.getLogger("websockets").addHandler(logging.NullHandler())
         host = hidden_host()
         self.server: Any = _quietly(lambda: viser.ViserServer(host, 0, verbose=False))
         self._gate = Gate(listener, access, (host, self.server.get_port()), refused=refused)
         self.url = access.url("http", listener.getsockname()[1])
-        """Where browsers find it."""
+        """URL for browsers."""
         self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
         self._jobs = queue.SimpleQueue()
         self.inbox = Inbox(self.server, self._jobs.qsize, self._refuse, self._silent)
         self.gui: Any = self.server.gui
         self.scene: Any = self.server.scene
         self.clients: frozenset[int] = frozenset()
-        """Browsers that are connected now."""
+        """The connected browsers."""
         self.on_clients: Callable[[], None] = lambda: None
         """Called when `clients` has changed."""
         self.on_silence: Callable[[int], None] = lambda _: None
-        """Called with a browser's number when it does not answer any more, though connected."""
+        """Called with the number of a connected browser that no longer responds."""
         self._client: int | None = None
         self.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(37, 99, 176)
         )
         self.gui.set_panel_label(title)
-        # viser has a message to run a script of one's own in every browser that comes, though
-        # no method for it; its plots are loaded that way.
+        # viser can send a script to each new browser, but only through an internal message; it
+        # loads its plots this way.
         self.gui._websock_interface.queue_message(
             _messages.RunJavascriptMessage(source=_script(title, keys))
         )
@@ -107,13 +108,14 @@ class Page:
         self._cookie = f"cartwheel-view-{listener.getsockname()[1]}"
         self.server.on_client_connect(self._arrived)
         self.server.on_client_disconnect(self.on(self._disconnected))
-        # On viser's own loop: no other thread takes Python's lock from the simulation.
+        # On viser's own loop, so that no additional thread competes with the simulation for the
+        # GIL.
         self._gate.start(self.server.get_event_loop())
 
     # -- work
 
     def run(self, stopped: threading.Event) -> None:
-        """Does what was posted, until `stopped`."""
+        """Executes posted jobs until `stopped` is set."""
         while not stopped.is_set():
             try:
                 job = self._jobs.get(timeout=_BEAT if self.clients else None)
@@ -132,26 +134,26 @@ class Page:
                 self.show(VIEWER_FAULT.because("unexpected error in the viewer", error))
 
     def wake(self) -> None:
-        """Lets `run` look whether it is to stop."""
+        """Wakes `run` to check whether to stop."""
         self._jobs.put(None)
 
     def post(self, function: Callable[[], object], *, client: int | None = None) -> None:
-        """Runs a function on the page's thread, soon; from any thread.
+        """Queues a function for the page's thread. Thread-safe.
 
         Args:
-            function: What to do.
-            client: The browser that asked for it, and that is told when it fails; None is all.
+            function: The function.
+            client: The browser to notify about errors; None for all.
         """
         self._jobs.put((function, client))
 
     def on(self, function: Callable[[Any], object]) -> Callable[[Any], Coroutine[Any, Any, None]]:
-        """A callback for viser that runs `function(event)` on the page's thread.
+        """A viser callback that runs `function(event)` on the page's thread.
 
-        It does nothing for a control that has been removed by then, as its browser left.
+        It does nothing if the control was removed meanwhile because its browser left.
         """
 
-        # A coroutine, as viser runs those in the order of their messages; plain functions go
-        # to a pool, where a quick "stop" may overtake the "go" before it.
+        # viser runs coroutines in the order of their messages. Plain functions run in a pool, where
+        # a "stop" may overtake the preceding "go".
         async def callback(event: Any) -> None:
             self.post(
                 lambda: _is_removed(event) or function(event),
@@ -163,10 +165,11 @@ class Page:
     def on_value(
         self, function: Callable[[Any, Any], object]
     ) -> Callable[[Any], Coroutine[Any, Any, None]]:
-        """Like `on`, for `function(event, value)`: the value that the control had just been given.
+        """Like `on`, for `function(event, value)` with the control's value at the time of the
+        event.
 
-        By the time the page's thread comes to it, a panel that follows the simulation may have
-        set the control back.
+        When the page's thread runs the function, a panel that follows the simulation may have reset
+        the control.
         """
 
         async def callback(event: Any) -> None:
@@ -181,18 +184,20 @@ class Page:
     def do(
         self, function: Callable[..., object], *arguments: object
     ) -> Callable[[Any], Coroutine[Any, Any, None]]:
-        """A callback for viser that runs `function(*arguments)` on the page's thread."""
+        """A viser callback that runs `function(*arguments)` on the page's thread."""
         return self.on(lambda _: function(*arguments))
 
     def then(self, future: Any, function: Callable[[Any], None] = lambda _: None) -> None:
-        """Runs `function(result)` on the page's thread when a simulation's answer is there."""
+        """Runs `function(result)` on the page's thread when the simulation's response arrives."""
         client = self._client
         future.add_done_callback(
             lambda done: self.post(lambda: function(done.result()), client=client)
         )
 
     def _beat(self, now: float) -> None:
-        """Lets the browsers know that they are still connected, also while nothing changes."""
+        """Sends heartbeats to the browsers, so that they detect a lost connection even if nothing
+        changes.
+        """
         if self.clients and self._beat_due(now):
             self._beats += 1
             for pulse in self._pulses.values():
@@ -201,14 +206,14 @@ class Page:
     # -- toggles
 
     def toggles(self, client: int) -> str:
-        """What a browser has kept since `keep_toggles`; not checked."""
+        """The toggles that a browser stored with `keep_toggles`; not validated."""
         return self._toggles.get(client, "")
 
     def keep_toggles(self, client: Any, text: str) -> None:
-        """Lets a browser keep its toggles, over reloads and restarts of the simulation.
+        """Stores a browser's toggles across reloads and restarts of the simulation.
 
         Args:
-            client: viser's handle.
+            client: The viser client handle.
             text: Letters and dots.
         """
         from viser import _messages
@@ -219,11 +224,11 @@ class Page:
     # -- notes
 
     def show_error(self, error: CartwheelError) -> None:
-        """Tells whoever asked what went wrong."""
+        """Shows an error to the browser that caused it."""
         self.notify(_title(error.code), str(error), color="red", seconds=12.0)
 
     def show(self, diagnostic: Diagnostic) -> None:
-        """Shows an error, or a warning, to the browser that asked, or else to all."""
+        """Shows a diagnostic to the browser that caused it, or to all browsers."""
         is_error = diagnostic.severity == "error"
         hint = f"\n{diagnostic.hint}" if diagnostic.hint else ""
         self.notify(
@@ -240,14 +245,14 @@ class Page:
         color: str | None = None,
         seconds: float = _KEEP_SECONDS,
     ) -> None:
-        """A note in the corner: for the browser that asked, else for all."""
+        """Shows a notification in the browser that caused it, or in all browsers."""
         clients = self.server.get_clients()
         asked = clients.get(self._client) if self._client is not None else None
         for client in [asked] if asked is not None else clients.values():
             client.add_notification(title, body, color=color, auto_close_seconds=seconds)
 
     def _refuse(self, client: int, reason: str) -> None:
-        """Says, from viser's thread, why a file was not taken."""
+        """Shows why a file was rejected; called on viser's thread."""
         self.post(partial(self.show, UPLOAD_REFUSED.diagnostic(reason)), client=client)
 
     def _silent(self, client: int) -> None:
@@ -256,11 +261,13 @@ class Page:
     # -- browsers
 
     async def _arrived(self, client: Any) -> None:
-        """Comes before all else of a browser, on viser's thread, which also sees it leave."""
-        # There viser would remove the browser's controls while the page's thread still writes to
-        # them, which raises: that thread lets go of them itself, in `_disconnected`.
+        """Runs before anything else for a browser, on viser's thread, which also handles its
+        departure.
+        """
+        # viser would remove the browser's controls there while the page's thread still writes to
+        # them, which raises an error. The page's thread removes them in `_disconnected`.
         client.gui._release_cross_scope_nesting = lambda: None
-        # What is still written to a browser that is just leaving is no fault.
+        # Writing to a browser that is just disconnecting is not an error.
         client._websock_connection.get_message_buffer()._warned_push_after_done = True
         port = self.server._websock_server._live_connections[client.client_id].remote_address[1]
         toggles = self._gate.cookie(port, self._cookie)
@@ -284,19 +291,19 @@ class Page:
             client.gui._release_cross_scope_nesting()
 
     def _draw_lightly(self, event: Any) -> None:
-        """For the browser that asks: the others may have a GPU."""
+        """Only for the requesting browser: others may have a GPU."""
         self._lightly ^= {event.client_id}
         lightly = event.client_id in self._lightly
         event.client.scene.configure_default_lights(enabled=True, cast_shadow=not lightly)
 
     def close(self) -> None:
-        """Ends the web server."""
+        """Stops the web server."""
         self._gate.close()
         _quietly(self.server.stop)
 
 
 def _is_removed(event: Any) -> bool:
-    """Whether the control that an event is about is no more."""
+    """Whether the event's control has been removed."""
     target = getattr(event, "target", None)
     return bool(target is not None and target._impl.removed)
 
@@ -315,7 +322,7 @@ def _script(title: str, keys: tuple[str, ...]) -> str:
 
 
 def _quietly(function: Callable[[], T]) -> T:
-    """Without viser's own banner: the command line says where the page is."""
+    """Suppresses viser's banner: the command line prints the URL."""
     import rich
 
     console = rich.get_console()

@@ -1,4 +1,4 @@
-"""The panels of a recording: those of a session that only show, and a time line."""
+"""The panels of a recording: a session's read-only panels, and a timeline."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cartwheel.viewer.seat import Seat
 
 
 class PlayDesk(Desk):
-    """The page of a recording."""
+    """The web interface of a recording."""
 
     def build_main(self) -> list[Panel]:
         return [TimelinePanel(self.stage)]

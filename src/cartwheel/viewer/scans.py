@@ -22,19 +22,19 @@ from cartwheel.viewer.tap import Tap
 SCAN = "sensor_msgs/msg/LaserScan"
 CLOUD = "sensor_msgs/msg/PointCloud2"
 MOST_POINTS = 20_000
-"""Of one cloud; a larger one is thinned."""
+"""Maximum points in a cloud; larger clouds are thinned."""
 _RATE = 10.0
-"""Hz of wall time."""
+"""Update rate, Hz of wall time."""
 _SNAPSHOTS = 20
 _COLORS = ((224, 49, 49), (25, 113, 194), (47, 158, 68), (156, 54, 181))
 _FLOAT32 = 7
 
 
 class Scans(Panel):
-    """Points in the scene for each topic of the kinds that are switched on; it has no panel.
+    """Points in the scene for each enabled topic; it has no visible panel.
 
-    A scan is drawn in the world from where its link was at its stamp, as rviz does, so that
-    what stands still stays in place while the robot turns.
+    A scan is drawn in the world relative to its link's pose at the scan's timestamp, as in rviz, so
+    that fixed objects stay in place while the robot turns.
     """
 
     def __init__(self, stage: Stage) -> None:
@@ -70,7 +70,7 @@ class Scans(Panel):
                 self._draw(topic, tap.newest)
 
     def _choose(self) -> None:
-        """Reads what is switched on; a topic that is not read is not measured."""
+        """Subscribes to the enabled topics; sensors without subscribers are not measured."""
         wanted = set()
         for seat in self.stage.seats.values():
             on = {SCAN: seat.display.scans, CLOUD: seat.display.clouds}
@@ -138,12 +138,12 @@ def _node(topic: str) -> str:
 
 
 def row_of_frame(links: Sequence[tuple[str, str]], model: str, frame: str) -> int | None:
-    """The row of the link that a frame id names, with or without a prefix; None where none does.
+    """The row of the link with a frame id, with or without a prefix; None if there is none.
 
     Args:
         links: Model and link of each row.
-        model: Whose links are meant.
-        frame: Of a message.
+        model: Model name.
+        frame: Frame id in the message.
     """
     bare = frame.rsplit("/", 1)[-1]
     for name in (frame, bare):
@@ -153,7 +153,7 @@ def row_of_frame(links: Sequence[tuple[str, str]], model: str, frame: str) -> in
 
 
 def points_of_scan(message: Any) -> Array:
-    """Where the rays of a LaserScan ended, in its frame, shape (n, 3); those that did."""
+    """End points of a LaserScan's rays in its frame, shape (n, 3), for rays with a hit."""
     ranges = np.asarray(message.ranges, dtype=float)
     angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
     hit = np.isfinite(ranges)
@@ -164,7 +164,7 @@ def points_of_scan(message: Any) -> Array:
 
 
 def points_of(message: Any) -> Array:
-    """The points of a PointCloud2 in its frame, shape (n, 3), at most `MOST_POINTS`."""
+    """Points of a PointCloud2 in its frame, shape (n, 3), at most `MOST_POINTS`."""
     offsets = {field.name: field.offset for field in message.fields if field.datatype == _FLOAT32}
     if not {"x", "y", "z"} <= set(offsets):
         return np.zeros((0, 3))

@@ -1,4 +1,4 @@
-"""The world in the browser: models come and go, links move, the light is right."""
+"""The world in the browser: models, moving links, lighting."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ GRID = "/grid"
 
 
 class SceneView:
-    """Follows the snapshots of a simulation.
+    """Shows the snapshots of a simulation.
 
     Args:
-        page: To draw on.
+        page: The page to draw on.
     """
 
     def __init__(self, page: Page) -> None:
         self._page = page
         self.clicked: Callable[[int, str], None] = lambda _, __: None
-        """Called with a browser's number and a model's name when it is clicked there."""
+        """Called with a browser's number and the name of the clicked model."""
         self.models: dict[str, ModelView] = {}
         self.snapshot: Snapshot | None = None
-        """The newest shown."""
+        """The latest snapshot shown."""
         self._version = -1
         self._rows: dict[str, slice] = {}
         set_stage(page)
         add_grid(page)
 
     def update(self, snapshot: Snapshot) -> bool:
-        """Shows a state; says whether the set of models has changed."""
+        """Shows a state; returns whether the set of models has changed."""
         changed = snapshot.scene.version != self._version
         with self._page.server.atomic():
             if changed:
@@ -47,7 +47,7 @@ class SceneView:
         return changed
 
     def pose(self, name: str) -> Pose | None:
-        """Where a model's frame is; None where there is no such model."""
+        """Pose of a model's frame; None if the model does not exist."""
         if self.snapshot is None or name not in self._rows:
             return None
         return pose_in(self.snapshot, name)
@@ -80,7 +80,7 @@ class SceneView:
 
 
 def pose_in(snapshot: Snapshot, name: str) -> Pose:
-    """Where a model's frame is in a snapshot."""
+    """Pose of a model's frame in a snapshot."""
     placed = next(model for model in snapshot.scene.models if model.name == name)
     row = snapshot.scene.links.index((name, placed.description.canonical_link))
     x, y, z = snapshot.positions[row].tolist()
@@ -89,7 +89,7 @@ def pose_in(snapshot: Snapshot, name: str) -> Pose:
 
 
 def set_stage(page: Page) -> None:
-    """Light from above and behind, a soft fill, a horizon: so that shapes and edges read well."""
+    """Light from above and behind, a soft fill light and a horizon, to make shapes easy to see."""
     page.scene.world_axes.visible = False
     page.scene.configure_default_lights(enabled=True, cast_shadow=True)
     page.scene.configure_environment_map("park", environment_intensity=0.35)
@@ -100,7 +100,7 @@ def set_stage(page: Page) -> None:
 
 
 def add_grid(page: Page) -> None:
-    """Metres, and halves of them, on the ground."""
+    """A ground grid with lines every half metre and every metre."""
     page.scene.add_grid(
         GRID,
         infinite_grid=True,

@@ -1,4 +1,4 @@
-"""One browser at the page: what it alone sees, and what it alone has chosen."""
+"""A connected browser: its own view and choices."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from cartwheel.viewer.page import Page
 
 
 class Seat:
-    """A browser that is connected.
+    """A connected browser.
 
-    What all browsers share is sent once for all of them. What differs from it is made in this
-    browser's own scene, where a node hides that of the same name that all have.
+    Shared nodes are sent once for all browsers. Differences are drawn in this browser's own scene,
+    where a node hides the shared node with the same name.
 
     Args:
-        page: That it shows.
-        client: viser's handle.
+        page: The page that it shows.
+        client: The viser client handle.
     """
 
     def __init__(self, page: Page, client: Any) -> None:
@@ -29,11 +29,11 @@ class Seat:
         self._blanks: dict[str, dict[str, Any]] = {}
 
     def hide(self, kind: str, nodes: Iterable[str]) -> None:
-        """Hides these of the nodes that all have, and no others of their kind.
+        """Hides these shared nodes, and shows all others of the same kind.
 
         Args:
-            kind: A name for the nodes that are given together.
-            nodes: Their names.
+            kind: A name for the set of nodes.
+            nodes: Node names.
         """
         blanks = self._blanks.setdefault(kind, {})
         wanted = set(nodes)
@@ -43,13 +43,13 @@ class Seat:
             blanks[name] = self.scene.add_frame(name, show_axes=False)
 
     def set_clickable(self, handles: Iterable[Any], clickable: bool) -> None:
-        """Lets clicks on nodes that all have pass through them in this browser.
+        """Sets whether clicks on shared nodes select them or pass through in this browser.
 
         Args:
-            handles: viser's, of the nodes.
-            clickable: Whether they take clicks.
+            handles: viser handles of the nodes.
+            clickable: Whether they receive clicks.
         """
-        # viser has no method for it: bindings are of a node, and nodes here are of all browsers.
+        # viser has no method for this: click bindings belong to nodes, and these are shared.
         from viser import _messages
 
         for handle in handles:

@@ -1,4 +1,4 @@
-"""Shapes of a description as coloured triangles for the browser."""
+"""Shapes as coloured triangles for the browser."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
 DEFAULT: Rgba = (0.72, 0.74, 0.76, 1.0)
-"""Of what states no colour."""
+"""Colour of shapes without a colour."""
 _AROUND = 32
-"""Corners of a round thing: smooth at the size of a wheel, light at the size of a fleet."""
+"""Segments in a circle: smooth enough for a wheel, light enough for many robots."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,16 +51,16 @@ class Picture:
     """An image on a surface."""
 
     image: Path | bytes
-    """A file, or a file's contents."""
+    """A file, or its contents."""
     uv: Floats
-    """Of each vertex, from the image's lower left corner, shape (n, 2)."""
+    """Texture coordinates from the image's lower left corner, shape (n, 2)."""
     tint: Rgba
-    """What its colours are multiplied by."""
+    """Factor for its colours."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """Triangles of one colour; vertices are shared where the surface is to look smooth."""
+    """Triangles with one colour; smooth surfaces share vertices."""
 
     vertices: Floats
     """Shape (n, 3), m."""
@@ -68,14 +68,14 @@ class Surface:
     """Shape (m, 3), counter-clockwise from outside."""
     rgba: Rgba
     picture: Picture | None = None
-    """What lies on it; `rgba` is its mean then."""
+    """The image on the surface; `rgba` is then its mean colour."""
 
 
 def surfaces_of_visual(visual: Visual) -> list[Surface]:
-    """A visual in its link's frame.
+    """Surfaces of a visual in its link's frame.
 
     Raises:
-        MeshError: Its file cannot be used.
+        MeshError: The file cannot be used.
     """
     opacity = 1.0 - visual.transparency
     return [
@@ -89,10 +89,10 @@ def surfaces_of_visual(visual: Visual) -> list[Surface]:
 
 
 def surfaces_of_collision(collision: Collision, rgba: Rgba) -> list[Surface]:
-    """A collision in its link's frame, all in one colour.
+    """Surfaces of a collision in its link's frame, with a single colour.
 
     Raises:
-        MeshError: Its file cannot be used.
+        MeshError: The file cannot be used.
     """
     return [
         Surface(place(collision.pose, surface.vertices), surface.faces, rgba)
@@ -101,7 +101,7 @@ def surfaces_of_collision(collision: Collision, rgba: Rgba) -> list[Surface]:
 
 
 def merge(surfaces: Iterable[Surface]) -> list[Surface]:
-    """One surface for each colour and image: few large meshes are drawn faster than many small."""
+    """One surface per colour and image: few large meshes are drawn faster than many small ones."""
     by_look: dict[Hashable, list[Surface]] = {}
     for surface in surfaces:
         picture = surface.picture
@@ -128,7 +128,7 @@ def merge(surfaces: Iterable[Surface]) -> list[Surface]:
 
 
 def bounds_of(surfaces: Iterable[Surface]) -> tuple[Floats, Floats] | None:
-    """The lowest and highest corner of all of them, m; None for nothing."""
+    """Lowest and highest corner of all surfaces, m; None if there are none."""
     clouds = [surface.vertices for surface in surfaces if len(surface.vertices)]
     if not clouds:
         return None
@@ -137,7 +137,7 @@ def bounds_of(surfaces: Iterable[Surface]) -> tuple[Floats, Floats] | None:
 
 
 def place(pose: Pose, vertices: Floats) -> Floats:
-    """Points of a frame in the frame that holds it."""
+    """Transforms points from a frame to its parent frame."""
     if pose == Pose():
         return vertices
     turned = vertices @ matrix_from_quat(pose.orientation).T.astype(np.float32)
@@ -185,7 +185,7 @@ def _mean_colour(image: Path | bytes) -> Rgba | None:
 
 @lru_cache(maxsize=256)
 def triangles_of(shape: Shape) -> tuple[Floats, Ints]:
-    """A primitive's vertices and faces in its own frame; edges that are sharp share no vertex."""
+    """Vertices and faces of a primitive in its own frame; sharp edges share no vertices."""
     match shape:
         case Box(size=size):
             return _box(size)
@@ -232,7 +232,7 @@ def _box(size: tuple[float, float, float]) -> tuple[Floats, Ints]:
 
 
 def _lathe(profile: list[tuple[float, float] | None]) -> tuple[Floats, Ints]:
-    """A profile of (radius, z), upwards on the outside, turned about z; None parts two pieces."""
+    """A profile of (radius, z), upwards on the outside, rotated about z; None separates pieces."""
     angles = np.linspace(0, 2 * math.pi, _AROUND, endpoint=False)
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     vertices: list[NDArray[np.float64]] = []

@@ -1,4 +1,4 @@
-"""Surfaces with an image on them, as the browser reads them."""
+"""Textured surfaces in the browser's file format."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cartwheel.description.pictures import thumbnail
 from cartwheel.viewer.shapes import Surface
 
 _LARGEST = 1024
-"""Pixels of an image's longer edge: a browser without a GPU has to draw it too."""
+"""Maximum image edge, pixels, because browsers without a GPU must also draw it."""
 
 
 def glb_of(surface: Surface) -> bytes:
-    """A surface with its image, as the browser reads it.
+    """A surface with its image as a GLB file.
 
     Raises:
         PictureError: The image cannot be read.
@@ -26,7 +26,7 @@ def glb_of(surface: Surface) -> bytes:
     visual: Any = trimesh.visual
     picture = surface.picture
     assert picture is not None
-    # glTF's factors are of light, and not of what a screen is sent for it.
+    # Factors in glTF are linear, not gamma-encoded.
     factor = [*(channel**2.2 for channel in picture.tint[:3]), 1.0]
     material = visual.material.PBRMaterial(
         baseColorTexture=_reduced(picture.image),
@@ -47,6 +47,6 @@ def glb_of(surface: Surface) -> bytes:
 @lru_cache(maxsize=8)
 def _reduced(source: Path | bytes) -> Any:
     reduced = thumbnail(source, _LARGEST)
-    # By this name it is written into the file: a photograph takes a tenth of what it would as PNG.
+    # The exporter uses this format: a photograph needs a tenth of the size as a JPEG.
     reduced.format = "JPEG"
     return reduced

@@ -1,4 +1,4 @@
-"""The middle of the page: the scene, what is drawn over it, and which robot it is about."""
+"""The scene, its overlays and the selected robot, shared by the panels."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from cartwheel.viewer.seat import Seat
 
 
 class Stage:
-    """What the panels share.
+    """Shared state of the panels.
 
     Args:
-        page: To build it on.
-        session: To show.
+        page: The page to build on.
+        session: The session to show.
     """
 
     def __init__(self, page: Page, session: Session) -> None:
         self.page = page
         self.session = session
         self.robot: str | None = None
-        """The model that the camera follows and that things are inserted in front of."""
+        """The model that the camera follows and in front of which models are inserted."""
         self.scene = SceneView(page)
         self.framing = Framing(page, session.simulation)
         self.frustums = Frustums(page, self.scene)
         self.trail = Trail()
         self.seats: dict[int, Seat] = {}
-        """The browsers that are connected, by number."""
+        """The connected browsers, by number."""
         self.drivers: dict[str, int] = {}
-        """The browser that was the last to drive on a topic."""
+        """The last browser that drove on each topic."""

@@ -1,4 +1,4 @@
-"""The newest message of a topic."""
+"""The latest message on a topic."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from cartwheel.graph import Graph
 
 
 class Tap:
-    """Keeps the newest message of a topic and counts them all.
+    """Keeps the latest message on a topic and counts all messages.
 
     Args:
-        graph: To subscribe to.
-        topic: Its name.
+        graph: The graph.
+        topic: Topic name.
     """
 
     def __init__(self, graph: Graph, topic: str) -> None:
@@ -26,5 +26,5 @@ class Tap:
         self.count += 1
 
     def close(self) -> None:
-        """Ends the subscription."""
+        """Closes the subscription."""
         self._subscription.close()

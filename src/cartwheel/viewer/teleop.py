@@ -1,4 +1,4 @@
-"""Driving by keys, with the keys and speeds of ROS's teleop_twist_keyboard."""
+"""Driving with the keys and speeds of ROS's teleop_twist_keyboard."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MOVES: dict[str, tuple[float, float]] = {
     ",": (-1, 0),
     ".": (-1, 1),
 }
-"""Key: direction of travel and of turning, as factors of the two speeds."""
+"""By key: linear and angular direction, as factors of the two speeds."""
 
 SPEEDS: dict[str, tuple[float, float]] = {
     "q": (1.1, 1.1),
@@ -25,40 +25,40 @@ SPEEDS: dict[str, tuple[float, float]] = {
     "e": (1.0, 1.1),
     "c": (1.0, 0.9),
 }
-"""Key: factors of the linear and the angular speed."""
+"""By key: factors of the linear and the angular speed."""
 
 KEYS = (*MOVES, *SPEEDS)
 
 
 @dataclass(slots=True)
 class Teleop:
-    """What the keys have asked for so far. A key holds until the next one, as at a terminal."""
+    """The state set by the keys. As in a terminal, a key is active until the next one."""
 
     linear_speed: float = 0.5
     """m/s."""
     angular_speed: float = 1.0
     """rad/s."""
     key: str = "k"
-    """The last key that moves."""
+    """The last movement key."""
 
     def press(self, key: str) -> bool:
-        """Takes a key; any that is not known stops. Returns whether a Twist is to be sent."""
+        """Handles a key; unknown keys stop. Returns whether to publish a Twist."""
         if key in SPEEDS:
             linear, angular = SPEEDS[key]
             self.linear_speed *= linear
             self.angular_speed *= angular
-            # A moving robot takes the new speed at once; one that stands is not sent a stop,
-            # which would overrule whoever else drives it.
+            # A moving robot gets the new speed at once. A stationary robot gets no stop command,
+            # which could interrupt a different driver.
             return self.key != "k"
         self.key = key if key in MOVES else "k"
         return True
 
     @property
     def linear(self) -> float:
-        """m/s along x."""
+        """Velocity along x, m/s."""
         return MOVES[self.key][0] * self.linear_speed
 
     @property
     def angular(self) -> float:
-        """rad/s about z."""
+        """Angular velocity about z, rad/s."""
         return MOVES[self.key][1] * self.angular_speed

@@ -1,4 +1,4 @@
-"""Files that browsers send in parts: bounded while they arrive."""
+"""Files that browsers upload in parts, with limits during the upload."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from dataclasses import dataclass, field
 from typing import Any
 
 PART_BYTES = 512 * 1024
-"""Of each part but the last, as viser's page cuts a file."""
+"""Size of each part except the last, as viser's client splits a file."""
 MOST_BYTES = 20_000_000
-"""Of one file."""
+"""Maximum file size."""
 MOST_AT_ONCE = 4
-"""Files of all browsers; one browser sends one at a time."""
+"""Maximum simultaneous uploads of all browsers; each browser uploads one file at a time."""
 SILENCE = 60.0
-"""s after which an upload of which nothing more comes is forgotten."""
+"""Timeout after which an incomplete upload is discarded, s."""
 
 
 class UploadError(Exception):
-    """A file, or a part of one, that is not taken.
+    """A rejected file, or a rejected part of a file.
 
     Args:
-        reason: For the user.
-        tell: Whether the user has to be told; else this has been done.
+        reason: The reason, for the user.
+        tell: Whether to show the reason; False if it was already shown.
     """
 
     def __init__(self, reason: str, *, tell: bool = True) -> None:
@@ -39,12 +39,12 @@ class _Upload:
 
 
 class Uploads:
-    """Which file each browser is sending, and how much of it is there.
+    """The current upload of each browser, with its progress.
 
-    viser keeps the parts; it is only handed those that were announced here.
+    viser stores the parts; it receives only parts of uploads that were announced here.
 
     Args:
-        server: viser's.
+        server: The viser server.
     """
 
     def __init__(self, server: Any) -> None:
@@ -52,17 +52,17 @@ class Uploads:
         self._by_client: dict[int, _Upload] = {}
 
     def start(self, client: int, component: str, transfer: str, size: int, parts: int) -> None:
-        """Admits a file.
+        """Accepts a file.
 
         Args:
             client: The browser's number.
-            component: The button that was used.
+            component: The upload button.
             transfer: Name of the upload.
-            size: Announced, bytes.
-            parts: Announced.
+            size: Announced size, bytes.
+            parts: Announced number of parts.
 
         Raises:
-            UploadError: It cannot be taken.
+            UploadError: The file cannot be accepted.
         """
         upload = _Upload(component, transfer, size, parts)
         reason = self._refusal(client, upload)
@@ -74,14 +74,14 @@ class Uploads:
             self._wait(client, upload)
 
     def add(self, client: int, transfer: str, index: int, length: int) -> None:
-        """Admits a part.
+        """Accepts a part.
 
         Raises:
-            UploadError: It was not announced so; the whole upload is forgotten.
+            UploadError: The part was not announced; the whole upload is discarded.
         """
         upload = self._by_client.get(client)
         if upload is None or upload.transfer != transfer:
-            # Of a file that was refused, for example: the browser sends all parts at once.
+            # For example a part of a rejected file: the browser sends all parts at once.
             raise UploadError("This part does not belong to an upload.", tell=False)
         expected = min(PART_BYTES, upload.size - index * PART_BYTES)
         if index in upload.seen or length != expected:
@@ -95,7 +95,7 @@ class Uploads:
             self._wait(client, upload)
 
     def drop(self, client: int) -> None:
-        """Forgets what a browser has sent of a file."""
+        """Discards a browser's upload."""
         upload = self._by_client.pop(client, None)
         if upload is None:
             return
@@ -109,7 +109,7 @@ class Uploads:
         self._release(client, upload)
 
     def _refusal(self, client: int, upload: _Upload) -> str | None:
-        """Why a file cannot be taken, if so."""
+        """Why a file cannot be accepted, or None."""
         if upload.size > MOST_BYTES:
             most = MOST_BYTES // 1_000_000
             return f"The file is too large: {upload.size / 1e6:.1f} MB; the limit is {most} MB."
@@ -122,7 +122,7 @@ class Uploads:
         return None
 
     def _release(self, client: int, upload: _Upload) -> None:
-        """Lets the browser use the button again: it waits for the end of what it sends."""
+        """Enables the browser's button again, which waits for the end of the upload."""
         connected = self._server.get_clients().get(client)
         if connected is None:
             return

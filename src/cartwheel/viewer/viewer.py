@@ -1,4 +1,4 @@
-"""The viewer of a running session, in the browser."""
+"""The web viewer of a running session."""
 
 from __future__ import annotations
 
@@ -20,25 +20,24 @@ if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk
 
 RATE = 30.0
-"""Hz of wall time at which the scene follows the simulation."""
+"""Rate at which the scene follows the simulation, Hz of wall time."""
 
 
 class Viewer:
-    """Shows a session and takes requests, at `url`; one more client of its graph.
+    """Shows a session at `url` and handles user input, as a client of its graph.
 
-    The simulation's thread only leaves its newest snapshot here; while no browser is connected,
-    only one whose models are others than before. Everything else happens on a thread of the
-    viewer's own.
+    The simulation's thread only stores its latest snapshot here. While no browser is connected, it
+    stores only snapshots with changed models. Everything else runs on the viewer's own thread.
 
     Args:
-        session: To show.
-        access: Who may see it; None is whoever is on this computer.
-        port: 0 takes any that is free.
-        desk: Makes the panels; None makes those of a simulation.
-        refused: Takes the origin of each web page that is refused, from any thread.
+        session: The session to show.
+        access: Who may connect; None for users of this computer.
+        port: 0 selects a free port.
+        desk: Creates the panels; None for a simulation's panels.
+        refused: Called with the origin of each rejected web page, on any thread.
 
     Raises:
-        ControlError: The port cannot be had.
+        ControlError: The port is not available.
     """
 
     def __init__(
@@ -65,15 +64,15 @@ class Viewer:
 
     @property
     def port(self) -> int:
-        """That it listens on."""
+        """The port that it listens on."""
         return int(self._listener.getsockname()[1])
 
     @property
     def url(self) -> str:
-        """Where the page is. Waits for the server, which knows its port only then.
+        """URL of the web interface. Waits for the server, which determines the port at startup.
 
         Raises:
-            ControlError: It did not come up.
+            ControlError: The server did not start.
         """
         if not self._thread.is_alive() and not self._ready.is_set():
             raise ControlError("the viewer has not been started", code=VIEWER_NOT_STARTED)
@@ -87,16 +86,16 @@ class Viewer:
 
     @property
     def browsers(self) -> int:
-        """How many are connected now."""
+        """Number of connected browsers."""
         return 0 if self._page is None else len(self._page.clients)
 
     def start(self, pacer: Pacer) -> None:
-        """Serves the page and shows what `pacer` runs."""
+        """Starts the server and shows the simulation of `pacer`."""
         pacer.add_listener(self._listen, rate=RATE)
         self._thread.start()
 
     def close(self) -> None:
-        """Takes the page off the air and all subscriptions off the graph."""
+        """Stops the server and closes all subscriptions."""
         self._stopped.set()
         if self._page is not None:
             self._page.wake()
@@ -105,7 +104,9 @@ class Viewer:
         self._listener.close()
 
     def _listen(self, snapshot: Snapshot) -> None:
-        """On the simulation's thread: leaves the newest snapshot, and a note if none lies there."""
+        """Runs on the simulation's thread: stores the latest snapshot, and queues a job if none is
+        pending.
+        """
         page = self._page
         if page is None or self._stopped.is_set():
             return

@@ -1,4 +1,4 @@
-"""What every panel has."""
+"""The base class of all panels."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from cartwheel.viewer.stage import Stage
 
 
 class Panel:
-    """A part of the page. All its methods run on the page's thread.
+    """A part of the web interface. All methods run on the page's thread.
 
     Args:
-        stage: What the panels share.
-        seat: The browser that it is for; None is for all of them.
+        stage: Shared state of the panels.
+        seat: The panel's browser; None for a shared panel.
     """
 
     def __init__(self, stage: Stage, seat: Seat | None = None) -> None:
@@ -30,33 +30,33 @@ class Panel:
         self.simulation = stage.session.simulation
 
     def watch(self) -> None:
-        """The first browser came, or that whose panel it is: subscribe."""
+        """Subscribes to topics: the first browser, or the panel's browser, has connected."""
 
     def leave(self) -> None:
-        """The last browser went, or that whose panel it is: let go of everything."""
+        """Unsubscribes: the last browser, or the panel's browser, has disconnected."""
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
-        """The graph has changed."""
+        """Called when the graph has changed."""
 
     def show_models(self, snapshot: Snapshot) -> None:
-        """Models came or went."""
+        """Called when models were spawned or deleted."""
 
     def update(self, snapshot: Snapshot, now: float) -> None:
-        """A new state, up to 30 times a second.
+        """Shows a new state, up to 30 times per second.
 
         Args:
-            snapshot: It.
-            now: s of wall time.
+            snapshot: The state.
+            now: Wall time, s.
         """
 
 
 def escape(text: object) -> str:
-    """Text as HTML shows it: names come from users' files."""
+    """Escapes a text for HTML, because names come from users' files."""
     return html.escape(str(text), quote=True)
 
 
 def rows_html(rows: Mapping[str, str]) -> str:
-    """Names and values, which are HTML already, side by side."""
+    """A table of names and values, which are already HTML."""
     cells = "".join(
         f'<span class="cw-dim">{name}</span><span>{value}</span>' for name, value in rows.items()
     )
@@ -64,7 +64,7 @@ def rows_html(rows: Mapping[str, str]) -> str:
 
 
 def facts(description: RobotDescription) -> dict[str, str]:
-    """What a description is, for `rows_html`."""
+    """Properties of a description, for `rows_html`."""
     return {
         "mass": "static" if description.static else f"{description.mass:.4g} kg",
         "parts": description.parts,
@@ -73,5 +73,5 @@ def facts(description: RobotDescription) -> dict[str, str]:
 
 
 def of_type(topics: Sequence[TopicInfo], type_name: str) -> list[str]:
-    """Names of the topics of a type that somebody publishes."""
+    """Names of the published topics with a type."""
     return [topic.name for topic in topics if topic.type == type_name and topic.publishers]

@@ -1,4 +1,4 @@
-"""The bumper light: what the contact sensors feel, and their forces in the scene."""
+"""The bumper light: contacts of the contact sensors, and their forces in the scene."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from cartwheel.viewer.stage import Stage
 
 CONTACTS = "gazebo_msgs/msg/ContactsState"
 LATCH = 0.5
-"""s of wall time that a touch stays lit, as a bounce lasts a few milliseconds."""
+"""Time that a contact stays lit, s of wall time: a bounce lasts only milliseconds."""
 _METRES_PER_NEWTON = 0.004
 _LONGEST = 0.8
 
 
 class BumperPanel(Panel):
-    """Lit while any ContactsState topic reports a contact, with the models that are hit."""
+    """Lit while any ContactsState topic reports a contact, with the names of the models."""
 
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage)
         self._boxes: dict[str, Mailbox] = {}
         self._topics: tuple[str, ...] = ()
         self._seen: dict[tuple[str, str], float] = {}
-        """When a topic last reported a contact with a collision, s of wall time."""
+        """Wall time of the last contact by topic and collision, s."""
         self._states: dict[str, Sequence[Any]] = {}
-        """The newest of each topic."""
+        """The latest message of each topic."""
         self._arrows: dict[int, Any] = {}
-        """Of each browser that shows contacts."""
+        """The arrows of each browser that shows contacts."""
         self._light = self.gui.add_html(light_html(()), visible=False)
         self._shown = self._light.content
 
@@ -76,7 +76,7 @@ class BumperPanel(Panel):
             self._light.content = self._shown = content
 
     def _show_forces(self, news: bool) -> None:
-        """Draws the forces of all bumpers where a browser shows them.
+        """Draws the forces of all bumpers in browsers that show contacts.
 
         Args:
             news: Whether they have changed.
@@ -101,7 +101,7 @@ class BumperPanel(Panel):
                 )
 
     def _points(self) -> NDArray[np.float32]:
-        """Where the arrows begin and end, shape (n, 2, 3), m."""
+        """Start and end points of the arrows, shape (n, 2, 3), m."""
         points = []
         for state in (state for states in self._states.values() for state in states):
             for position, wrench in zip(state.contact_positions, state.wrenches, strict=False):
@@ -114,16 +114,16 @@ class BumperPanel(Panel):
 
 
 def other_side(state: Any) -> str:
-    """What was hit: the collision that is not the sensor's own."""
+    """The other collision in a sensor's contact."""
     return str(state.collision2_name)
 
 
 def light_html(contacts: Sequence[tuple[str, str]], *, topics: bool = False) -> str:
-    """The light: grey without a contact, red with the models that are hit.
+    """The light: grey without a contact, red with the names of the models.
 
     Args:
-        contacts: The topic of each contact, and the collision that is hit.
-        topics: Shows which topic reports the contact.
+        contacts: The topic and the other collision of each contact.
+        topics: Whether to show the topics.
     """
     if contacts:
         shown = (

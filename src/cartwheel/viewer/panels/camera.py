@@ -1,4 +1,4 @@
-"""What a camera of the robot sees."""
+"""Shows a camera's images."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cartwheel.viewer.tap import Tap
 IMAGE = "sensor_msgs/msg/Image"
 _NONE = "none"
 _RATE = 15.0
-"""Hz of wall time: more is not seen, and each image is compressed for the way."""
+"""Maximum frame rate, Hz of wall time, because each image must be compressed."""
 _LAYOUTS = {
     "rgb8": ("u1", 3),
     "bgr8": ("u1", 3),
@@ -37,14 +37,14 @@ _LAYOUTS = {
     "32FC1": ("f4", 1),
     "16UC1": ("u2", 1),
 }
-"""Of each encoding: the kind of its numbers, and how many a pixel has."""
+"""Number type and channels of each encoding."""
 _DEPTHS = ("32FC1", "16UC1")
 _DARKEST = 30
-"""Brightness of the furthest depth: what is black is none."""
+"""Brightness of the farthest depth; black means no depth."""
 
 
 class CameraPanel(Panel):
-    """Shows one browser one image topic; nothing is rendered for it while nobody looks."""
+    """Shows an image topic in one browser; images are rendered only while they are visible."""
 
     def __init__(self, stage: Stage, seat: Seat) -> None:
         super().__init__(stage, seat)
@@ -71,7 +71,7 @@ class CameraPanel(Panel):
             self._tap = None
 
     def show_topics(self, topics: Sequence[TopicInfo]) -> None:
-        # Colours first: they are what one looks for.
+        # Colour images first, as the most useful ones.
         found = tuple(sorted(of_type(topics, IMAGE), key=lambda name: "depth" in name))
         if found == self._topics:
             return
@@ -116,11 +116,11 @@ class CameraPanel(Panel):
             self._tap = Tap(self.graph, wanted)
 
     def _measure(self, count: int, time_ns: int) -> None:
-        """Messages in a second of simulated time, which is what a camera's rate means.
+        """Measures the message rate in simulation time, which is how a camera's rate is defined.
 
         Args:
-            count: Of messages so far.
-            time_ns: Stamp of the last one.
+            count: Number of messages so far.
+            time_ns: Timestamp of the last message.
         """
         count_before, time_before = self._mark
         passed = (time_ns - time_before) / 1e9
@@ -137,9 +137,9 @@ class CameraPanel(Panel):
 
 
 def pixels_of(message: Any) -> NDArray[np.uint8] | None:
-    """An image message as RGB, shape (height, width, 3); None for an encoding without a picture.
+    """An image message as RGB, shape (height, width, 3); None for unsupported encodings.
 
-    Depths are grey, the nearest the brightest; where there is none it is black.
+    Depth images are grey, with the nearest pixels brightest and missing depths black.
     """
     layout = _LAYOUTS.get(message.encoding)
     if layout is None or not message.height or not message.width:
@@ -164,7 +164,7 @@ def pixels_of(message: Any) -> NDArray[np.uint8] | None:
 
 
 def _grey_of(depths: NDArray[Any]) -> NDArray[np.uint8]:
-    """Depths as brightness, over the range that the picture has."""
+    """Depths as brightness, scaled to the image's range."""
     metres = depths.astype(np.float32)
     there = np.isfinite(metres) & (metres > 0)
     grey = np.zeros(depths.shape, dtype=np.uint8)
@@ -176,7 +176,7 @@ def _grey_of(depths: NDArray[Any]) -> NDArray[np.uint8]:
 
 
 def _from_mosaic(mosaic: NDArray[np.uint8], encoding: str) -> NDArray[np.uint8]:
-    """Each 2 x 2 pixels as one colour: enough to look at."""
+    """Converts each 2 x 2 block to one colour, which is enough for display."""
     height, width = mosaic.shape
     padded = np.pad(mosaic, ((0, height % 2), (0, width % 2)), mode="edge")
     filters = encoding.removeprefix("bayer_")[:4]

@@ -1,4 +1,4 @@
-"""Time: how late it is, how fast it goes, and the buttons that hold and wind it."""
+"""The simulation clock, its speed, and the buttons to pause, step and reset."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class ClockPanel(Panel):
         self._shown_speed: float | None = 1.0
 
     def toggle(self) -> None:
-        """Pauses what runs, resumes what is paused."""
+        """Pauses or resumes the simulation."""
         simulation = self.simulation
 
         def run() -> None:
@@ -51,11 +51,11 @@ class ClockPanel(Panel):
         self.page.then(simulation.call(run))
 
     def step(self) -> None:
-        """One step of physics; pauses what runs."""
+        """Advances by one step; pauses a running simulation."""
         self.page.then(self.simulation.call(self.simulation.step))
 
     def reset(self) -> None:
-        """Time and models back to the start."""
+        """Resets time and models."""
         self.page.then(self.simulation.call(self.simulation.reset))
 
     def update(self, snapshot: Snapshot, now: float) -> None:
@@ -64,7 +64,7 @@ class ClockPanel(Panel):
             self._paused = paused
             self._buttons.options = ("Resume" if paused else "Pause", "Step", "Reset")
         if snapshot.speed != self._shown_speed:
-            # Somebody else, a command line or another browser, has set it.
+            # The speed was changed by a command or in a different browser.
             self._shown_speed = snapshot.speed
             name = next((n for n, speed in SPEEDS.items() if speed == snapshot.speed), None)
             if name is not None and self._speed.value != name:
@@ -86,7 +86,7 @@ class ClockPanel(Panel):
 
 
 def clock_html(snapshot: Snapshot | None) -> str:
-    """The simulation's time, its state, and how fast it really goes."""
+    """Simulation time, run state and real-time factor."""
     if snapshot is None:
         return '<div class="cw cw-clock"><b>0.000 s</b></div>'
     state = snapshot.run_state.value

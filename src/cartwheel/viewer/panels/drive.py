@@ -1,11 +1,10 @@
-"""Driving from the keyboard and by buttons.
+"""Driving with keys and buttons.
 
-The keys are commands of the page, so that a browser finds them with Ctrl+K as well. viser's
-types name only letters and digits as hotkeys, but the name is handed as it is to the browser,
-where it is compared with the key of the event; "," and "." therefore work (and
-`test_driving.py` presses them). ``page.js`` adds what commands cannot do: it keeps the
-camera from taking w, q and e, lets every other key stop, and makes the buttons press keys, so
-that a button and its key cannot differ.
+The keys are commands of the page, so browsers also list them with Ctrl+K. viser's types allow only
+letters and digits as hotkeys, but viser passes the name unchanged to the browser, which compares it
+with the event's key. Therefore "," and "." work too (`test_driving.py` presses them). ``page.js``
+adds what commands cannot do: it prevents the camera from handling w, q and e, makes every other key
+stop the robot, and maps the buttons to keys, so that both always do the same.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ _ANGLES = {"u": -45, "i": 0, "o": 45, "j": -90, "l": 90, "m": -135, ",": 180, ".
 
 
 class DrivePanel(Panel):
-    """Publishes Twists on the topics that drive, for one browser."""
+    """Publishes Twist messages on drive topics, for one browser."""
 
     def __init__(self, stage: Stage, seat: Seat) -> None:
         super().__init__(stage, seat)
@@ -57,7 +56,7 @@ class DrivePanel(Panel):
             command.on_trigger(self.page.do(self.press, key))
 
     def press(self, key: str) -> None:
-        """What a key does."""
+        """Handles a key."""
         publish = self._teleop.press(key)
         if publish:
             chosen = self._topic.value
@@ -69,7 +68,7 @@ class DrivePanel(Panel):
         if drivable == self._drivable:
             return
         self._drivable = drivable
-        # An arm on a table has no use for them.
+        # Hidden for robots that cannot drive, such as an arm on a table.
         self._topic.visible = self._pad.visible = bool(drivable)
         chosen = self._topic.value
         options = (_ALL, *drivable) if len(drivable) > 1 else (tuple(drivable) or (_NONE,))
@@ -77,7 +76,7 @@ class DrivePanel(Panel):
         self._topic.value = chosen if chosen in options else options[0]
 
     def leave(self) -> None:
-        """Stops what this browser drives; what another one drives by now goes on."""
+        """Stops the robot that this browser drives, unless a different browser drives it now."""
         if self._teleop.key == "k":
             return
         self._teleop.press("k")
@@ -97,7 +96,7 @@ class DrivePanel(Panel):
             if kind == TWIST:
                 self.graph.publish(topic, TWIST, twist)
             elif kind == TWIST_STAMPED:
-                # Without a time it is of now: this thread may not ask the simulation for it.
+                # A zero timestamp means now: this thread cannot read the simulation time.
                 message: Any = message_class(TWIST_STAMPED)(header=header(0, ""), twist=twist)
                 self.graph.publish(topic, TWIST_STAMPED, message)
 

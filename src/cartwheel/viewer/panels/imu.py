@@ -1,4 +1,4 @@
-"""The IMU as curves."""
+"""Plots IMU data."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from cartwheel.viewer.stage import Stage
 
 IMU = "sensor_msgs/msg/Imu"
 WINDOW = 10.0
-"""s of simulated time."""
+"""Plotted time span, s of simulation time."""
 _RATE = 6.0
 _POINTS = 160
 _AXIS = {
@@ -89,8 +89,8 @@ class ImuPanel(Panel):
             plot.data = (table[:, 0].copy(), *(columns[:, k].copy() for k in range(3)))
 
     def _plot(self, title: str, names: tuple[str, str, str], *, least: float) -> tuple[Any, Any]:
-        """A heading and its curves; hidden, as an arm may have no IMU."""
-        # At rest the scale stays at `least`, or a shiver of a millionth would fill the plot.
+        """A heading and its plot; hidden, because not every robot has an IMU."""
+        # The minimum scale is `least`, so that noise of 1e-6 does not fill the plot at rest.
         start = np.zeros(2)
         key = "".join(
             f'<span style="color:{color};margin-left:0.5rem">{name}</span>'
@@ -133,7 +133,7 @@ def row_of(message: Any) -> tuple[float, ...]:
 
 
 def thin(table: Any, points: int) -> Any:
-    """About `points` rows, the last one among them: a curve needs no more than it has pixels."""
+    """About `points` rows, including the last one: a plot needs no more rows than pixels."""
     stride = max(1, math.ceil(len(table) / points))
     return table[::-1][::stride][::-1]
 

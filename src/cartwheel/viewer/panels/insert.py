@@ -1,4 +1,4 @@
-"""Things to put into the world: the shipped models, and a file of one's own."""
+"""Inserts built-in models or an uploaded file into the world."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from cartwheel.viewer.stage import Stage
 from cartwheel.viewer.uploads import MOST_BYTES
 
 _GAP = 0.15
-"""m of air between what is inserted and what is there."""
+"""Minimum gap between the inserted model and others, m."""
 _LIFT = 0.001
-"""m above the ground at which it appears."""
+"""Initial height above the ground, m."""
 _FLAT = 0.02
-"""m above the ground up to which a shape is part of it."""
+"""Height above the ground up to which a shape counts as ground, m."""
 _SCENERY = ("sun", "ground_plane")
 
 
 class InsertPanel(Panel):
-    """Loads a description and spawns it in front of the robot, where nothing stands."""
+    """Loads a description and spawns it in front of the robot, in free space."""
 
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage)
@@ -48,12 +48,12 @@ class InsertPanel(Panel):
             command.on_trigger(page.do(self.insert, path))
 
     def insert(self, path: Path, *, name: str | None = None, reach: Reach | None = None) -> None:
-        """Spawns what a file describes.
+        """Spawns the description in a file.
 
         Raises:
-            CartwheelError: It cannot be loaded; the simulation goes on undisturbed.
+            CartwheelError: The file cannot be loaded; the simulation is not affected.
         """
-        # Here, as reading a xacro takes a while that the simulation has not.
+        # On this thread, because reading a xacro would delay the simulation.
         from cartwheel.description import load_robot
 
         description: RobotDescription = load_robot(path, reach=reach)
@@ -61,7 +61,7 @@ class InsertPanel(Panel):
         size = Size.of(description)
 
         def spawn() -> str:
-            # Only here is known what stands where: inserts may follow faster than pictures.
+            # Positions are only certain here: inserts may be more frequent than snapshots.
             start = simulation.pose(robot) if robot in simulation.models else Pose()
             pose = free_place(start, simulation.occupied(), size)
             wanted = free_name(name or description.name, simulation.models)
@@ -74,12 +74,12 @@ class InsertPanel(Panel):
 
 
 class UploadPanel(Panel):
-    """A browser's button for a file of its user's own.
+    """A browser's button to upload a file.
 
     Args:
-        stage: What the panels share.
+        stage: Shared state of the panels.
         seat: The browser.
-        inserting: Puts into the world what a file describes.
+        inserting: Spawns the file.
     """
 
     def __init__(self, stage: Stage, seat: Seat, inserting: InsertPanel) -> None:
@@ -101,17 +101,18 @@ class UploadPanel(Panel):
             path = Path(folder) / (name or "upload.urdf")
             path.write_bytes(file.content)
             try:
-                # A browser's file may read what came with it, and no more of this machine.
+                # An uploaded file may refer only to files in the same upload, not to others on this
+                # machine.
                 self._inserting.insert(
                     path, reach=Reach(folders=(Path(folder),), environment=False)
                 )
             except CartwheelError as error:
-                # The folder is nothing to the user, who knows the file by its name.
+                # The temporary folder means nothing to users, who know only the file's name.
                 raise _without_folder(error, folder) from error
 
 
 def palette(folder: Path) -> dict[str, Path]:
-    """The models to choose from, by name: what stands in a folder as a file or a Gazebo model."""
+    """The available models by name: files and Gazebo models in a folder."""
     found = {path.stem: path for pattern in ("*.urdf", "*.sdf") for path in folder.glob(pattern)}
     found |= {path.parent.name: path for path in folder.glob("*/model.sdf")}
     return {name: found[name] for name in sorted(found) if name not in _SCENERY}
@@ -119,35 +120,37 @@ def palette(folder: Path) -> dict[str, Path]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Size:
-    """How far a model reaches from its frame's origin, m."""
+    """A model's extent from its frame's origin, m."""
 
     reach: float
-    """In the plane, in any direction."""
+    """Maximum horizontal extent."""
     below: float
     above: float
 
     @classmethod
     def of(cls, description: RobotDescription) -> Size:
-        """That of a description."""
+        """The size of a description."""
         reach, below = footprint(description)
         found = bounds(description)
         return cls(reach=reach, below=below, above=0.0 if found is None else float(found[1][2]))
 
 
 def free_place(start: Pose, space: Space, size: Size) -> Pose:
-    """Straight ahead of a robot, on the ground, else as little aside and beyond as is free.
+    """A free pose straight ahead of a robot on the ground, otherwise the nearest to the side or
+    beyond.
 
     Args:
-        start: The robot's.
-        space: What is occupied.
-        size: Of what is to be placed.
+        start: The robot's pose.
+        space: The occupied space.
+        size: Size of the model to place.
     """
     height = size.below + _LIFT
     here = np.array(start.position[:2])
     low, high = space.low[:, :2], space.high[:, :2]
     around = np.all((low <= here) & (here <= high), axis=1)
     overhead = space.low[:, 2] > height + size.above + _GAP
-    # A floor, a house and a roof take no place. What can fall does, from any height.
+    # Floors, surrounding walls and roofs are ignored. Movable shapes block any height, because they
+    # can fall.
     taken = ~(space.fixed & (around | overhead)) & (space.high[:, 2] > _FLAT)
     low, high = low[taken], high[taken]
     turn = quat_from_rpy(0.0, 0.0, start.yaw)
@@ -158,7 +161,7 @@ def free_place(start: Pose, space: Space, size: Size) -> Pose:
             gaps = np.maximum(0.0, np.maximum(low - spot, spot - high))
             if np.all(np.hypot(gaps[:, 0], gaps[:, 1]) > size.reach + _GAP):
                 return Pose((float(spot[0]), float(spot[1]), height), turn)
-    # Further ahead than anything reaches.
+    # Farther ahead than any occupied space.
     ahead = np.array((math.cos(start.yaw), math.sin(start.yaw)))
     furthest = np.maximum((low - here) * ahead, (high - here) * ahead).sum(axis=1).max(initial=0.0)
     spot = here + ahead * (furthest + size.reach + 2 * _GAP)

@@ -1,4 +1,4 @@
-"""Joints by hand: a slider for each one that a controller takes positions for."""
+"""Sliders for joints with position commands."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ from cartwheel.viewer.panels.base import Panel, escape
 from cartwheel.viewer.stage import Stage
 
 _STEPS = 400
-"""Of a slider, at least."""
+"""Minimum number of steps in a slider."""
 _FINEST = 0.001
-"""rad or m of a slider's step, where its range is not a short one."""
+"""Minimum slider step for joints with a long range, rad or m."""
 _SPEED = 1.0
-"""rad/s or m/s at which a joint is sent somewhere, where its own limit is not lower."""
+"""Commanded speed of a joint, rad/s or m/s, unless its limit is lower."""
 _SOONEST = 0.2
-"""s: what trajectories take at least."""
+"""Minimum duration of a trajectory, s."""
 _NEAR = 0.05
-"""rad or m by which a joint may miss where it was sent, and is meant to be there: when others are
-moved it goes on to be held there, instead of where its weight has drawn it."""
+"""rad or m; a joint within this distance from its last target keeps that target when others move,
+so that it does not sag further under its weight.
+"""
 _UNTOUCHED = 3.0
-"""s after their arrival at which sliders follow their joints again."""
+"""s after arrival until the sliders follow their joints again."""
 
 
 def limits_of(joint: Joint) -> tuple[float, float]:
-    """The range of a joint's slider, rad or m: its limits, else one turn or a metre."""
+    """Range of a joint's slider, rad or m: its limits, or one turn or a metre."""
     reach = 1.0 if joint.type == "prismatic" else math.pi
     low = -reach if joint.axis.lower is None else joint.axis.lower
     high = reach if joint.axis.upper is None else joint.axis.upper
@@ -39,9 +40,9 @@ def limits_of(joint: Joint) -> tuple[float, float]:
 
 
 def range_of(joint: Joint) -> tuple[float, float, float]:
-    """A slider's ends and step, rad or m, within the joint's range.
+    """A slider's limits and step, rad or m, within the joint's range.
 
-    The page shows as many decimals as these have, and has room for a few.
+    The web interface shows as many decimals as these values have, and has room for a few.
     """
     low, high = limits_of(joint)
     digits = -math.floor(math.log10(min(_FINEST, (high - low) / _STEPS)) + 1e-9)
@@ -51,7 +52,7 @@ def range_of(joint: Joint) -> tuple[float, float, float]:
 
 
 def add_slider(gui: Any, joint: Joint, value: float, **options: Any) -> Any:
-    """A slider over the joint's range."""
+    """A slider with the joint's range."""
     low, high, step = range_of(joint)
     return gui.add_slider(
         joint.name,
@@ -70,13 +71,13 @@ def way(
     sent: Mapping[str, float],
     moved: Mapping[str, float],
 ) -> tuple[dict[str, float], float]:
-    """Where all joints of a controller go when some of them are moved, and in how many seconds.
+    """Targets for all joints of a controller after some sliders moved, and the duration in s.
 
     Args:
-        joints: All of the controller's, by name.
-        actual: Where they are, rad or m.
-        sent: Where they were sent before and are, or are still on their way to.
-        moved: Where sliders say that they shall go.
+        joints: All joints of the controller, by name.
+        actual: Current positions, rad or m.
+        sent: Previous targets that the joints have reached or are moving to.
+        moved: New targets from sliders.
     """
     targets, seconds = {}, _SOONEST
     for name, joint in joints.items():
@@ -88,17 +89,17 @@ def way(
 
 @dataclass(eq=False)
 class _Group:
-    """The sliders of one input."""
+    """The sliders of one topic or action."""
 
     taker: JointInput
     joints: dict[str, Joint]
     title: Any
     sliders: dict[str, Any] = field(default_factory=dict)
     moved: dict[str, float] = field(default_factory=dict)
-    """What was touched and not sent yet."""
+    """Changes that have not been sent yet."""
     sent: dict[str, float] = field(default_factory=dict)
     free: float = -math.inf
-    """From when on its sliders follow, s of wall time."""
+    """Wall time from which the sliders follow their joints, s."""
 
     def remove(self) -> None:
         for handle in (self.title, *self.sliders.values()):
@@ -106,7 +107,7 @@ class _Group:
 
 
 class JointsPanel(Panel):
-    """Sliders for joints that something takes positions for, by what takes them."""
+    """Sliders for joints with position commands, grouped by controller."""
 
     def __init__(self, stage: Stage, tab: Any) -> None:
         super().__init__(stage)
@@ -150,16 +151,16 @@ class JointsPanel(Panel):
             for name, slider in group.sliders.items():
                 value = actual.get((group.taker.model, name), 0.0)
                 if abs(group.sent.get(name, value) - value) > _NEAR:
-                    # Something else has moved it.
+                    # The joint was moved by something else.
                     del group.sent[name]
                 value = min(slider.max, max(slider.min, value))
-                # What would not be seen to move is not sent to the browsers.
+                # Skip changes that are too small to see.
                 if abs(value - slider.value) > (slider.max - slider.min) / (2 * _STEPS):
                     slider.value = value
 
     def _touch(self, group: _Group, name: str, event: Any, value: float) -> None:
         if event.client is None:
-            # Of our own making.
+            # Set by this panel, not by the user.
             return
         group.moved[name] = float(value)
         group.free = math.inf

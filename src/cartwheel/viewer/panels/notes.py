@@ -1,4 +1,4 @@
-"""What was reported about the files: unknown tags, losses, likely mistakes."""
+"""Diagnostics about the files: unknown tags, losses, likely mistakes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class NotesPanel(Panel):
 
 
 def notes_html(diagnostics: Sequence[Diagnostic]) -> str:
-    """All of them, the gravest first."""
+    """All diagnostics, most severe first."""
     order = {"error": 0, "warning": 1, "info": 2}
     notes = "".join(
         f'<div class="cw-note cw-{note.severity}">{escape(note.text)}'

@@ -1,4 +1,4 @@
-"""The time of a recording, to be moved by hand."""
+"""The timeline of a recording."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from cartwheel.viewer.panels.clock import ClockPanel
 from cartwheel.viewer.stage import Stage
 
 _PATIENCE = 0.5
-"""s that the slider is left alone after a user has moved it."""
+"""Time after a user's change during which the slider is not updated, s."""
 
 
 class TimelinePanel(ClockPanel):
-    """A slider beside the clock; Step goes on by a picture, Reset to the start."""
+    """Adds a slider to the clock; Step advances by one frame, Reset returns to the start."""
 
     def __init__(self, stage: Stage) -> None:
         super().__init__(stage)

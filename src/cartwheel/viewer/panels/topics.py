@@ -1,4 +1,4 @@
-"""What the graph carries: topics, types, rates, and one of them live as text."""
+"""Topics, types, rates, and one topic's messages as text."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from cartwheel.viewer.tap import Tap
 
 _NONE = "none"
 _LONGEST = 6000
-"""Characters of a message: more than a screen full is not read."""
+"""Maximum characters of a message to show: more than a screenful."""
 
 
 class TopicsPanel(Panel):
-    """The list of topics and an echo."""
+    """The list of topics and an echo of one topic."""
 
     def __init__(self, stage: Stage, seat: Seat) -> None:
         super().__init__(stage, seat)
@@ -52,7 +52,7 @@ class TopicsPanel(Panel):
 
     def update(self, snapshot: Snapshot, now: float) -> None:  # noqa: ARG002
         if self._list_due(now):
-            # What is dropped changes without the graph.
+            # The number of dropped messages changes without a graph change.
             self.show_topics(self.graph.topics())
         tap = self._tap
         if tap is None or tap.count == self._shown or not self._due(now):
@@ -84,7 +84,7 @@ def _lost(topic: TopicInfo) -> str:
 
 
 def _words(kind: str) -> str:
-    """A type that is only broken between its package and its name."""
+    """A type that can wrap only between package and name."""
     return escape(kind).replace("/", "/<wbr>")
 
 

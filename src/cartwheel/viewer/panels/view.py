@@ -1,4 +1,4 @@
-"""Toggles of the scene."""
+"""Toggles for the scene."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ LABELS = {
     "grid": "Grid",
     "follow": "Follow the robot",
 }
-"""Of each field of `Display`."""
+"""Label of each field in `Display`."""
 
 
 def add_toggles(
     page: Page, seat: Seat, names: Iterable[str], changed: Callable[[], None]
 ) -> dict[str, Any]:
-    """A checkbox for each of these fields of a browser's `Display`.
+    """A checkbox for each of these fields in a browser's `Display`.
 
     Args:
-        page: That they are on.
+        page: The page with the checkboxes.
         seat: The browser.
-        names: Of the fields.
-        changed: Called after one was changed.
+        names: Field names.
+        changed: Called after a change.
     """
 
     def take(name: str, _: Any, value: bool) -> None:
@@ -57,12 +57,12 @@ def add_toggles(
 
 
 class ViewPanel(Panel):
-    """A browser's checkboxes, one for each field of `Display`.
+    """A browser's checkboxes, one for each field in `Display`.
 
     Args:
-        stage: What the panels share.
+        stage: Shared state of the panels.
         seat: The browser.
-        look: Draws its scene anew.
+        look: Redraws its scene.
     """
 
     def __init__(self, stage: Stage, seat: Seat, look: Callable[[], None]) -> None:
@@ -73,5 +73,5 @@ class ViewPanel(Panel):
         follow.on_trigger(self.page.do(self._toggle, "follow"))
 
     def _toggle(self, name: str) -> None:
-        # Its callback is called as if the user had clicked.
+        # This calls the callback as for a user's click.
         self._boxes[name].value = not self._boxes[name].value

@@ -1,4 +1,4 @@
-"""The models of the world: select one, see what it is, move it, delete it."""
+"""The models in the world: select, inspect, move, delete."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from cartwheel.viewer.stage import Stage
 
 
 class WorldPanel(Panel):
-    """The list of models, and the gizmo of the one that this browser has selected.
+    """The list of models, and the gizmo of this browser's selected model.
 
     Args:
-        stage: What the panels share.
+        stage: Shared state of the panels.
         seat: The browser.
-        look: Draws its scene anew: clicks pass through what is selected.
-        tab: Where the list is.
+        look: Redraws its scene, because clicks pass through the selected model.
+        tab: The tab with the list.
     """
 
     def __init__(self, stage: Stage, seat: Seat, look: Callable[[], None], tab: Any) -> None:
@@ -34,7 +34,7 @@ class WorldPanel(Panel):
         self._gizmo: Any = None
         self._shown: Pose | None = None
         self._held: Pose | None = None
-        """Where a drag holds the model; None while nobody drags."""
+        """Target pose of a drag; None without a drag."""
         self._due = Every(5)
         self._static_due = Every(4)
         self.gui.add_html('<div class="cw cw-dim cw-rows">Models</div>', order=0)
@@ -50,7 +50,7 @@ class WorldPanel(Panel):
         self._delete.on_click(self.page.do(self.delete))
 
     def select(self, name: str | None) -> None:
-        """Selects a model, or none; selecting the selected one lets go of it."""
+        """Selects a model, or None; selecting the selected model deselects it."""
         if name == self.selected:
             name = None
         self.selected = name
@@ -82,7 +82,7 @@ class WorldPanel(Panel):
         self._describe(snapshot)
 
     def delete(self) -> None:
-        """Takes the selected model out of the world."""
+        """Deletes the selected model."""
         name, simulation = self.selected, self.simulation
         if name is None:
             return
@@ -90,7 +90,7 @@ class WorldPanel(Panel):
         self.page.then(simulation.call(lambda: simulation.delete(name)))
 
     def leave(self) -> None:
-        # A drag ends with its browser: nothing may hold the model in the air for ever.
+        # A drag ends when its browser disconnects, so that no model stays in the air forever.
         self._held = None
 
     def show_models(self, snapshot: Snapshot) -> None:
@@ -126,12 +126,12 @@ class WorldPanel(Panel):
             self._describe(snapshot)
 
     def move(self, name: str, pose: Pose) -> None:
-        """Puts a model, at rest, where it is wanted."""
+        """Moves a model to a pose and stops its motion."""
         simulation = self.simulation
         self.page.then(simulation.call(lambda: simulation.set_pose(name, pose)))
 
     def _drag(self, event: Any) -> None:
-        """A drag holds the model where the gizmo is, against gravity too, until it is let go."""
+        """During a drag, holds the model at the gizmo's pose, even against gravity."""
         if event.target is not self._gizmo or self.selected is None:
             return
         x, y, z = (float(v) for v in event.target.position)
@@ -146,7 +146,7 @@ class WorldPanel(Panel):
             self.move(self.selected, pose)
 
     def _is_static(self, snapshot: Snapshot) -> bool:
-        # Moving what is fixed builds the world anew each time: a few times a second suffice.
+        # Moving a fixed model recompiles the world, so limit the rate to a few times per second.
         return any(m.description.static for m in snapshot.scene.models if m.name == self.selected)
 
     def _describe(self, snapshot: Snapshot) -> None:
