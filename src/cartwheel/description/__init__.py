@@ -1,4 +1,4 @@
-"""From the user's files to what they say: xacro, URDF with ``<gazebo>`` tags, SDF, meshes."""
+"""Reads descriptions from files: xacro, URDF with ``<gazebo>`` tags, SDF and meshes."""
 
 from cartwheel.description.loading import (
     load,

@@ -1,4 +1,4 @@
-"""Descriptions as URDF text, with everything in them expanded."""
+"""Converts descriptions to fully expanded URDF text."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ def to_urdf(
     package_path: Sequence[Path] = (),
     absolute: bool = False,
 ) -> str:
-    """A xacro or URDF file as plain URDF; the same files and arguments give the same text.
+    """Converts a xacro or URDF file to plain URDF. The output is deterministic.
 
     Args:
         path: The file.
-        arguments: The values of ``name:=value``.
-        package_path: Further folders in which packages are looked for.
-        absolute: Whether meshes and textures are named by ``file://`` and where they lie
-            here, instead of as written.
+        arguments: Values of ``name:=value`` arguments.
+        package_path: Additional folders to search for packages.
+        absolute: Whether to replace the URIs of meshes and textures by ``file://`` URIs of the
+            files found here.
 
     Raises:
-        DescriptionError: the file cannot be expanded, or is no URDF.
+        DescriptionError: The file cannot be expanded, or is not a URDF.
     """
     read = open_description(path, arguments or {}, package_path)
     if read.root.tag != "robot":

@@ -1,6 +1,7 @@
-"""Models of Gazebo's Fuel server that Gazebo downloaded to this machine before.
+"""Models from Gazebo's Fuel server that Gazebo has downloaded to this machine.
 
-Nothing is downloaded here: a run must not depend on a network. Source: gz-fuel-tools, LocalCache.
+Nothing is downloaded here, because a simulation must not depend on the network. Source:
+gz-fuel-tools, LocalCache.
 """
 
 from __future__ import annotations
@@ -16,27 +17,28 @@ _URL = re.compile(
     re.IGNORECASE,
 )
 _HOSTS = ("fuel.gazebosim.org", "fuel.ignitionrobotics.org")
-"""The server's new name and its old one: a model is the same under both."""
+"""The server's current and former name: a model is the same on both."""
 _VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
 _CACHES = ("~/.gz/fuel", "~/.ignition/fuel")
 
 
 def model_name(uri: str) -> str | None:
-    """The name of the model that a Fuel URL means; None where it is no such URL."""
+    """The model name in a Fuel URL; None for any other URL."""
     found = _URL.fullmatch(uri.strip())
     return unquote(found["name"]) if found is not None else None
 
 
 def cached(uri: str, environment: Mapping[str, str]) -> Path | None:
-    """The model's folder, or the file in it that the URL names, in Gazebo's caches.
+    """The model's folder, or the file in the URL, in Gazebo's caches.
 
     Args:
-        uri: ``https://fuel.gazebosim.org/1.0/<owner>/models/<name>``, perhaps with a version
-            and a file.
-        environment: Its ``GZ_FUEL_CACHE_PATH`` comes before the caches of the home folder.
+        uri: ``https://fuel.gazebosim.org/1.0/<owner>/models/<name>``, optionally with a version and
+            a file.
+        environment: ``GZ_FUEL_CACHE_PATH`` takes precedence over the caches in the home folder.
 
     Returns:
-        None where it is no such URL or was not downloaded. Without a stated version, the newest.
+        None for any other URL or if the model was not downloaded. Without a version, the newest
+        one.
     """
     found = _URL.fullmatch(uri.strip())
     if found is None:
@@ -58,7 +60,7 @@ def cached(uri: str, environment: Mapping[str, str]) -> Path | None:
 
 
 def caches(environment: Mapping[str, str]) -> list[Path]:
-    """Gazebo's caches, the one that a variable names first."""
+    """Gazebo's caches; the folder in the environment variable comes first."""
     roots = [environment[each] for each in _VARIABLES if environment.get(each)]
     return [Path(root).expanduser() for root in (*roots, *_CACHES)]
 

@@ -1,4 +1,4 @@
-"""Whether a body can have the inertia that a description states."""
+"""Checks whether a stated inertia is physically possible."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 from cartwheel.geometry import Array, Vec3
 
 TOLERANCE = 1e-3
-"""Relative: files state three or four digits, and thin plates lie on the edge exactly."""
+"""Relative tolerance: files contain three or four digits, and thin plates are exactly at the limit.
+"""
 HEAVIEST = 1e12
-"""kg, of a link; the squares of what is heavier leave the range of numbers."""
+"""Maximum mass of a link, kg; the square of a larger mass overflows."""
 _THINNEST = 1e-6
-"""Relative: the moment of a rod about itself, which is stated as 0."""
+"""Relative moment of a rod about its own axis, which is often stated as 0."""
 
 
 def tensor(diagonal: Vec3, products: Vec3) -> Array:
@@ -37,14 +38,14 @@ def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
     """
     ixx, iyy, izz = diagonal
     ixy, ixz, iyz = products
-    # The closed form for a symmetric 3x3 matrix: numpy's solver costs more than all the rest
-    # of a link's reading.
+    # The closed form for a symmetric 3x3 matrix: numpy's solver would be the slowest part of
+    # reading.
     off = ixy * ixy + ixz * ixz + iyz * iyz
     if off == 0.0:
         a, b, c = sorted((ixx, iyy, izz))
         return (a, b, c)
     mean = (ixx + iyy + izz) / 3
-    # Products, for a power of a float raises where it overflows.
+    # Multiplication, because a float power raises an error on overflow.
     spread = sum((each - mean) * (each - mean) for each in (ixx, iyy, izz)) + 2 * off
     p = math.sqrt(spread / 6)
     if p == 0.0 or not math.isfinite(p):
@@ -60,7 +61,7 @@ def principal_moments(diagonal: Vec3, products: Vec3) -> Vec3:
 
 
 def impossibility(moments: Vec3) -> tuple[str, str] | None:
-    """Why no body has these principal moments, and a hint; None where one can."""
+    """Why no body can have these principal moments, and a hint; None if they are possible."""
     a, b, c = moments
     shown = f"{a:.4g}, {b:.4g} and {c:.4g} kg m²"
     if a <= 0 or a < 1e-12 * c:
@@ -78,22 +79,22 @@ def impossibility(moments: Vec3) -> tuple[str, str] | None:
 
 
 def made_possible(diagonal: Vec3, products: Vec3) -> tuple[Vec3, Vec3]:
-    """The inertia with its two smaller moments so far raised that a body can have it.
+    """The inertia with its two smaller moments raised until it is physically possible.
 
-    The largest moment, which is what most often was meant, and the axes stay.
+    The axes and the largest moment, which is usually the intended one, are unchanged.
 
     Args:
         diagonal: ixx, iyy, izz.
-        products: ixy, ixz, iyz. One of the matrix's principal moments is above 0.
+        products: ixy, ixz, iyz. At least one principal moment is positive.
 
     Returns:
-        As the arguments.
+        In the same form as the arguments.
     """
     moments, axes = np.linalg.eigh(tensor(diagonal, products))
     moments = np.maximum(moments, _THINNEST * moments[2])
     missing = moments[2] - moments[0] - moments[1]
     if missing > 0:
-        # Half to each: a plate's two smaller moments become more alike, as those of most are.
+        # Half to each: the smaller moments of a plate become more similar, as for most bodies.
         moments = moments + np.array([missing / 2, missing / 2, 0.0])
     t = ((axes * moments) @ axes.T).tolist()
     return (t[0][0], t[1][1], t[2][2]), (t[0][1], t[0][2], t[1][2])

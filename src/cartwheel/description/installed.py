@@ -1,7 +1,7 @@
-"""Files of a package that is not built, at the places where its CMakeLists.txt installs them.
+"""Finds files of an unbuilt package at the locations where its CMakeLists.txt installs them.
 
-``$(find pkg)`` and ``package://pkg`` mean the installed package, and many a package of ROS 2
-installs its folders elsewhere than they lie: ``description/urdf`` becomes ``share/pkg/urdf``.
+``$(find pkg)`` and ``package://pkg`` refer to the installed package. Many ROS 2 packages install
+folders at different locations: ``description/urdf`` becomes ``share/pkg/urdf``.
 """
 
 from __future__ import annotations
@@ -23,11 +23,10 @@ _OPTIONS = frozenset({
 
 
 def source_of(path: Path) -> Path:
-    """The file in the source tree that is installed as `path`; `path` itself where it
-    exists or there is no such file.
+    """The source file that is installed as `path`; `path` itself if it exists or has no source.
 
     Args:
-        path: Perhaps below the folder of a package.
+        path: A path, possibly below a package folder.
     """
     if path.exists():
         return path
@@ -46,7 +45,7 @@ def source_of(path: Path) -> Path:
 
 
 def _installed(lists: Path) -> Iterator[tuple[Path, Path]]:
-    """Folders in the source and in the installed package's share that are the same."""
+    """Pairs of source folders and the corresponding folders in the installed package's share."""
     try:
         text = _COMMENT.sub("", read_regular_text(lists))
     except OSError:
@@ -68,5 +67,5 @@ def _installed(lists: Path) -> Iterator[tuple[Path, Path]]:
             if word in _OPTIONS:
                 break
             folder = Path(word.replace("${CMAKE_CURRENT_SOURCE_DIR}/", ""))
-            # With a slash at its end what is in the folder is installed, without the folder.
+            # With a trailing slash, the folder's contents are installed without the folder.
             yield folder, target if word.endswith("/") else target / folder.name

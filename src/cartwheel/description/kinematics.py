@@ -1,4 +1,4 @@
-"""Where the links are for given joint positions, without physics: what a viewer needs."""
+"""Computes link poses from joint positions without physics, for viewers."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from cartwheel.geometry import Pose, quat_from_axis_angle
 def joint_positions(
     description: RobotDescription, positions: Mapping[str, float]
 ) -> dict[str, float]:
-    """The position of every joint: those given, those that mimic them, and 0 for the rest.
+    """The position of every joint: the given positions, mimic joints, and 0 for the rest.
 
     Args:
         description: The robot.
-        positions: In rad or m, by joint name; those of joints that mimic others are overruled.
+        positions: In rad or m, by joint name; positions of mimic joints are overridden.
     """
     joints = {joint.name: joint for joint in description.joints}
     return {name: _position(joint, joints, positions) for name, joint in joints.items()}
@@ -25,15 +25,15 @@ def joint_positions(
 def link_poses(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, Pose]:
     """The pose of every link in the model's frame.
 
-    Floating, planar and ball joints stay at zero: one number does not say where they are.
+    Floating, planar and ball joints stay at zero, because they have more than one coordinate.
 
     Args:
         description: The robot.
-        positions: In rad or m, by joint name; 0 for those missing.
+        positions: In rad or m, by joint name; 0 if missing.
     """
     angles = joint_positions(description, positions)
     rest = {link.name: link.pose for link in description.links}
-    # A loop has two joints to one link; the first makes the tree, as everywhere else.
+    # In a loop, a link has two joints; the first one is used in the tree, as everywhere else.
     inbound: dict[str, Joint] = {}
     for joint in description.joints:
         inbound.setdefault(joint.child, joint)
@@ -50,7 +50,7 @@ def _place(
     angles: Mapping[str, float],
     poses: dict[str, Pose],
 ) -> None:
-    # A chain is walked by hand, since long ones would go deeper than Python recurses.
+    # Iterative, because a long chain would exceed Python's recursion limit.
     chain = [name]
     while chain[-1] not in poses and chain[-1] in inbound:
         parent = inbound[chain[-1]].parent
@@ -100,9 +100,9 @@ def _position(joint: Joint, joints: Mapping[str, Joint], positions: Mapping[str,
 
 
 def fixed_chain(description: RobotDescription, link: str) -> list[Joint]:
-    """The fixed joints that hold a link to the root, from the root down.
+    """The chain of fixed joints from the root down to a link.
 
-    Empty where the link is the root, or where something between them moves.
+    Empty if the link is the root, or if a joint between them can move.
     """
     inbound: dict[str, Joint] = {}
     for joint in description.joints:

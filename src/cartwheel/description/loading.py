@@ -1,4 +1,4 @@
-"""Loads a description, whatever it is written in."""
+"""Loads descriptions in any supported format."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ _OTHER_KINDS = {
     "world": ("a <world> without <sdf> around it", ""),
     "mujoco": ("a MuJoCo model, not a ROS or Gazebo description", ""),
 }
-"""What a file of another root is, and what to do."""
+"""Root elements of other file types, with a hint for each."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Opened:
-    """A description with its xacro expanded, not yet understood."""
+    """A description with its xacro expanded, before interpretation."""
 
     root: Node
     packages: Packages
     text: str
     diagnostics: tuple[Diagnostic, ...]
     files: tuple[str, ...]
-    """The xacro files that made it; but for these, the one file itself."""
+    """The xacro files that produced it, or the file itself."""
     arguments: Mapping[str, str] = field(default_factory=dict)
-    """Of the xacro, with those that have their defaults."""
+    """Arguments of the xacro, including defaults."""
 
 
 def load(
@@ -49,16 +49,16 @@ def load(
     package_path: Sequence[Path] = (),
     reach: Reach | None = None,
 ) -> RobotDescription | WorldDescription:
-    """Reads a xacro, URDF, SDF or world file; its content, not its name, says which it is.
+    """Reads a xacro, URDF, SDF or world file. The format is detected from the contents.
 
     Args:
-        path: The file, a folder with a model in it, or the name of something shipped.
-        arguments: The values of ``name:=value`` for a xacro.
-        package_path: Further folders in which packages and models are looked for.
-        reach: What the file may read, where it is not the user's own.
+        path: The file, a folder with a model, or the name of a built-in description.
+        arguments: Values of ``name:=value`` arguments for a xacro.
+        package_path: Additional folders to search for packages and models.
+        reach: Files that an untrusted description may read; None for the user's own files.
 
     Raises:
-        DescriptionError: it cannot be used; says what is wrong, where, and the likely fix.
+        DescriptionError: The description cannot be used; the error has the location and a hint.
     """
     return understand(open_description(path, arguments or {}, package_path, reach))
 
@@ -70,7 +70,7 @@ def load_robot(
     package_path: Sequence[Path] = (),
     reach: Reach | None = None,
 ) -> RobotDescription:
-    """Reads a file as `load` does, one that must describe a robot or model."""
+    """Reads a file like `load`; it must describe a robot or model."""
     found = load(path, arguments=arguments, package_path=package_path, reach=reach)
     if isinstance(found, WorldDescription):
         raise DescriptionError(
@@ -89,7 +89,7 @@ def load_world(
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
 ) -> WorldDescription:
-    """Reads a file as `load` does, one that must describe a world."""
+    """Reads a file like `load`; it must describe a world."""
     found = load(path, arguments=arguments, package_path=package_path)
     if isinstance(found, RobotDescription):
         raise DescriptionError(
@@ -109,11 +109,11 @@ def load_text(
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
 ) -> RobotDescription | WorldDescription:
-    """Reads a description that is at hand as text, such as a ``robot_description`` parameter.
+    """Reads a description from text, such as a ``robot_description`` parameter.
 
     Args:
         text: The XML.
-        file: What errors call it; where such a file exists, packages are looked for around it.
+        file: File name for errors; if the file exists, packages are searched near it.
         arguments: As for `load`.
         package_path: As for `load`.
     """
@@ -130,16 +130,16 @@ def load_text(
 def load_plain(
     text: str | bytes, *, file: str, package_path: Sequence[Path] = (), reach: Reach | None = None
 ) -> RobotDescription | WorldDescription:
-    """Reads a description that came over a wire: nothing in it is expanded but ``$(find …)``.
+    """Reads a description received over the network; only ``$(find …)`` is expanded.
 
     Args:
         text: The XML.
-        file: What errors call it.
+        file: File name for errors.
         package_path: As for `load`.
-        reach: What it may read besides packages and models.
+        reach: Files that it may read in addition to packages and models.
 
     Raises:
-        DescriptionError: it cannot be used, or it has to be expanded first.
+        DescriptionError: The description cannot be used, or must be expanded first.
     """
     if not text.strip():
         raise DescriptionError(
@@ -175,7 +175,7 @@ def _expand(
 ) -> Opened:
     root = xml.parse(content, file)
     if xml.needs_xacro(root):
-        # Imported here: xacro costs a start that does not need it as much as all the rest.
+        # Imported here: xacro would double the startup time of simulations that do not need it.
         from cartwheel.description.xacro import expand
 
         expansion = expand(content, file, packages, arguments)
@@ -200,10 +200,10 @@ def _expand(
 
 
 def understand(opened: Opened) -> RobotDescription | WorldDescription:
-    """What an opened description says.
+    """Interprets an opened description.
 
     Raises:
-        DescriptionError: it is no description, or something in it is wrong.
+        DescriptionError: The file is not a description, or contains an error.
     """
     root = opened.root
     if opened.packages.reach is not None:

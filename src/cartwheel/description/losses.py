@@ -1,4 +1,4 @@
-"""Diagnostics for parts that a reader leaves out because of an error."""
+"""Diagnostics for parts that a reader skips because of an error."""
 
 from __future__ import annotations
 
@@ -17,17 +17,16 @@ def loss(
     origin: Origin | None = None,
     values: Mapping[str, Value] | None = None,
 ) -> Diagnostic:
-    """The error as a diagnostic, with what the simulation does without the part.
+    """The error as a diagnostic, with the effect on the simulation.
 
     Args:
         error: Why the part cannot be used.
-        consequence: What happens, as a sentence without capital and full stop.
-        of: The tag of the element that is left out, such as ``collision``; it becomes the value
-            ``left_out``.
-        severity: Of the diagnostic.
-        code: Where it is not that of the error.
-        origin: Where it is not that of the error.
-        values: Further ones.
+        consequence: The effect, as a sentence without capital letter and full stop.
+        of: The tag of the skipped element, such as ``collision``; stored in the value ``left_out``.
+        severity: The diagnostic's severity.
+        code: Replaces the error's code.
+        origin: Replaces the error's origin.
+        values: Additional values.
     """
     left_out = {"left_out": of} if of else {}
     return (code or error.code).diagnostic(

@@ -1,7 +1,7 @@
-"""The colours behind Gazebo's material names, and the warning for other names.
+"""The colours of Gazebo's named materials, and the warning for unknown names.
 
-The names and diffuse colours are those of Gazebo Classic 11's own scripts. Where Gazebo has a
-picture, the picture's mean colour stands for it: the pictures belong to Gazebo.
+The names and diffuse colours are from Gazebo Classic 11's scripts. For materials with an image, the
+image's mean colour is used, because the images belong to Gazebo.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _COLOURS: dict[str, tuple[float, float, float]] = {
     "RedBright": (0.87, 0.26, 0.07),
     "Green": (0.0, 1.0, 0.0),
     "Blue": (0.0, 0.0, 1.0),
-    # Its diffuse colour is pure blue; lit as Gazebo lights it, it looks like its ambient one.
+    # Its diffuse colour is pure blue; in Gazebo's lighting, it looks like its ambient colour.
     "SkyBlue": (0.13, 0.44, 0.70),
     "Yellow": (1.0, 1.0, 0.0),
     "ZincYellow": (0.9725, 0.9529, 0.2078),
@@ -101,7 +101,7 @@ _DARK: Rgba = (0.0, 0.0, 0.0, 1.0)
 
 
 def gazebo_material(name: str) -> Material | None:
-    """The material of a name such as ``Gazebo/Blue``; None where Gazebo has none of that name."""
+    """The material with a name such as ``Gazebo/Blue``; None if Gazebo has no such material."""
     if not name.startswith(_PREFIX):
         return None
     short = name.removeprefix(_PREFIX)
@@ -116,14 +116,14 @@ def gazebo_material(name: str) -> Material | None:
 
 
 def material_names() -> tuple[str, ...]:
-    """All names that `gazebo_material` knows."""
+    """All names accepted by `gazebo_material`."""
     known = (*_COLOURS, *_GLOWING, *_TRANSPARENT, *_PICTURES)
     return tuple(sorted(_PREFIX + name for name in known))
 
 
 def unknown_material(name: str, origin: Origin) -> Diagnostic:
-    """The warning for a name that `gazebo_material` does not know."""
-    # The prefix that all share would make any two of them look alike.
+    """The warning for a name that `gazebo_material` does not accept."""
+    # Without the common prefix, which would make any two names similar.
     short = [each.removeprefix(_PREFIX) for each in material_names()]
     near = numbers.likely(name.rpartition("/")[2], short)
     meant = f"{_PREFIX}{near}" if near else ""

@@ -1,6 +1,6 @@
-"""Packages that a description needs and that are not there: all of them at once.
+"""Finds all missing packages of a description at once.
 
-xacro stops at the first. Who then installs it meets the next, and the one after.
+xacro stops at the first missing package, so users would otherwise find them one by one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 from cartwheel.description.regular import read_regular_text
 
 MAX_FILES = 300
-"""Looked at; a description has some dozens."""
+"""Maximum number of files to examine; a description has a few dozen."""
 _SHOWN = 8
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _NAMED = re.compile(r"(?:\$\(find(?:-pkg-share)?\s+|package://)([A-Za-z]\w*)\)?(/[^\s\"'<>]*)?")
@@ -23,12 +23,12 @@ _INCLUDED = re.compile(r"""filename\s*=\s*["']([^"'$:]+\.xacro)["']""")
 def also_missing(
     files: Iterable[Path], missing: str, find: Callable[[str], Path | None]
 ) -> tuple[str, ...]:
-    """The other packages that files name, or the xacro files that these include, in vain.
+    """Other missing packages that these files, or xacro files included by them, refer to.
 
     Args:
-        files: Where to begin.
-        missing: The package whose absence is known.
-        find: The folder of a package, None where there is none.
+        files: The files to start with.
+        missing: The package known to be missing.
+        find: Returns a package's folder, or None if it is missing.
     """
     waiting = list(dict.fromkeys(files))
     seen = set(waiting)
@@ -58,7 +58,7 @@ def also_missing(
 def advice(
     package: str, others: Iterable[str] = (), environment: Mapping[str, str] | None = None
 ) -> str:
-    """How packages are got, as a sentence or two."""
+    """One or two sentences on how to install the packages."""
     distribution = (os.environ if environment is None else environment).get("ROS_DISTRO")
     rest = list(others)
     text = ""

@@ -1,8 +1,8 @@
-"""What a robot or world description says, in frozen dataclasses that know no MuJoCo.
+"""The contents of robot and world descriptions, as frozen dataclasses independent of MuJoCo.
 
-SI units. Frames follow SDF: a link's pose is given in its model, a visual's, collision's,
-inertial's and sensor's in its link, a joint's in its child link (`Joint.pose`).
-Every element carries the place in the user's file that made it.
+SI units. Frames follow SDF: a link's pose is relative to its model; the pose of a visual,
+collision, inertial or sensor is relative to its link, and a joint's to its child link
+(`Joint.pose`). Every element contains its location in the user's file.
 """
 
 # ruff: noqa: RUF009  (the defaults that are called for, such as Pose(), are frozen themselves)
@@ -35,7 +35,7 @@ JointType = Literal[
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Element:
-    """A parameter subtree of a plugin or sensor, as written: read once, by its owner."""
+    """A parameter tree of a plugin or sensor, as written, which the plugin or sensor reads."""
 
     tag: str
     text: str = ""
@@ -52,7 +52,7 @@ class Element:
         return None
 
     def find_all(self, tag: str) -> Iterator[Element]:
-        """The direct children of that tag."""
+        """The direct children with this tag."""
         return (child for child in self.children if child.tag == tag)
 
     def attribute(self, name: str) -> str | None:
@@ -82,7 +82,7 @@ class Sphere:
 class Capsule:
     radius: float
     length: float
-    """Of the cylindrical part, along z, centred."""
+    """Length of the cylindrical part along z, centred."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -101,7 +101,7 @@ class Ellipsoid:
 class Plane:
     normal: Vec3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (100.0, 100.0)
-    """Drawn size; collision reaches without end."""
+    """Drawn size; collisions have no limit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -109,7 +109,7 @@ class Mesh:
     uri: str
     """As written."""
     path: Path
-    """The file found for it; exists."""
+    """The resolved file, which exists."""
     scale: Vec3 = (1.0, 1.0, 1.0)
     submesh: str | None = None
     center_submesh: bool = False
@@ -120,7 +120,7 @@ class Mesh:
 class Heightmap:
     path: Path
     size: Vec3
-    """m; the brightest pixel is the third above black."""
+    """m; the third component is the height of the brightest pixel above black."""
     position: Vec3 = (0.0, 0.0, 0.0)
     texture: Path | None = None
 
@@ -131,7 +131,7 @@ class Polyline:
     height: float
     """Along z, from 0."""
     holes: tuple[tuple[tuple[float, float], ...], ...] = ()
-    """Further outlines: what an odd number of outlines surrounds is filled."""
+    """Additional outlines: points inside an odd number of outlines are filled."""
 
 
 Shape = Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | Heightmap | Polyline
@@ -139,23 +139,24 @@ Shape = Box | Cylinder | Sphere | Capsule | Cone | Ellipsoid | Plane | Mesh | He
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Material:
-    """How a surface looks; `colour_of` says which colour wins on a mesh."""
+    """A surface's appearance; `colour_of` selects between its colour and a mesh's colours."""
 
     name: str = ""
     """URDF material or Gazebo script name, as written."""
     diffuse: Rgba | None = None
-    """None where the mesh's own colours are to be kept."""
+    """None to keep the mesh's colours."""
     yields_to_mesh: bool = False
-    """`diffuse` counts only where a mesh brings no colours: rviz's rule for a URDF's colours."""
+    """Whether a mesh's colours take precedence over `diffuse`: rviz's rule for URDF colours."""
     specular: float = 0.1
     emissive: Rgba = (0.0, 0.0, 0.0, 1.0)
     texture: Path | None = None
-    """Times `diffuse`, where that is stated."""
+    """Multiplied by `diffuse`, if that is set."""
     texture_scale: tuple[float, float] = (1.0, 1.0)
-    """How much of a surface one copy of the texture covers, across and along; about its middle."""
+    """The part of a surface covered by one copy of the texture, across and along, about its centre.
+    """
 
     def colour_of(self, own: Rgba | None) -> Rgba | None:
-        """The colour of a part that brings `own`, such as a mesh's; None where nobody says."""
+        """The colour of a part with the colour `own`, such as a mesh's; None if neither is set."""
         if own is not None and (self.diffuse is None or self.yields_to_mesh):
             return own
         return self.diffuse
@@ -163,22 +164,22 @@ class Material:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Surface:
-    """Contact parameters as Gazebo's ODE understands them; None where not stated."""
+    """Contact parameters as in Gazebo's ODE; None if not stated."""
 
     mu1: float | None = None
     mu2: float | None = None
     fdir1: Vec3 | None = None
-    """The direction in which mu1 counts, mu2 across it; the world's axes where there is none."""
+    """The direction in which mu1 applies, with mu2 across it; None for the world's axes."""
     fdir1_frame: str | None = None
-    """The link in whose axes `fdir1` is; None for the collision's own."""
+    """The link that defines the axes of `fdir1`; None for the collision's own axes."""
     slip1: float | None = None
     slip2: float | None = None
     torsional: float | None = None
-    """What a turn on the spot meets, a coefficient; 1 where a `patch_radius` alone is stated."""
+    """Torsional friction coefficient; 1 if only `patch_radius` is stated."""
     patch_radius: float | None = None
-    """m, of the area that touches."""
+    """Radius of the contact area, m."""
     surface_radius: float | None = None
-    """m, of the surface's curvature, where that area follows from the depth instead."""
+    """Radius of the surface's curvature, m, if the contact area depends on the depth instead."""
     kp: float | None = None
     """N/m."""
     kd: float | None = None
@@ -190,11 +191,11 @@ class Surface:
     max_contacts: int | None = None
     restitution: float | None = None
     bounce_threshold: float | None = None
-    """m/s: what meets more slowly does not bounce."""
+    """m/s; slower impacts do not bounce."""
     collide_bitmask: int | None = None
-    """32 bits: what it touches, by their category."""
+    """32 bits: the categories that it collides with."""
     category_bitmask: int | None = None
-    """32 bits: `collide_bitmask` where not stated."""
+    """32 bits: the same as `collide_bitmask` if not stated."""
     collide_without_contact: bool = False
 
 
@@ -213,9 +214,9 @@ class Visual:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Collision:
     name: str
-    """Unique in its link; Gazebo's spelling for a URDF: ``<link>_collision``, then ``_1``, …"""
+    """Unique in its link. In a URDF, Gazebo's spelling: ``<link>_collision``, then ``_1``, …"""
     aliases: tuple[str, ...] = ()
-    """Other spellings by which a sensor may name it, those of lumped links among them."""
+    """Other spellings that sensors may use, including those of merged links."""
     pose: Pose = Pose()
     shape: Shape
     surface: Surface = Surface()
@@ -226,9 +227,9 @@ class Collision:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Inertial:
     mass: float
-    """kg, above 0."""
+    """kg, positive."""
     pose: Pose = Pose()
-    """Of the centre of mass and the axes of the inertia, in the link."""
+    """Pose of the centre of mass and the inertia's axes in the link."""
     ixx: float
     iyy: float
     izz: float
@@ -251,7 +252,7 @@ class Inertial:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraIntrinsics:
-    """What SDF's ``<camera>`` says of one lens."""
+    """The parameters of one lens in SDF's ``<camera>``."""
 
     name: str = ""
     pose: Pose = Pose()
@@ -287,23 +288,23 @@ class PluginTag:
 class Sensor:
     name: str
     type: str
-    """SDF's word: camera, depth, imu, contact, ray, gpu_lidar, …"""
+    """SDF's type: camera, depth, imu, contact, ray, gpu_lidar, …"""
     link: str
-    """The URDF's own link name, also where Gazebo would have lumped it away."""
+    """The link name in the URDF, even if Gazebo would merge the link."""
     joint: str | None = None
-    """The joint that it measures; `link` is that joint's child then."""
+    """The joint that it measures; `link` is then that joint's child."""
     pose: Pose = Pose()
     update_rate: float = 0.0
-    """Hz; 0 is every step."""
+    """Hz; 0 for every step."""
     always_on: bool = False
     visualize: bool = False
     topic: str | None = None
     cameras: tuple[CameraIntrinsics, ...] = ()
     collisions: tuple[str, ...] = ()
-    """The collision names that a contact sensor asks for, as written."""
+    """The collision names of a contact sensor, as written."""
     plugins: tuple[PluginTag, ...] = ()
     element: Element
-    """All of it, for the parameters of rarer types."""
+    """The complete element, for parameters of rarer sensor types."""
     origin: Origin
 
 
@@ -321,9 +322,9 @@ class Light:
     spot_angle: float = 1.0
     """Outer angle, rad."""
     spot_inner: float = 0.0
-    """Angle within which a spot is as bright as in its middle, rad."""
+    """Angle of full brightness, rad."""
     spot_falloff: float = 0.0
-    """How steeply it fades from there to its edge: the exponent of the way left; 0 is not."""
+    """Exponent of the decrease in brightness from the inner to the outer angle; 0 for none."""
     cast_shadows: bool = True
     origin: Origin
 
@@ -332,7 +333,7 @@ class Light:
 class Link:
     name: str
     pose: Pose = Pose()
-    """In the model, at zero joint positions."""
+    """Pose in the model at zero joint positions."""
     inertial: Inertial | None = None
     visuals: tuple[Visual, ...] = ()
     collisions: tuple[Collision, ...] = ()
@@ -343,7 +344,7 @@ class Link:
     kinematic: bool = False
     linear_damping: float = 0.0
     angular_damping: float = 0.0
-    """Fraction of velocity taken per step of Gazebo, as SDF's ``<velocity_decay>``."""
+    """Fraction of the velocity removed per Gazebo time step, as in SDF's ``<velocity_decay>``."""
     origin: Origin
 
 
@@ -367,7 +368,7 @@ class Axis:
 
     @property
     def locks(self) -> bool:
-        """Whether its limits leave no way between them."""
+        """Whether its limits leave no range of motion."""
         return self.lower is not None and self.lower == self.upper
 
 
@@ -380,15 +381,15 @@ class Mimic:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SoftLimits:
-    """A ``<safety_controller>``: limits that ros_control keeps a joint within."""
+    """A ``<safety_controller>``: limits that ros_control enforces."""
 
     lower: float = 0.0
     upper: float = 0.0
     """rad or m."""
     k_position: float = 0.0
-    """1/s: how fast it may go to a limit, by how far it is."""
+    """1/s: maximum speed toward a limit per distance from the limit."""
     k_velocity: float = 0.0
-    """N m s/rad or N s/m: how hard it may be driven beyond that."""
+    """N m s/rad or N s/m: maximum effort per velocity beyond the limit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -396,7 +397,7 @@ class Joint:
     name: str
     type: JointType
     parent: str
-    """A link, or ``world``."""
+    """A link or ``world``."""
     child: str
     pose: Pose = Pose()
     """The joint frame in the child link; identity for a URDF."""
@@ -405,7 +406,7 @@ class Joint:
     mimic: Mimic | None = None
     soft: SoftLimits | None = None
     thread_pitch: float | None = None
-    """Of a screw: metres along the axis for each turn, positive for a right-handed one."""
+    """Metres along the axis per turn of a screw, positive for a right-handed one."""
     stop_cfm: float | None = None
     stop_erp: float | None = None
     provide_feedback: bool = False
@@ -415,7 +416,9 @@ class Joint:
 
     @property
     def drivable(self) -> bool:
-        """Whether it has one degree of freedom, to be driven and told of: no ball, no screw."""
+        """Whether it has one degree of freedom that can be driven and measured; false for balls and
+        screws.
+        """
         return self.type in ("revolute", "continuous", "prismatic")
 
     @property
@@ -428,7 +431,7 @@ class Joint:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RobotDescription:
-    """One model: a robot, or a thing in the world."""
+    """A model: a robot or an object in the world."""
 
     name: str
     links: tuple[Link, ...]
@@ -437,42 +440,42 @@ class RobotDescription:
     static: bool = False
     self_collide: bool = False
     pose: Pose = Pose()
-    """Where its file puts it in the world."""
+    """Pose in the world, as stated in its file."""
     joint_positions: tuple[tuple[str, float], ...] = ()
-    """rad or m, where its joints begin; at 0 those that are not named."""
+    """Initial positions in rad or m; other joints start at 0."""
     canonical_link: str
-    """The link whose frame is the model's as Gazebo reports it: a URDF's root."""
+    """The link whose frame is the model's frame in Gazebo: the root link of a URDF."""
     transmissions: tuple[Element, ...] = ()
     ros2_control: tuple[Element, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
     text: str = ""
-    """The expanded XML, what ROS calls robot_description."""
+    """The expanded XML, as in the ROS parameter robot_description."""
     arguments: Mapping[str, str] = field(default_factory=dict, compare=False)
-    """Of its xacro, by name, with those that have their defaults."""
+    """The xacro's arguments by name, including defaults."""
     origin: Origin
 
     def link(self, name: str) -> Link | None:
-        """The link of that name."""
+        """The link with this name."""
         return next((link for link in self.links if link.name == name), None)
 
     def joint(self, name: str) -> Joint | None:
-        """The joint of that name."""
+        """The joint with this name."""
         return next((joint for joint in self.joints if joint.name == name), None)
 
     @property
     def canonical_pose(self) -> Pose:
-        """Of the canonical link's frame in the model's; identity for a URDF."""
+        """Pose of the canonical link in the model's frame; identity for a URDF."""
         link = self.link(self.canonical_link)
         return link.pose if link is not None else Pose()
 
     @property
     def mass(self) -> float:
-        """kg, of all links."""
+        """Total mass of all links, kg."""
         return sum(link.inertial.mass for link in self.links if link.inertial)
 
     @property
     def parts(self) -> str:
-        """How many links and joints it has, in words."""
+        """The number of links and joints, in words."""
         counts = (len(self.links), "link"), (len(self.joints), "joint")
         return ", ".join(f"{n} {noun}{'' if n == 1 else 's'}" for n, noun in counts)
 
@@ -480,7 +483,7 @@ class RobotDescription:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Physics:
     max_step_size: float | None = None
-    """s; None where the world does not state it."""
+    """s; None if the world does not state it."""
     real_time_factor: float | None = None
     real_time_update_rate: float | None = None
 
@@ -491,9 +494,9 @@ class WorldDescription:
     models: tuple[RobotDescription, ...] = ()
     lights: tuple[Light, ...] = ()
     joints: tuple[Joint, ...] = ()
-    """Between links of different models, by ``model::link``."""
+    """Joints between links of different models, as ``model::link``."""
     places: tuple[tuple[str, Pose], ...] = ()
-    """The world's own ``<frame>`` by name: those that no model carries along."""
+    """The world's own ``<frame>`` elements by name that are not attached to a model."""
     gravity: Vec3 = (0.0, 0.0, -9.8)
     magnetic_field: Vec3 = (6e-06, 2.3e-05, -4.2e-05)
     """T, east-north-up, Gazebo's default."""

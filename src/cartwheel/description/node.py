@@ -1,4 +1,4 @@
-"""An element of a description: its parts, its place, and what was read of it."""
+"""An element of a description: its contents, its location, and which parts were read."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from cartwheel.geometry import Pose, Vec3
 
 
 class Node:
-    """One element: its parts, its place, and which of its parts a parser asked for.
+    """An element with its contents and location, which records the parts that were read.
 
-    Reading a child or an attribute marks it; `unread` then lists what nobody understood.
+    Reading a child or an attribute marks it; `unread` then lists the parts that no reader used.
     """
 
     __slots__ = (
@@ -39,7 +39,7 @@ class Node:
     ) -> None:
         self.tag = tag
         self.text = text
-        """The element's own text, without the white space around it."""
+        """The element's own text without surrounding white space."""
         self.origin = origin
         self.children: list[Node] = list(children)
         self._attributes = dict(attributes)
@@ -47,18 +47,18 @@ class Node:
         self._asked_attributes: set[str] = set()
         self._asked_children: set[str] = set()
         self.notes: tuple[Diagnostic, ...] = ()
-        """Warnings of its reader; `unread` reports them."""
+        """Warnings of its reader, reported by `unread`."""
 
     def __repr__(self) -> str:
         return f"<{self.tag}> at {self.origin}"
 
     @property
     def attributes(self) -> Mapping[str, str]:
-        """All attributes; looking here marks none as read."""
+        """All attributes; none is marked as read."""
         return self._attributes
 
     def set_attributes(self, values: Mapping[str, str]) -> None:
-        """Puts others in the place of all attributes."""
+        """Replaces all attributes."""
         self._attributes = dict(values)
 
     def fail(
@@ -69,7 +69,7 @@ class Node:
         code: Code = codes.VALUE_INVALID,
         values: Mapping[str, Value] | None = None,
     ) -> DescriptionError:
-        """An error at this place, to be raised by the caller."""
+        """Creates an error at this location, for the caller to raise."""
         return DescriptionError(
             message,
             code=code,
@@ -81,7 +81,7 @@ class Node:
     # Children.
 
     def child(self, tag: str) -> Node | None:
-        """The first child of that tag; further ones stay unread and are reported."""
+        """The first child with this tag; any others stay unread and are reported."""
         self._asked_children.add(tag)
         for child in self.children:
             if child.tag == tag:
@@ -90,7 +90,7 @@ class Node:
         return None
 
     def require_child(self, tag: str) -> Node:
-        """The first child of that tag."""
+        """The first child with this tag, which is required."""
         found = self.child(tag)
         if found is None:
             raise self.fail(
@@ -102,7 +102,7 @@ class Node:
         return found
 
     def all(self, tag: str) -> list[Node]:
-        """All children of that tag."""
+        """All children with this tag."""
         self._asked_children.add(tag)
         found = [child for child in self.children if child.tag == tag]
         for child in found:
@@ -117,11 +117,13 @@ class Node:
         return node
 
     def drop(self, child: Node) -> None:
-        """Takes a child out, so that no reader of this element meets it."""
+        """Removes a child, so that no reader of this element finds it."""
         self.children.remove(child)
 
     def mark(self) -> Node:
-        """Counts this element, its attributes and all below as read: it is passed on whole."""
+        """Marks this element, its attributes and all descendants as read, because it is passed on
+        whole.
+        """
         self._read = True
         self._asked_attributes.update(self._attributes)
         for child in self.children:
@@ -136,7 +138,7 @@ class Node:
         return self._attributes.get(name)
 
     def require(self, name: str) -> str:
-        """The value of an attribute that must be there and not be empty."""
+        """The value of an attribute that is required and must not be empty."""
         value = self.get(name)
         if value is None:
             others = [a for a in self._attributes if a not in self._asked_attributes]
@@ -166,7 +168,7 @@ class Node:
         return numbers.number(value, self._attribute_label(name), self.origin, infinite=infinite)
 
     def optional_number_of(self, name: str, *, infinite: bool = False) -> float | None:
-        """An attribute as a number, None where it is not there."""
+        """An attribute as a number, or None if it is missing."""
         value = self.get(name)
         if value is None:
             return None
@@ -175,7 +177,7 @@ class Node:
     def vector_of(
         self, name: str, size: int, default: tuple[float, ...] | None = None
     ) -> tuple[float, ...]:
-        """An attribute as `size` numbers with white space between; required without a default."""
+        """An attribute as `size` numbers separated by white space; required without a default."""
         value = self.get(name) if default is not None else self.require(name)
         if value is None:
             assert default is not None
@@ -201,7 +203,7 @@ class Node:
         return numbers.number(self.text, self.tag, self.origin, infinite=infinite)
 
     def integer(self) -> int:
-        """The text as a whole number."""
+        """The text as an integer."""
         return numbers.integer(self.text, self.tag, self.origin)
 
     def boolean(self) -> bool:
@@ -209,7 +211,7 @@ class Node:
         return numbers.boolean(self.text, self.tag, self.origin)
 
     def vector(self, size: int) -> tuple[float, ...]:
-        """The text as `size` numbers with white space between."""
+        """The text as `size` numbers separated by white space."""
         return numbers.vector(self.text, size, self.tag, self.origin)
 
     def vec3(self) -> Vec3:
@@ -218,7 +220,7 @@ class Node:
         return (x, y, z)
 
     def pose(self) -> Pose:
-        """The text as ``x y z roll pitch yaw``, or empty for none."""
+        """The text as ``x y z roll pitch yaw``; empty for identity."""
         if not self.text:
             return Pose()
         values = self.vector(6)
@@ -238,17 +240,17 @@ class Node:
         return node.number(infinite=infinite) if node is not None else default
 
     def optional_number_at(self, path: str, *, infinite: bool = False) -> float | None:
-        """The number at a path, None where there is no such element."""
+        """The number at a path, or None if the element is missing."""
         node = self._filled(path)
         return node.number(infinite=infinite) if node is not None else None
 
     def integer_at(self, path: str, default: int) -> int:
-        """The whole number at a path."""
+        """The integer at a path."""
         node = self._filled(path)
         return node.integer() if node is not None else default
 
     def boolean_at(self, path: str, default: bool) -> bool:
-        """The truth value at a path."""
+        """The boolean at a path."""
         node = self._filled(path)
         return node.boolean() if node is not None else default
 
@@ -258,12 +260,12 @@ class Node:
         return node.vec3() if node is not None else default
 
     def pose_at(self, path: str) -> Pose:
-        """The pose at a path, identity where there is none."""
+        """The pose at a path; identity if the element is missing."""
         node = self.find(path)
         return node.pose() if node is not None else Pose()
 
     def _filled(self, path: str) -> Node | None:
-        """The descendant at a path where it says something: an empty one gives the default."""
+        """The descendant at a path if it is not empty: an empty element selects the default."""
         node = self.find(path)
         if node is None or node.text.strip() or node.children:
             return node
@@ -290,13 +292,13 @@ class Node:
 
 
 def to_element(node: Node) -> Element:
-    """The subtree as parameters for its owner, which reports unknown ones."""
+    """The subtree as parameters for its plugin or sensor, which reports unknown ones."""
     node.mark()
     return copied(node)
 
 
 def copied(node: Node) -> Element:
-    """The subtree as it is written; nothing of it counts as read."""
+    """The subtree as written; no part is marked as read."""
     return Element(
         tag=node.tag,
         text=node.text,
@@ -309,12 +311,12 @@ def copied(node: Node) -> Element:
 def unread(
     node: Node, harmless: Mapping[tuple[str, str], str] | None = None
 ) -> Iterator[Diagnostic]:
-    """A warning for each part below `node` that no parser asked for.
+    """A warning for each part below `node` that no reader used.
 
     Args:
         node: A root.
-        harmless: Reasons for parts without an effect, by the element's tag and the child's tag,
-            or the attribute's name after an ``@``: these are reported as info.
+        harmless: Reasons for parts without an effect, by the element's tag and the child's tag, or
+            the attribute's name after an ``@``: these are reported as info.
     """
     known = harmless or {}
     yield from node.notes
@@ -322,7 +324,7 @@ def unread(
         if name in node._asked_attributes or name.startswith("xmlns"):
             continue
         if not value.strip():
-            continue  # Gazebo saves its worlds with <pose frame=''>: it says nothing
+            continue  # Gazebo saves its worlds with <pose frame=''>, which has no meaning.
         if ":" in name:
             yield _foreign(name, node.origin)
             continue
@@ -369,7 +371,7 @@ def _ignored(
     form: str,
     values: Mapping[str, Value],
 ) -> Diagnostic:
-    """A part that has no effect; with a reason, it is a known one."""
+    """The diagnostic for a part without effect; if `reason` is set, the part is known."""
     if reason is not None:
         return codes.TAG_IGNORED.diagnostic(
             f"{what} has no effect: {reason}", origin=origin, severity="info", values=values
@@ -383,17 +385,19 @@ def _ignored(
 
 
 def _foreign(name: str, origin: Origin) -> Diagnostic:
-    """Names with a prefix are left to whichever program knows them, as SDF says."""
+    """Names with a prefix are left to other programs, as SDF specifies."""
     return codes.NOT_SIMULATED.diagnostic(
         f"{name} is intended for other programs", origin=origin, values={"tag": name}
     )
 
 
 def needs_xacro(root: Node) -> bool:
-    """Whether a tree has xacro's elements, or expressions where it declares xacro's namespace.
+    """Whether a tree contains xacro elements, or expressions and a declaration of xacro's
+    namespace.
 
-    ``$(find …)`` means something to xacro alone, so launch files run it on such a URDF too. In
-    the ``<uri>`` of an SDF it is found like any other file: a missing one costs one model.
+    Only xacro expands ``$(find …)``, so launch files also use it for URDFs with that expression. In
+    the ``<uri>`` of an SDF, it is resolved like any other file: a missing file only affects one
+    model.
     """
     declared = "xmlns:xacro" in root.attributes
     stack = [root]

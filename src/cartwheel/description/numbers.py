@@ -1,4 +1,4 @@
-"""Numbers, vectors and truth values as descriptions write them, and what is wrong with them."""
+"""Parses numbers, vectors and booleans in descriptions, with errors."""
 
 from __future__ import annotations
 
@@ -15,21 +15,22 @@ from cartwheel.geometry import Vec3
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
 LARGEST = 1e15
-"""Of places, sizes and directions; squares of what is larger leave the range of numbers."""
+"""Maximum of positions, sizes and directions; the square of a larger value overflows."""
 FARTHEST = 1e9
-"""m, of a pose's position: the engine takes states of 1e10 for diverged."""
+"""Maximum position in a pose, m: the engine considers states diverged at 1e10."""
 MOST_RATIO = 1e6
-"""Of a joint that follows another one, and of gears."""
+"""Maximum ratio of a mimic joint or a gear."""
 FARTHEST_JOINT = 1e6
-"""rad or m, of a joint's position at the start; the same bound as for commands while it runs."""
+"""Maximum initial joint position, rad or m; the same limit as for commands at run time."""
 _LONGEST_NAME = 200
 _MOST_NAMES = 2000
-"""Names, and their letters, among which the one that was meant is looked for: the time grows with
-their number, and with the square of their length."""
+"""Maximum number of names, and total letters, to compare for a suggestion: the time grows with
+their number, and with the square of their length.
+"""
 
 
 class _InvalidError(DescriptionError):
-    """A value that is malformed or out of range; `label` says what it is of."""
+    """A malformed or out-of-range value; `label` says what it is."""
 
     code = VALUE_INVALID
 
@@ -47,13 +48,13 @@ _FALSE = frozenset({"false", "0", "no", "off"})
 
 
 def number(text: str, label: str, origin: Origin, *, infinite: bool = False) -> float:
-    """A finite number, or one of either infinity where those are allowed.
+    """A finite number, or an infinite one if allowed.
 
     Args:
-        text: As written.
+        text: The text in the file.
         label: What the number is, for the error.
-        origin: Where it stands.
-        infinite: Whether ``inf`` has a meaning there, as it has for limits.
+        origin: File and line.
+        infinite: Whether ``inf`` is allowed, as for limits.
     """
     value = text.strip()
     if _NUMBER.match(value):
@@ -75,7 +76,7 @@ def number(text: str, label: str, origin: Origin, *, infinite: bool = False) -> 
 
 
 def integer(text: str, label: str, origin: Origin) -> int:
-    """A whole number; ``10.0`` is one."""
+    """An integer; ``10.0`` is accepted."""
     value = number(text, label, origin)
     if value != int(value):
         raise _InvalidError(label, f"{_quoted(text.strip())} is not an integer", text, origin)
@@ -83,7 +84,7 @@ def integer(text: str, label: str, origin: Origin) -> int:
 
 
 def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...]:
-    """`size` finite numbers with white space between."""
+    """`size` finite numbers separated by white space."""
     if "," in text:
         raise _InvalidError(
             label,
@@ -109,10 +110,10 @@ def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...
 
 
 def position(values: Sequence[float], label: str, origin: Origin) -> Vec3:
-    """The position of a pose, in m.
+    """The position of a pose, m.
 
     Raises:
-        DescriptionError: It is too far away.
+        DescriptionError: The position is too far away.
     """
     x, y, z = values
     if max(abs(x), abs(y), abs(z)) > FARTHEST:
@@ -126,10 +127,10 @@ def position(values: Sequence[float], label: str, origin: Origin) -> Vec3:
 
 
 def within(value: float, most: float, label: str, origin: Origin) -> float:
-    """A number of a bounded magnitude.
+    """A number with a limited magnitude.
 
     Raises:
-        DescriptionError: It is larger.
+        DescriptionError: The number is too large.
     """
     if abs(value) > most:
         raise _InvalidError(
@@ -139,7 +140,7 @@ def within(value: float, most: float, label: str, origin: Origin) -> float:
 
 
 def boolean(text: str, label: str, origin: Origin) -> bool:
-    """A truth value in any of the spellings that Gazebo's files use."""
+    """A boolean in any spelling used in Gazebo's files."""
     value = text.strip().lower()
     if value in _TRUE:
         return True
@@ -155,7 +156,7 @@ def boolean(text: str, label: str, origin: Origin) -> bool:
 
 
 def likely(name: str, known: Iterable[str], cutoff: float = 0.7) -> str | None:
-    """The one of `known` that a mistyped name likely means; letter case counts for nothing."""
+    """The name in `known` that a misspelt name likely means, ignoring case."""
     if len(name) > _LONGEST_NAME:
         return None
     known = itertools.islice((each for each in known if len(each) <= _LONGEST_NAME), _MOST_NAMES)

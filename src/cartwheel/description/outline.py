@@ -1,6 +1,6 @@
-"""Flat outlines with holes, as convex pieces and as a solid: SDF's ``<polyline>``.
+"""Converts flat outlines with holes to convex pieces or a solid, for SDF's ``<polyline>``.
 
-What an odd number of the outlines surrounds is filled, so an outline within another is a hole.
+Points inside an odd number of outlines are filled, so an outline within another is a hole.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ Point = tuple[float, float]
 Loop = tuple[Point, ...]
 Edge = tuple[Point, Point]
 MOST_EDGES, MOST_CROSSINGS, MOST_PIECES = 2000, 1000, 6000
-"""Of all outlines of a shape; as many take two seconds, and to be built four."""
+"""Maximum for all outlines of a shape; such a shape takes two seconds, and four to build."""
 _SAME = 1e-9
-"""m, below which two heights of the plane are one."""
+"""m; two y values that differ by less are equal."""
 
 
 class OutlineError(ValueError):
@@ -28,20 +28,20 @@ class OutlineError(ValueError):
 
 
 def convex_pieces(shape: Polyline) -> tuple[Loop, ...]:
-    """Convex polygons, counter-clockwise, that together fill the outlines and do not overlap.
+    """Non-overlapping convex polygons, counter-clockwise, that fill the outlines.
 
     Raises:
-        OutlineError: They have too many points, or cross too often.
+        OutlineError: There are too many points or crossings.
     """
     return _pieces(_loops(shape))
 
 
 def solid(shape: Polyline) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """The outlines pulled up from z = 0 to the height.
+    """Extrudes the outlines from z = 0 to the height.
 
     Returns:
-        Vertices (n, 3) in m and faces (m, 3), counter-clockwise from outside; faces of the top,
-        the bottom and each side share no vertex.
+        Vertices (n, 3) in m and faces (m, 3), counter-clockwise from outside. The top, the bottom
+        and each side share no vertices.
     """
     loops = _loops(shape)
     vertices: list[tuple[float, float, float]] = []
@@ -57,14 +57,14 @@ def solid(shape: Polyline) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     along = ends - starts
     size = np.ptp(np.array(edges).reshape(-1, 2), axis=0).max()
     across = np.column_stack([-along[:, 1], along[:, 0]])
-    # hypot, since the squares of tiny lengths are 0.
+    # hypot, because the squares of tiny lengths underflow.
     across /= np.hypot(along[:, :1], along[:, 1:])
     across *= 1e-6 * size
     middles = (starts + ends) / 2
     left, right = _inside(edges, middles + across), _inside(edges, middles - across)
     for (a, b), on_left, on_right in zip(parts, left.tolist(), right.tolist(), strict=True):
         if on_left == on_right:
-            continue  # an edge within the solid or outside of it
+            continue  # an edge inside or outside the solid
         first, second = (a, b) if on_left else (b, a)
         start = len(vertices)
         vertices += [(*first, 0.0), (*second, 0.0), (*second, shape.height)]
@@ -74,7 +74,7 @@ def solid(shape: Polyline) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
 
 
 def _loops(shape: Polyline) -> tuple[Loop, ...]:
-    """All outlines, without points that repeat their neighbour."""
+    """All outlines without repeated points."""
     loops = []
     for outline in (shape.points, *shape.holes):
         points = [p for i, p in enumerate(outline) if p != outline[i - 1]]
@@ -89,15 +89,16 @@ def _pieces(loops: tuple[Loop, ...]) -> tuple[Loop, ...]:
 
 
 def fill(edges: Sequence[Edge]) -> list[Loop]:
-    """Convex polygons, counter-clockwise, that fill what an odd number of closed outlines holds.
+    """Convex polygons, counter-clockwise, that fill the area inside an odd number of outlines.
 
     Args:
-        edges: Of the outlines, in any order and direction.
+        edges: Edges of the outlines, in any order and direction.
 
     Raises:
-        OutlineError: There are too many, or they cross too often.
+        OutlineError: There are too many edges or crossings.
     """
-    # Cut into strips at the y of every corner and crossing: in a strip all is trapezoids.
+    # Cut into strips at the y of every corner and crossing, so that each strip contains only
+    # trapezoids.
     slanting = _slanting(edges)
     if len(edges) > MOST_EDGES:
         raise OutlineError(
@@ -117,7 +118,7 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
         ended = [pair for pair in open_pieces if pair not in strip]
         done += [_trapezoid(pair, *open_pieces.pop(pair)) for pair in ended]
         for pair in strip:
-            # Between the same two edges it is the same trapezoid, one strip higher.
+            # Between the same two edges, the trapezoid of the lower strip is extended.
             open_pieces[pair] = (open_pieces.get(pair, (low, high))[0], high)
         if len(done) > MOST_PIECES:
             raise OutlineError(f"the outlines have more than {MOST_PIECES} convex pieces")
@@ -130,19 +131,19 @@ def _edges(loops: Sequence[Loop]) -> list[Edge]:
 
 
 def _slanting(edges: Sequence[Edge]) -> list[Edge]:
-    """The edges that are not level, from their lower to their upper end."""
+    """The edges that are not level, from the lower to the upper end."""
     return [(a, b) if a[1] < b[1] else (b, a) for a, b in edges if abs(a[1] - b[1]) > _SAME]
 
 
 def _levels(edges: Sequence[Edge]) -> list[float]:
-    """The y of all corners and crossings, rising."""
+    """The y values of all corners and crossings, in ascending order."""
     found = {y for edge in edges for _, y in edge}
     slanting = _slanting(edges)
     count = 0
     for i, t, u in _meetings(slanting):
         within = (t > _SAME) & (t < 1 - _SAME) & (u > _SAME) & (u < 1 - _SAME)
         count += int(within.sum())
-        if count > 2 * MOST_CROSSINGS:  # each is found from both of its edges
+        if count > 2 * MOST_CROSSINGS:  # each crossing is found from both edges
             raise OutlineError(f"the outlines cross more than {MOST_CROSSINGS} times")
         (_, y0), (_, y1) = slanting[i]
         found.update((y0 + t[within] * (y1 - y0)).tolist())
@@ -150,13 +151,13 @@ def _levels(edges: Sequence[Edge]) -> list[float]:
 
 
 def _split(edges: Sequence[Edge]) -> list[list[Point]]:
-    """The ends of each edge, and between them where others meet it: the filled side may change."""
+    """The ends of each edge and all intersections, where the filled side may change."""
     corners = np.array([edge[0] for edge in edges])
     found = []
     for i, t, u in _meetings(edges):
         a, b = np.array(edges[i])
         along = b - a
-        # Corners on the edge too: parallel edges meet nowhere else.
+        # Corners on the edge too, because parallel edges have no other intersection.
         offsets = corners - a
         length = np.linalg.norm(along)
         beside = np.abs(offsets[:, 0] * along[1] - offsets[:, 1] * along[0]) < _SAME * length
@@ -170,7 +171,7 @@ def _split(edges: Sequence[Edge]) -> list[list[Point]]:
 def _meetings(
     edges: Sequence[Edge],
 ) -> Iterator[tuple[int, NDArray[np.float64], NDArray[np.float64]]]:
-    """For each edge where it meets the lines of the others: fractions of it, and of those."""
+    """For each edge, its intersections with the lines of the others, as fractions of both."""
     ends = np.array(edges).reshape(-1, 2, 2)
     starts, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     for i, (start, r) in enumerate(zip(starts, along, strict=True)):
@@ -202,7 +203,7 @@ def _x_at(edge: Edge, y: float) -> float:
 
 
 def _inside(edges: Sequence[Edge], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """For each point whether an odd number of edges lies to its right."""
+    """For each point, whether an odd number of edges lies to its right."""
     ends = np.array(edges)
     (x0, y0), (x1, y1) = ends[:, 0].T, ends[:, 1].T
     found = np.zeros(len(points), dtype=bool)

@@ -1,7 +1,7 @@
-"""Finds what descriptions refer to: packages, models, meshes and the files shipped here.
+"""Resolves references in descriptions: packages, models, meshes and built-in files.
 
-Nobody should have to source a workspace first, so a package is looked for around the
-file that names it before the environment variables of ROS 1, ROS 2 and Gazebo are asked.
+Packages are first searched near the file that refers to them, so that no workspace must be sourced.
+Then the environment variables of ROS 1, ROS 2 and Gazebo are used.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ from cartwheel.description.reach import (
 from cartwheel.errors import DescriptionError, Origin
 
 MAX_ENTRIES = 500
-"""A folder with more entries is no workspace; only these are looked at."""
+"""A folder with more entries is not a workspace; only these are examined."""
 MAX_CRAWLED = 20_000
-"""Folders that are looked at below one root, at most."""
+"""Maximum number of folders to search below one root."""
 MAX_LEVELS_UP = 5
-"""How far above the file, or above its package, a workspace may begin."""
+"""How far above the file or its package a workspace may begin."""
 
 _ROS1 = "ROS_PACKAGE_PATH"
 _PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
 _MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
 _RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
 IGNORE_MARKERS = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
-"""Files of folders in which no package is looked for."""
+"""Files that exclude a folder from the search for packages."""
 _SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
 _NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
@@ -50,7 +50,7 @@ FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 
 
 def share() -> Path:
-    """The folder that holds the shipped ``robots``, ``worlds`` and ``models``.
+    """The folder with the built-in ``robots``, ``worlds`` and ``models``.
 
     The repository's root in a checkout, ``cartwheel/share`` in an installed package.
     """
@@ -60,16 +60,17 @@ def share() -> Path:
 
 
 class Packages:
-    """Resolves the URIs of one description.
+    """Resolves the URIs in one description.
 
     Args:
-        file: The description; the workspace around it is searched first. None for a text
-            that has no file: the current folder stands in for it.
-        package_path: Further folders, searched before everything else: packages themselves,
-            folders of packages, or folders of models.
+        file: The description; the workspace around it is searched first. None for a text without a
+            file, which uses the current folder.
+        package_path: Additional folders to search first: packages, folders with packages, or
+            folders with models.
         environment: For tests; `os.environ` otherwise.
-        reach: What it may read, where it came over a wire; None for a file that the user named.
-        arguments: Values of the user's arguments, which may name files.
+        reach: Files that a description received over the network may read; None for a file from the
+            user.
+        arguments: Values of the user's arguments, which may be file names.
     """
 
     def __init__(
@@ -88,20 +89,20 @@ class Packages:
         self._environment = os.environ if environment is None else environment
         self._found: dict[str, Path | None] = {}
         self._lacking: dict[str, tuple[str, str]] = {}
-        """The likely meant model and the hint, by model: a world may ask for one many times."""
+        """Suggested model and hint, by model: a world may refer to one many times."""
         self._hints: dict[str, tuple[str, str]] = {}
-        """The same of packages."""
+        """The same for packages."""
 
     @property
     def folder(self) -> Path:
-        """Where relative paths begin: the description's folder."""
+        """The description's folder, to which relative paths refer."""
         return self.file.parent if self.file is not None else Path.cwd()
 
     def find(self, name: str, origin: Origin | None = None) -> Path:
-        """The folder of a package: its source, or its ``share`` where it is installed.
+        """The folder of a package: its source, or its ``share`` if it is installed.
 
         Raises:
-            DescriptionError: Where there is none; says where it was looked for.
+            DescriptionError: The package was not found; the hint lists the searched folders.
         """
         found = self._known(name)
         if found is None:
@@ -111,10 +112,10 @@ class Packages:
         return found
 
     def find_model(self, name: str, origin: Origin | None = None) -> Path:
-        """The folder of a Gazebo model, or of a package of that name.
+        """The folder of a Gazebo model, or of a package with this name.
 
         Raises:
-            DescriptionError: Where there is neither; says where it was looked for.
+            DescriptionError: Neither was found; the hint lists the searched folders.
         """
         if _is_plain(name):
             for folder in self.model_folders():
@@ -131,22 +132,22 @@ class Packages:
     def resolve(
         self, uri: str, origin: Origin | None = None, *, what: str = "file", folder: bool = False
     ) -> Path:
-        """The existing file, or model folder, that a URI means.
+        """The existing file or model folder for a URI.
 
         Args:
-            uri: ``package://``, ``model://``, ``file://``, ``$(find pkg)/…``, an absolute
-                path, or a path relative to the file that names it.
-            origin: Where the URI stands.
+            uri: ``package://``, ``model://``, ``file://``, ``$(find pkg)/…``, an absolute path, or
+                a path relative to the description.
+            origin: Origin of the URI.
             what: What it is, for the error.
-            folder: Whether a folder is as welcome as a file, as for an included model.
+            folder: Whether a folder is also accepted, as for an included model.
 
         Raises:
-            DescriptionError: Where there is no such file; says where it was looked for.
+            DescriptionError: The file was not found; the hint lists the searched folders.
         """
         candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
         for path in candidates:
             for each in dict.fromkeys((path, Path(unquote(str(path))))):
-                # Whether a file exists is nothing for those who may not read it.
+                # Without permission to read a file, its existence is not revealed.
                 if self.reach is not None and not self.may_read(each):
                     continue
                 if _is_file(each) or (folder and each == path and _is_dir(each)):
@@ -164,7 +165,7 @@ class Packages:
         raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
 
     def model_folders(self) -> list[Path]:
-        """The folders in which Gazebo models are looked for, in this order."""
+        """The folders that are searched for Gazebo models, in order."""
         folders = list(self.package_path)
         for folder in self._ancestors():
             folders += [folder, folder / "models"]
@@ -174,9 +175,10 @@ class Packages:
         return list(dict.fromkeys(folder for folder in folders if _is_dir(folder)))
 
     def may_read(self, path: Path) -> bool:
-        """Whether the description may read a file: one of its workspace or of a package.
+        """Whether the description may read a file: one in its workspace or in a package.
 
-        What came over a wire may read files of packages and models, and those of its reach.
+        A description received over the network may read files in packages and models, and those in
+        `reach`.
         """
         if any(is_inside(path, root) for root in self._trusted()):
             return True
@@ -186,7 +188,7 @@ class Packages:
 
     @cached_property
     def _own(self) -> tuple[Path, ...]:
-        """Folders whose files it may read, if they do not lead elsewhere by links."""
+        """Folders that it may read, except through links to other locations."""
         if self.reach is not None:
             return self.reach.folders
         file = real(self.file) if self.file is not None else None
@@ -194,10 +196,10 @@ class Packages:
         return tuple(dict.fromkeys(root for each in folders for root in self._workspace(each)))
 
     def require(self, path: Path, what: str, origin: Origin | None = None) -> None:
-        """Refuses a file that the description may not read.
+        """Rejects a file that the description may not read.
 
         Raises:
-            DescriptionError: It is such a file; says which files may be read.
+            DescriptionError: The file may not be read; the hint says which files may.
         """
         if not self.may_read(path):
             self._refuse(f'{what} "{path}"', origin)
@@ -212,7 +214,7 @@ class Packages:
         )
 
     def _trusted(self) -> Iterator[Path]:
-        """Folders that the user named, by options and variables."""
+        """Folders that the user specified in options and variables."""
         yield from self.package_path
         yield from self._environment_roots()
         for variable in _RESOURCES:
@@ -221,7 +223,7 @@ class Packages:
         yield from (share() / each for each in ("models", "robots", "worlds"))
 
     def _workspace(self, folder: Path) -> list[Path]:
-        """The folders around a file whose files it may read."""
+        """The folders around a file that it may read."""
         return [
             each
             for each in self._around(folder)
@@ -294,7 +296,7 @@ class Packages:
         folders = [self.folder]
         if origin is not None and not origin.file.startswith("<"):
             folders.insert(0, Path(origin.file).absolute().parent)
-        # A package puts itself on GAZEBO_RESOURCE_PATH where it exports a gazebo_media_path.
+        # A package with gazebo_media_path exports is itself in GAZEBO_RESOURCE_PATH.
         above = [root for root in map(_package_above, folders) if root is not None]
         for variable in _RESOURCES:
             folders += self._paths(variable)
@@ -319,8 +321,8 @@ class Packages:
             found = _package_below(root, name)
             if found is not None:
                 return found
-        # A folder with the right name but without package.xml is what remains when somebody
-        # copied a description out of its workspace: second choice, but better than failing.
+        # A folder with the right name but without package.xml may be a description copied out of
+        # its workspace: second choice, but better than failing.
         for roots in searches:
             for root in roots():
                 for bare in (root, root / name):
@@ -329,7 +331,7 @@ class Packages:
         return None
 
     def _crawled(self) -> Iterator[Path]:
-        """The folders in which packages may lie deeper: ROS crawls these to the ground."""
+        """The folders that ROS searches recursively for packages."""
         yield from self.package_path
         for parent in self._ancestors():
             if parent.name == "src" or (parent / ".git").exists():
@@ -363,7 +365,8 @@ class Packages:
                 levels = max(levels, index + MAX_LEVELS_UP)
         chosen = []
         for parent in parents[:levels]:
-            # They are slow to read, and in the one for temporary files is what anybody put there.
+            # Shared folders are slow to read, and folders for temporary files contain anyone's
+            # files.
             if is_common(parent):
                 break
             chosen.append(parent)
@@ -373,7 +376,7 @@ class Packages:
         yield from self._ancestors()
 
     def _missing(self, name: str) -> tuple[str, str]:
-        """The package that was likely meant, or empty, and the hint."""
+        """The suggested package, or empty, and the hint."""
         if name not in self._hints:
             self._hints[name] = self._hint(name)
         return self._hints[name]
@@ -405,9 +408,9 @@ class Packages:
 
 
 def belongs_to(path: Path, home: Path) -> bool:
-    """Whether a file lies in the folder of a package or model, wherever links lead.
+    """Whether a file is in the folder of a package or model, after resolving links.
 
-    The links of an installed package may lead to its source, which has the same name.
+    Links in an installed package may lead to its source, which has the same name.
     """
     real, home = path.resolve(), home.resolve()
     if real.is_relative_to(home):
@@ -417,18 +420,18 @@ def belongs_to(path: Path, home: Path) -> bool:
 
 
 def _package_above(folder: Path) -> Path | None:
-    """The package that a folder belongs to."""
+    """The package that contains a folder."""
     near = [folder, *folder.parents][:MAX_LEVELS_UP]
     return next((each for each in near if _is_file(each / "package.xml")), None)
 
 
 def _package_in(root: Path, name: str) -> Path | None:
-    """The package of that name that `root` is or holds, at most one folder between."""
+    """The package with this name at `root`, or at most one folder below."""
     return next((f for f in (root, *_nested(root)) if _package_name(f) == name), None)
 
 
 def _package_below(root: Path, name: str) -> Path | None:
-    """The package of that name at any depth; packages hold no others."""
+    """The package with this name at any depth; packages do not contain other packages."""
     level = [root]
     looked = 0
     while level and looked < MAX_CRAWLED:
@@ -446,7 +449,7 @@ def _package_below(root: Path, name: str) -> Path | None:
 
 
 def _nested(root: Path) -> Iterator[Path]:
-    """The folders in which a package of the workspace at `root` may lie, nearest first."""
+    """The folders in which a package of the workspace at `root` may be, nearest first."""
     first = list(_folders(root))
     yield from first
     for folder in first:
@@ -487,7 +490,7 @@ def _listing(folder: Path, _changed: int) -> tuple[Path, ...]:
 
 
 def _folders(folder: Path) -> tuple[Path, ...]:
-    """The folders in a folder, those aside that hold no packages."""
+    """The subfolders, except those that cannot contain packages."""
     try:
         changed = folder.stat().st_mtime_ns
     except (OSError, ValueError):
@@ -508,7 +511,7 @@ def _declared_name(manifest: Path, _changed: int) -> str | None:
 
 
 def _package_name(folder: Path) -> str | None:
-    """The name that the folder's package.xml states; None where there is none."""
+    """The name in the folder's package.xml; None without one."""
     manifest = folder / "package.xml"
     try:
         changed = manifest.stat().st_mtime_ns
@@ -550,10 +553,10 @@ def _missing(
 
     Args:
         kind: What it is.
-        name: As written.
-        message: For the error.
-        origin: The element that names it.
-        advice: The name that was likely meant, or empty, and the hint.
+        name: The name in the file.
+        message: The error's message.
+        origin: The element with the name.
+        advice: The suggested name, or empty, and the hint.
     """
     meant, hint = advice
     return DescriptionError(
@@ -566,7 +569,7 @@ def _missing(
 
 
 def _absent(candidates: Sequence[Path]) -> tuple[str, str]:
-    """The name of a file that was likely meant, or empty; and a hint with the places searched."""
+    """The suggested file name, or empty; and a hint with the searched locations."""
     for path in candidates:
         try:
             names = [

@@ -1,4 +1,4 @@
-"""What lies on a visual's surface: a colour, or an image and the colour that tints it."""
+"""The surface of a visual: a colour, or an image and its tint."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ _WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """A colour, times an image's where there is one."""
+    """A colour, multiplied by an image if there is one."""
 
     colour: Rgba | None
-    """None where nobody states one."""
+    """None if no colour is stated."""
     image: Path | bytes | None = None
-    """A file, or a file's contents."""
+    """A file, or its contents."""
 
 
 def paint_of(material: Material, part: Submesh | None = None) -> Paint:
-    """What lies on a shape, or on a part of a mesh, of a material.
+    """The surface of a shape or a part of a mesh with a material.
 
-    An image in the mesh's own file comes with its colour, the material's with the material's.
+    An image in the mesh's file is tinted with the mesh's colour, and the material's image with the
+    material's colour.
     """
     if part is None:
         image = material.texture

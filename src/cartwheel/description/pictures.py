@@ -1,4 +1,4 @@
-"""Picture files: heightmaps and textures, with bounds on what a small file may unpack to."""
+"""Reads image files for heightmaps and textures, with limits on their decoded size."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from cartwheel.description.regular import read_regular
 from cartwheel.errors import Code, DescriptionError
 
 FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP", "DDS", "PPM")
-"""Pillow knows more, and starts other programs for some of them."""
+"""Pillow supports more formats, but starts other programs for some of them."""
 MOST_PIXELS = 8193 * 8193
-"""The largest heightmap of Gazebo's that is in use; 64 MiB in grey, 256 MiB in colour."""
+"""The largest heightmap used in Gazebo; 64 MiB in grey, 256 MiB in colour."""
 
 MOST_BYTES = 1 << 28
-"""Of a file: as many pixels of 4 bytes."""
+"""Maximum file size: the same number of pixels with 4 bytes."""
 
 
 class PictureError(DescriptionError):
-    """A picture that cannot be used.
+    """An image that cannot be used.
 
     Args:
-        name: What users call it.
+        name: The name for users.
         reason: What is wrong with it.
         hint: The likely fix.
-        code: Where it is not `PICTURE_UNREADABLE`.
+        code: Replaces `PICTURE_UNREADABLE`.
     """
 
     code = PICTURE_UNREADABLE
@@ -48,11 +48,11 @@ class PictureError(DescriptionError):
 
 @contextmanager
 def open_picture(source: Path | bytes) -> Iterator[Any]:
-    """A Pillow image of a file or its content; it is decoded when its pixels are asked for.
+    """A Pillow image from a file or its contents; pixels are decoded when they are accessed.
 
     Raises:
-        PictureError: It is missing, damaged, too large, or of another format. Whatever Pillow
-            raises within the ``with`` block becomes one, too.
+        PictureError: The image is missing, damaged, too large, or in an unsupported format. Other
+            errors of Pillow within the ``with`` block are also converted.
     """
     from PIL import Image, UnidentifiedImageError
 
@@ -60,7 +60,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
     if isinstance(source, Path) and not source.is_file():
         raise PictureError(name, "the file does not exist", code=FILE_MISSING)
     try:
-        # Not opened by name: some of Pillow's readers ask a file for as much as it says it has.
+        # Not opened by name: some of Pillow's readers read as much as the file's header claims.
         content = source if isinstance(source, bytes) else _content(source)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
@@ -77,7 +77,7 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
         ) from None
     except Image.DecompressionBombError:
         raise _too_large(name, "") from None
-    except Exception as error:  # Pillow's readers raise whatever they meet
+    except Exception as error:  # Pillow's readers may raise any error
         raise PictureError(name, str(error) or type(error).__name__) from error
 
 
@@ -88,10 +88,10 @@ def _content(path: Path) -> bytes:
 
 
 def check_size(image: Any, name: str) -> None:
-    """Looks at a picture's size before it is decoded.
+    """Checks an image's size before it is decoded.
 
     Raises:
-        PictureError: It is too large.
+        PictureError: The image is too large.
     """
     width, height = image.size
     if width < 1 or height < 1:
@@ -109,18 +109,18 @@ def _too_large(name: str, size: str) -> PictureError:
 
 
 def thumbnail(source: Path | bytes, most: int, mode: str = "RGB") -> Any:
-    """A picture as a Pillow image with 8 bits for each channel.
+    """An image as a Pillow image with 8 bits per channel.
 
     Args:
-        source: A file, or its content.
-        most: Pixels of its longer edge; a larger one is scaled down.
-        mode: Pillow's; ``RGB`` or ``RGBA``.
+        source: A file, or its contents.
+        most: Maximum length of the longer edge, pixels; larger images are scaled down.
+        mode: Pillow's mode: ``RGB`` or ``RGBA``.
 
     Raises:
         PictureError: As `open_picture`.
     """
     with open_picture(source) as image:
-        if image.mode.startswith("I"):  # 16 bits, which Pillow would cut off at 255
+        if image.mode.startswith("I"):  # 16 bits, which Pillow would clip at 255
             image = image.point(lambda value: value / 256).convert("L")  # noqa: PLW2901
         elif image.mode in ("P", "PA", "1"):
             image = image.convert(mode)  # noqa: PLW2901

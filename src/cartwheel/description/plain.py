@@ -1,4 +1,4 @@
-"""Descriptions as text over a wire, where xacro has been expanded by whoever sends them."""
+"""Descriptions received as text over the network, already expanded by the sender."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ _COMMAND = re.compile(r"\$\(\s*([\w-]+)")
 
 
 def refuse_xacro(root: Node, packages: Packages) -> bool:
-    """Refuses what only xacro expands, and puts the folders of packages for ``$(find …)``.
+    """Rejects xacro expressions, and replaces ``$(find …)`` by package folders.
 
-    A ``xmlns:xacro`` that is left over is harmless. ``${`` in an SDF that does not declare it is
-    text like any other.
+    A remaining ``xmlns:xacro`` is harmless. In an SDF without that declaration, ``${`` is ordinary
+    text.
 
     Args:
-        root: Of the description; changed.
+        root: The description's root; changed in place.
         packages: Finds packages.
 
     Returns:
-        Whether something was changed.
+        Whether anything was changed.
 
     Raises:
-        DescriptionError: There is xacro in it; names the command that expands it.
+        DescriptionError: The text contains xacro; the hint contains the command to expand it.
     """
     changed = False
     strict = root.tag == "robot" or "xmlns:xacro" in root.attributes
@@ -38,7 +38,7 @@ def refuse_xacro(root: Node, packages: Packages) -> bool:
         left.extend(node.children)
         if node.tag.startswith("xacro:"):
             _refuse(f"<{node.tag}>", node.origin)
-        # What an SDF's <uri> names is found where it is read: a missing one costs one model.
+        # A <uri> in SDF is resolved when it is read: a missing file only affects one model.
         if root.tag == "sdf" and node.tag == "uri":
             continue
         words = {name: _found(value, node, packages) for name, value in node.attributes.items()}
@@ -56,7 +56,7 @@ def refuse_xacro(root: Node, packages: Packages) -> bool:
 
 
 def require_files(root: Node, packages: Packages) -> None:
-    """Refuses files that only a plugin opens: those that ros2_control names in `<parameters>`.
+    """Rejects files that only a plugin opens: those in `<parameters>` of ros2_control.
 
     Raises:
         DescriptionError: The description may not read such a file.
@@ -68,7 +68,7 @@ def require_files(root: Node, packages: Packages) -> None:
 
 
 def _all(root: Node, tag: str) -> Iterator[Node]:
-    """The elements below one whose tag is this, with any prefix."""
+    """All descendants with this tag, with any prefix."""
     left = [root]
     while left:
         node = left.pop()

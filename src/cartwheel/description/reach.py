@@ -1,4 +1,4 @@
-"""Which files a description may name: strangers wrote it, and the user's rights read it."""
+"""The files that an untrusted description may read with the user's permissions."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ NAME_IT = (
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Reach:
-    """What a description that came over a wire may read, besides packages and models.
+    """Files that a description received over the network may read, besides packages and models.
 
-    Without one, a description is a file that the user named.
+    None is used for a file that the user specified.
     """
 
     folders: tuple[Path, ...] = ()
     environment: bool = True
-    """Whether ``$(env …)`` has the values of environment variables."""
+    """Whether ``$(env …)`` returns the values of environment variables."""
     hint: str = ALLOW
 
 
 def real(path: Path) -> Path | None:
-    """A path without links; None for one that cannot exist."""
+    """A path without links; None if it cannot exist."""
     try:
         return Path(os.path.realpath(path))
     except (OSError, ValueError):
@@ -37,7 +37,7 @@ def real(path: Path) -> Path | None:
 
 
 def is_below(path: Path, folder: Path) -> bool:
-    """Whether a path, its links followed, is in a folder, and in no hidden folder there."""
+    """Whether a path, with links resolved, is in a folder and in none of its hidden subfolders."""
     file, root = real(path), real(folder)
     if file is None or root is None or not file.is_relative_to(root):
         return False
@@ -45,9 +45,9 @@ def is_below(path: Path, folder: Path) -> bool:
 
 
 def is_inside(path: Path, folder: Path) -> bool:
-    """Whether a path is in a folder by its name: links of a folder that the user trusts count.
+    """Whether a path is in a folder by its name; links in a trusted folder are allowed.
 
-    But ``..`` behind a link leads to where the link does.
+    ``..`` after a link is relative to the link's target.
     """
     try:
         parts = path.absolute().parts
@@ -62,26 +62,26 @@ def is_inside(path: Path, folder: Path) -> bool:
 
 
 def is_common(folder: Path) -> bool:
-    """Whether a folder holds everybody's files: it is no workspace, nor one that was meant."""
+    """Whether a folder is shared by all users, so that it is not a workspace."""
     home = Path.home()
     common = {home, home.parent, Path(tempfile.gettempdir()), Path(folder.anchor)}
     return folder in common
 
 
 def run_folders(files: Iterable[str]) -> Iterator[Path]:
-    """The folders of a run: that in which it was started, and those of its files."""
+    """The folders of a simulation: the working directory, and the folders of its files."""
     for folder in (Path.cwd(), *(Path(file).absolute().parent for file in files)):
         if not is_common(folder):
             yield folder
 
 
 def is_named(path: Path, values: Iterable[str], folder: Path) -> bool:
-    """Whether one of the user's arguments names a file, or a folder that it is in.
+    """Whether one of the user's arguments is a file, or a folder that contains it.
 
     Args:
-        path: Of the file.
-        values: Of the arguments.
-        folder: Where relative values may begin, besides the current folder.
+        path: The file.
+        values: Argument values.
+        folder: Base folder for relative values, besides the current folder.
     """
     wanted = real(path)
     for value in values:

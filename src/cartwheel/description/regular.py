@@ -1,4 +1,4 @@
-"""Files of a stranger's repository: no device, no pipe that waits for ever, none without end."""
+"""Reads files in untrusted repositories: no devices, no blocking pipes, no unlimited files."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import errno
 from pathlib import Path
 
 MOST_BYTES = 4_000_000
-"""Of a text beside a description: material libraries, scripts, lists of what is installed."""
+"""Maximum size of a text near a description: material libraries, scripts, install lists."""
 
 
 def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
-    """A file's content.
+    """A file's contents.
 
     Raises:
-        OSError: It is missing, no regular file, or larger than `most` bytes.
+        OSError: The file is missing, not a regular file, or larger than `most` bytes.
     """
     if path.exists() and not path.is_file():
         raise OSError(errno.EINVAL, "it is not a regular file")
@@ -25,7 +25,7 @@ def read_regular(path: Path, most: int = MOST_BYTES) -> bytes:
 
 
 def read_regular_text(path: Path, most: int = MOST_BYTES) -> str:
-    """A file's text; what is no UTF-8 in it is replaced.
+    """A file's text; invalid UTF-8 is replaced.
 
     Raises:
         OSError: As `read_regular`.

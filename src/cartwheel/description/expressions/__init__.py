@@ -1,8 +1,8 @@
-"""Evaluates the expressions of descriptions, which strangers wrote, without reaching Python.
+"""Evaluates expressions in untrusted descriptions without access to Python.
 
-An expression is parsed by `ast`, and each node that is allowed becomes a closure. Nothing else
-runs: there is no `eval`. Values are numbers, texts, lists, tuples, sets, dicts and ranges; only
-functions and methods on a list can be called. Each result is bounded, and so is their sum.
+An expression is parsed by `ast`, and each allowed node becomes a closure. Nothing else is executed:
+there is no `eval`. Values are numbers, strings, lists, tuples, sets, dicts and ranges; only listed
+functions and methods can be called. The size of each result and the total are limited.
 """
 
 from cartwheel.description.expressions.budget import Budget, ExpressionError

@@ -1,6 +1,6 @@
-"""Corners that index position, normal and texture coordinate apart, into common vertices.
+"""Converts separate indices of positions, normals and texture coordinates to common vertices.
 
-OBJ and COLLADA number the three separately; renderers and physics want one index for all.
+OBJ and COLLADA index the three separately; renderers and physics need a single index.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ def weld(
     rgba: Rgba | None = None,
     texture: Path | bytes | None = None,
 ) -> Submesh | None:
-    """A submesh of polygons; None where no triangle is left.
+    """Creates a submesh from polygons; None if no triangle remains.
 
     Args:
-        name: The submesh's.
-        counts: Corners of each polygon.
-        points: The positions (n, 3), and for each corner its index among them.
-        normals: Likewise; (k, 3).
-        uv: Likewise; (k, 2).
+        name: Name of the submesh.
+        counts: Number of corners of each polygon.
+        points: The positions (n, 3), and the index of each corner.
+        normals: The same for normals, (k, 3).
+        uv: The same for texture coordinates, (k, 2).
         rgba: Diffuse colour.
         texture: Image.
 
     Raises:
-        ValueError: an index points outside its table, or the polygons do not fit the corners.
+        ValueError: An index is out of range, or the polygons do not match the corners.
     """
     tables = [points, *(table for table in (normals, uv) if table is not None)]
     for values, indices in tables:

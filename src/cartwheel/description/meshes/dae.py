@@ -1,4 +1,4 @@
-"""COLLADA files: the visual scene's triangles, placed by its nodes, in metres."""
+"""Reads COLLADA files: the triangles of the visual scene, placed by its nodes, in metres."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from cartwheel.description.meshes.submesh import MOST_TRIANGLES, Submesh
 Array = NDArray[np.float64]
 MAX_DEPTH = 100
 MAX_INSTANCES = 20_000
-"""More nodes than any robot's part has: nodes that name each other multiply without end."""
+"""Maximum number of node instances: nodes that refer to each other can multiply without limit."""
 
 _VALUE = re.compile(rb"""(?<==)"[^"]*"|(?<==)'[^']*'""")
-"""Of an attribute."""
+"""An attribute's value."""
 _SURFACES = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 _NO_SURFACES = ("lines", "linestrips")
 
 
 def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
-    """One submesh for each primitive of each geometry that the scene shows.
+    """One submesh for each primitive of each geometry in the scene.
 
     Args:
-        path: The file; textures lie beside it.
-        data: Its content.
-        notes: Receives what is left out.
+        path: The file; textures are relative to it.
+        data: Its contents.
+        notes: Receives notes about skipped parts.
 
     Raises:
-        ValueError: what is wrong with the file.
+        ValueError: What is wrong with the file.
     """
     if b"<!ENTITY" in data:
         raise ValueError("declares entities, which are not allowed")
@@ -45,14 +45,14 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     except ET.ParseError as error:
         raise ValueError(f"is malformed XML: {error}") from None
     for element in root.iter():
-        element.tag = element.tag.rpartition("}")[2]  # every exporter's version is read alike
+        element.tag = element.tag.rpartition("}")[2]  # ignore the COLLADA version
     if root.tag != "COLLADA":
         raise ValueError(f"is not a COLLADA file: its root element is <{root.tag}>")
     return _Scene(path, root, notes).submeshes()
 
 
 def _parsed(data: bytes) -> ET.Element:
-    """The tree; some exporters put ``<`` into names, which Gazebo's reader takes as it is."""
+    """The XML tree; some exporters write ``<`` in names, which Gazebo's reader accepts."""
     try:
         return ET.fromstring(data)  # noqa: S314 - entities are refused by the caller
     except ET.ParseError:
@@ -88,7 +88,7 @@ class _Scene:
         if scene is not None:
             for node in scene.findall("node"):
                 result += self._node(node, base, 0)
-        else:  # some exporters write geometry alone
+        else:  # some exporters write only geometry, without a scene
             for geometry in self.root.iterfind("library_geometries/geometry"):
                 result += self._place(geometry, base, {}, geometry.get("name", ""))
         return result
@@ -202,7 +202,7 @@ class _Scene:
         for each in element.findall("input"):
             offset = int(each.get("offset", "0"))
             stride = max(stride, offset + 1)
-            # The first set of texture coordinates is the one that colours are painted with.
+            # The first set of texture coordinates is used for colours.
             offsets.setdefault(each.get("semantic", ""), (offset, each.get("source", "")))
         if "VERTEX" not in offsets or stride > 64:
             raise ValueError(f"a <{element.tag}> has no usable VERTEX input")
@@ -245,7 +245,7 @@ class _Scene:
             raise ValueError(
                 f'source "{url}" has {stride} numbers per row, but {width} are required'
             )
-        # The accessor's count is not asked: some exporters write that of the numbers there.
+        # The accessor's count is ignored: some exporters write the number of values there.
         rows = (len(values) - start) // stride
         return values[start : start + max(rows, 0) * stride].reshape(-1, stride)[:, :width]
 
@@ -260,7 +260,7 @@ class _Primitive:
 
 
 def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Corners of each polygon, and (corners, stride) indices."""
+    """Corners of each polygon, and indices of shape (corners, stride)."""
     lists = [p for p in element.iter("p") if p.text and p.text.strip()]
     rows = [np.array((p.text or "").split(), dtype=np.int64) for p in lists]
     for row in rows:
@@ -284,16 +284,16 @@ def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDAr
 
 
 def _strip(row: NDArray[np.int64], kind: str) -> NDArray[np.int64]:
-    """The triangles of a strip or fan as lone ones."""
+    """Converts a strip or fan to separate triangles."""
     i = np.arange(max(0, len(row) - 2))
     if kind == "trifans":
         return row[np.stack([np.zeros_like(i), i + 1, i + 2], axis=1)]
-    odd = i % 2  # every second triangle of a strip runs the other way round
+    odd = i % 2  # every second triangle of a strip is reversed
     return row[np.stack([i, i + 1 + odd, i + 2 - odd], axis=1)]
 
 
 def _turned(submesh: Submesh) -> Submesh:
-    """With the faces the other way round: a mirroring node turns them inside out."""
+    """Reverses the faces, which a mirroring node turns inside out."""
     return replace(submesh, faces=np.ascontiguousarray(submesh.faces[:, ::-1]))
 
 
@@ -314,7 +314,7 @@ def _matrix(element: ET.Element) -> Array:
 
 
 def _rotation(values: Array) -> Array:
-    """COLLADA's axis and angle in degrees."""
+    """Converts COLLADA's axis and angle in degrees."""
     result = np.eye(4)
     length = float(np.linalg.norm(values[:3]))
     if length > 1e-12:

@@ -1,4 +1,4 @@
-"""What COLLADA's materials come to: a diffuse colour with its alpha, or an image."""
+"""Reads COLLADA materials as a diffuse colour with alpha, or an image."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class MaterialLook:
 
 
 class Library:
-    """The elements of a COLLADA document by their ids."""
+    """Elements of a COLLADA document by id."""
 
     def __init__(self, root: ET.Element) -> None:
         self._by_id: dict[str, ET.Element] = {}
@@ -29,18 +29,18 @@ class Library:
                 self._by_id.setdefault(name, element)
 
     def get(self, url: str) -> ET.Element | None:
-        """The element of an id, with or without the ``#`` before it."""
+        """The element with an id, with or without a leading ``#``."""
         return self._by_id.get(url.removeprefix("#"))
 
 
 def read_look(library: Library, material: str, path: Path, notes: list[str]) -> MaterialLook:
-    """Colour and texture of a material; nothing where it states none.
+    """Colour and texture of a material; empty if it has neither.
 
     Args:
         library: The document.
         material: The material's id.
-        path: The document's file; images lie beside it.
-        notes: Receives what is missing.
+        path: The document's file; images are relative to it.
+        notes: Receives notes about missing parts.
     """
     element = library.get(material)
     instance = element.find("instance_effect") if element is not None else None
@@ -57,7 +57,7 @@ def read_look(library: Library, material: str, path: Path, notes: list[str]) -> 
     if texture is not None:
         image = _image(library, profile, texture.get("texture", ""), path, notes)
         return MaterialLook((1.0, 1.0, 1.0, alpha) if image else None, image)
-    # A constant shader has no diffuse part: what it emits is what is seen.
+    # A constant shader has no diffuse colour, only emission.
     colour = shader.find("diffuse/color")
     if colour is None:
         colour = shader.find("emission/color")
@@ -68,10 +68,10 @@ def read_look(library: Library, material: str, path: Path, notes: list[str]) -> 
 
 
 def _alpha(shader: ET.Element) -> float:
-    """Opacity by COLLADA's two rules; 1 where they would hide the mesh.
+    """Opacity by COLLADA's two rules; 1 if they would make the mesh invisible.
 
-    Exporters disagree on whether transparency 0 or 1 means opaque. Nobody exports a mesh that
-    cannot be seen, so an outcome of zero is one of those who mean the other.
+    Exporters disagree on whether transparency 0 or 1 means opaque. An invisible mesh is never
+    intended, so zero opacity indicates the other convention.
     """
     transparent = shader.find("transparent")
     colour = transparent.find("color") if transparent is not None else None
@@ -96,7 +96,7 @@ def _alpha(shader: ET.Element) -> float:
 def _image(
     library: Library, profile: ET.Element, name: str, path: Path, notes: list[str]
 ) -> Path | None:
-    """The image file of a texture: sampler, surface and image name each other by sid or id."""
+    """The image file of a texture, found through its sampler, surface and image by sid or id."""
     parameters = {each.get("sid", ""): each for each in profile.iter("newparam")}
     sampler = parameters.get(name)
     if sampler is not None:
@@ -117,7 +117,7 @@ def _image(
         notes.append(f'texture "{name}" does not refer to an image file')
         return None
     relative = unquote(written.removeprefix("file://")).replace("\\", "/")
-    # Absolute paths are the exporter's own machine: the file travels beside the mesh.
+    # Absolute paths are from the exporter's machine, so the file is searched near the mesh.
     candidates = [path.parent / relative, path.parent / Path(relative).name]
     candidates += [path.parent.parent / "materials" / "textures" / Path(relative).name]
     for candidate in candidates:

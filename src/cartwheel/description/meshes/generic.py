@@ -1,4 +1,4 @@
-"""PLY and glTF files through trimesh, which is imported only when one is met."""
+"""Reads PLY and glTF files with trimesh, which is imported only for such files."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from cartwheel.description.regular import read_regular
 
 
 def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:
-    """One submesh for each geometry that the scene shows, placed by its nodes.
+    """One submesh for each geometry in the scene, placed by its nodes.
 
-    glTF's y axis stays what it is: neither rviz nor Gazebo turns it up to z.
+    glTF's y-up axis is unchanged: neither rviz nor Gazebo converts it to z-up.
 
     Raises:
-        Exception: whatever trimesh makes of a damaged file.
+        Exception: Any error of trimesh for a damaged file.
     """
-    # Imported here: it costs a tenth of a second that most robots need not pay.
+    # Imported here: the import takes 0.1 s, and most robots do not need it.
     import trimesh
 
-    # It logs tracebacks of what it recovers from, which Python would print.
+    # trimesh logs tracebacks of handled errors, which Python would print.
     logging.getLogger("trimesh").addHandler(logging.NullHandler())
     kind = path.suffix.lower().lstrip(".")
 
     class Beside(trimesh.resolvers.FilePathResolver):
-        """Files that a glTF names: regular ones of its folder."""
+        """Files that a glTF refers to: only regular files in its folder."""
 
         def get(self, name: str) -> bytes:
             file = (path.parent / unquote(name.strip())).resolve()
@@ -57,7 +57,7 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
             faces = faces[:, ::-1]
         rgba, texture = _look(geometry.visual)
         uv = getattr(geometry.visual, "uv", None)
-        with np.errstate(all="ignore"):  # corners of triangles without area
+        with np.errstate(all="ignore"):  # triangles without area
             normals = np.asarray(geometry.vertex_normals) @ np.linalg.inv(linear)
         submesh = build_submesh(
             str(key),
@@ -74,7 +74,7 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
 
 
 def _look(visual: Any) -> tuple[Rgba | None, bytes | None]:
-    """Colour and image of what trimesh calls a visual."""
+    """Colour and image of a trimesh visual."""
     if visual.kind in ("vertex", "face"):
         colours = visual.vertex_colors if visual.kind == "vertex" else visual.face_colors
         r, g, b, a = (float(c) / 255 for c in np.asarray(colours, dtype=float).mean(axis=0))

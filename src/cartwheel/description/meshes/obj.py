@@ -1,4 +1,4 @@
-"""Wavefront OBJ files and their material libraries."""
+"""Reads Wavefront OBJ files and their material libraries."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class _Material:
 
 @dataclass(slots=True)
 class _Group:
-    """Faces of one object and material, each a line as written, made absolute."""
+    """Faces with the same object and material, as lines with absolute indices."""
 
     name: str
     material: str
@@ -35,12 +35,12 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
     """One submesh for each object and material.
 
     Args:
-        path: The file; its libraries and images lie beside it.
-        data: Its content.
-        notes: Receives what is left out.
+        path: The file; its libraries and images are relative to it.
+        data: Its contents.
+        notes: Receives notes about skipped parts.
 
     Raises:
-        ValueError: what is wrong with the file.
+        ValueError: What is wrong with the file.
     """
     tables: dict[bytes, list[bytes]] = {b"v": [], b"vt": [], b"vn": []}
     groups: dict[tuple[str, str], _Group] = {}
@@ -88,7 +88,7 @@ def read_obj(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
 
 
 def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
-    """The numbers of all statements of a kind; colours or weights after them are left out."""
+    """The numbers in all statements of one kind, without additional colours or weights."""
     if not rows:
         return np.zeros((0, width))
     words = b" ".join(rows).split()
@@ -101,7 +101,7 @@ def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
 
 
 def _absolute(face: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
-    """Negative indices count back from the last statement so far."""
+    """Converts negative indices, which count back from the last statement."""
     words = []
     for word in face.split():
         parts = word.split(b"/")
@@ -120,7 +120,7 @@ def _index(word: bytes) -> int:
 
 
 def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Corners of each face, and (corners, 3) indices of v, vt and vn; -1 where not given."""
+    """Corners of each face, and indices of v, vt and vn, shape (corners, 3); -1 if missing."""
     split = [face.split() for face in faces]
     counts = np.array([len(words) for words in split], dtype=np.int64)
     words = [word for row in split for word in row]
@@ -179,7 +179,7 @@ def _read_library(file: Path, text: str, found: dict[str, _Material], notes: lis
                 r, g, b, _ = current.rgba or (0.8, 0.8, 0.8, 1.0)
                 current.rgba = (r, g, b, values[0] if key == "d" else 1 - values[0])
         elif key == "map_kd":
-            # Options stand before the name, which may itself contain spaces.
+            # Options precede the name, which may contain spaces.
             name = rest.split()[-1] if rest.startswith("-") else rest
             image = file.parent / name.replace("\\", "/")
             if image.is_file():

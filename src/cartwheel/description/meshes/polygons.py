@@ -1,4 +1,4 @@
-"""Polygons of a mesh file into triangles."""
+"""Splits polygons in mesh files into triangles."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ Indices = NDArray[np.int64]
 
 
 def triangulate(counts: Sequence[int] | Indices, positions: NDArray[Any]) -> Indices:
-    """Triangles over the corners of consecutive polygons.
+    """Triangles for consecutive polygons.
 
     Args:
-        counts: Corners of each polygon; fewer than three make no triangle.
-        positions: (sum of counts, 3), the place of each corner.
+        counts: Number of corners of each polygon; polygons with fewer than three are skipped.
+        positions: Position of each corner, shape (sum of counts, 3).
 
     Returns:
-        (m, 3) indices into the corners.
+        Corner indices, shape (m, 3).
     """
     sizes = np.asarray(counts, dtype=np.int64).reshape(-1)
     if (sizes < 0).any() or int(sizes.sum()) != len(positions):
@@ -45,7 +45,7 @@ def triangulate(counts: Sequence[int] | Indices, positions: NDArray[Any]) -> Ind
 
 
 def _concave(positions: NDArray[Any], begin: Indices, size: int) -> NDArray[np.bool_]:
-    """Which of the polygons of equal size turn both ways."""
+    """Which of several polygons of equal size are concave."""
     points = np.asarray(positions, dtype=np.float64)[begin[:, None] + np.arange(size)]
     edges = np.roll(points, -1, axis=1) - points
     turns = np.cross(edges, np.roll(edges, -1, axis=1))
@@ -56,8 +56,8 @@ def _concave(positions: NDArray[Any], begin: Indices, size: int) -> NDArray[np.b
 
 
 def _ear_cut(points: NDArray[Any]) -> Indices:
-    """Triangles of one simple polygon that turns both ways."""
-    # Imported here: few meshes have such polygons.
+    """Triangles of one simple concave polygon."""
+    # Imported here: few meshes contain concave polygons.
     from mapbox_earcut import triangulate_float64
 
     xyz = np.asarray(points, dtype=np.float64)

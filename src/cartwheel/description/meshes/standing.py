@@ -1,7 +1,7 @@
-"""What a mesh that stands still collides with: not its hull, but its surface.
+"""Collision geometry of a fixed mesh: its surface instead of its convex hull.
 
-A convex part of a mesh is its own hull. Of any other part, each flat patch becomes a thin slab
-behind the surface: a room has an inside, a ring a hole, a terrain its valleys.
+A convex part of a mesh becomes its own hull. In any other part, each flat patch becomes a thin slab
+behind the surface, so that rooms, holes and valleys stay open.
 """
 
 from __future__ import annotations
@@ -17,40 +17,40 @@ from cartwheel.description.outline import Edge, OutlineError, fill
 Points = NDArray[np.float64]
 Faces = NDArray[np.int64]
 MOST_PIECES = 6000
-"""Of one mesh; a part that needs more is its hull. As many are built in four seconds."""
+"""Maximum pieces per mesh, which take four seconds to build; parts that need more become hulls."""
 _THICKEST, _THINNEST = 0.05, 0.004
-"""m, of a slab."""
+"""Limits of a slab's thickness, m."""
 _DENT = 0.01
-"""m by which a part that counts as convex may be dented, and a patch that counts as flat bent."""
+"""Maximum depth of dents in a convex part, and of bends in a flat patch, m."""
 _SAME_WAY = 0.9995
-"""Cosine between the normals of neighbours in one patch."""
+"""Minimum cosine between the normals of neighbours in a patch."""
 _SMALL = 0.05
-"""m; a part no larger, as a bolt or a key of a keyboard, is its hull: its hollows hold nothing."""
+"""m; parts up to this size, such as bolts or keyboard keys, become hulls."""
 _FINE = 250
-"""Facets; a part of more is made coarser first."""
+"""Facets; parts with more are simplified first."""
 _COARSE = (0.01, 0.02, 0.03)
-"""m within which its corners become one: the first that leaves no more facets, or the last."""
+"""Tolerances for merging corners, m: the first with few enough facets is used, or the last."""
 _MOST_ASKED = 4096
-"""Faces that are asked whether a corner is ahead of them; of a finer mesh, every so many."""
+"""Maximum number of faces tested for convexity; finer meshes are sampled."""
 _MOST_PAIRS, _MOST_PAIRS_AT_ONCE = 50_000_000, 2_000_000
-"""Of slabs and faces near them: ten seconds, and 400 MB."""
+"""Maximum pairs of slabs and nearby faces, in total and at once: ten seconds, and 400 MB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Standing:
-    """The convex pieces that a mesh collides with where it stands still."""
+    """The convex pieces for collisions with a fixed mesh."""
 
     pieces: tuple[Points, ...] = ()
-    """Corners of each, (n, 3) in m; none where the hull of the whole mesh is as good."""
+    """Corners of each piece, (n, 3) in m; empty if the hull of the whole mesh is as good."""
     hulls: int = 0
-    """How many of the mesh's parts are hulls only because their surface has too many pieces."""
+    """Number of parts that became hulls because their surface needs too many pieces."""
 
 
 def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) -> Standing:
     """Convex pieces that cover a mesh's surface.
 
     Args:
-        vertices: Shape (n, 3), m; equal ones are one.
+        vertices: Shape (n, 3), m; without duplicates.
         faces: Shape (m, 3), counter-clockwise from outside.
     """
     points = np.asarray(vertices, dtype=np.float64)
@@ -75,13 +75,13 @@ def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) 
 
 
 def _sound(points: Points, faces: Faces) -> Faces:
-    """The faces that have an area."""
+    """The faces with a nonzero area."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     return np.asarray(faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10])
 
 
 def _parts(faces: Faces, count: int) -> list[Faces]:
-    """Faces that hang together."""
+    """Connected components of the faces."""
     label = np.arange(count)
     while True:
         lowest = label[faces].min(axis=1)
@@ -95,15 +95,15 @@ def _parts(faces: Faces, count: int) -> list[Faces]:
 
 
 def _groups(label: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-    """Indices of equal labels, of the lowest label first."""
+    """Indices grouped by label, in ascending order."""
     order = np.argsort(label, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
 
 
 def _coarse(points: Points, faces: Faces) -> tuple[Points, Faces]:
-    """A finely meshed surface with fewer facets, its corners in the middle of those they stand for.
+    """Simplifies a finely meshed surface by merging corners at their mean.
 
-    A chair may have 30,000, each of which would be a slab.
+    A chair may have 30,000 facets, each of which would become a slab.
     """
     for size in _COARSE:
         if len(faces) <= _FINE:
@@ -113,7 +113,7 @@ def _coarse(points: Points, faces: Faces) -> tuple[Points, Faces]:
 
 
 def _merged(points: Points, faces: Faces, size: float) -> tuple[Points, Faces]:
-    """A surface with one corner in each cube of a size."""
+    """A surface with at most one corner in each cube of a grid."""
     used, place = np.unique(faces, return_inverse=True)
     cells = np.floor(points[used] / size).astype(np.int64)
     _, cell, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
@@ -128,7 +128,7 @@ def _merged(points: Points, faces: Faces, size: float) -> tuple[Points, Faces]:
 
 
 def _is_convex(points: Points, faces: Faces) -> bool:
-    """Whether a closed surface has no corner ahead of any face. An open one has no inside."""
+    """Whether a closed surface is convex; an open surface has no inside."""
     if not _is_closed(faces):
         return False
     corners = points[np.unique(faces)]
@@ -143,18 +143,18 @@ def _is_convex(points: Points, faces: Faces) -> bool:
 
 
 def _is_closed(faces: Faces) -> bool:
-    """Whether each edge has two faces."""
+    """Whether each edge belongs to two faces."""
     return bool((np.unique(_numbered(_edges(faces)), return_counts=True)[1] == 2).all())
 
 
 def _edges(faces: Faces) -> NDArray[np.int64]:
-    """All faces' edges, the lower corner first."""
+    """The edges of all faces, with the lower corner first."""
     corners = (faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]])
     return np.sort(np.concatenate(corners), axis=1)
 
 
 def _numbered(edges: NDArray[np.int64]) -> NDArray[np.int64]:
-    """One number for each edge, in the order of edges: numbers are sorted ten times as fast."""
+    """One number per edge, in the same order: sorting numbers is ten times faster."""
     return np.asarray(edges[:, 0] * (edges.max() + 1) + edges[:, 1])
 
 
@@ -166,16 +166,16 @@ def _outwards(points: Points, faces: Faces) -> Faces:
 
 
 def _planes(points: Points, faces: Faces) -> tuple[Points, Points]:
-    """Unit normals and a point of each face."""
+    """Unit normal and one point of each face."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
     return normals / np.linalg.norm(normals, axis=1, keepdims=True), a
 
 
 def _slabs(points: Points, faces: Faces, most: int) -> list[Points] | None:
-    """A slab for each convex piece of each flat patch; None where they would be more than `most`.
+    """A slab for each convex piece of each flat patch; None if there would be more than `most`.
 
-    Also where a patch's rim, or what lies around each slab, would take too long to look at.
+    Also None if tracing a patch's rim, or finding nearby faces, would take too long.
     """
     if _is_closed(faces):
         faces = _outwards(points, faces)
@@ -202,7 +202,7 @@ def _slabs(points: Points, faces: Faces, most: int) -> list[Points] | None:
         return None
     slabs = []
     for front, normal, middle, thick in zip(fronts, facing, middles, thicknesses, strict=True):
-        # The back is smaller, so that it stays behind the neighbouring patches too.
+        # The back is smaller, to stay behind the neighbouring patches too.
         arms = front - middle
         reach = np.linalg.norm(arms, axis=1, keepdims=True)
         back = middle + arms * np.maximum(0.2, 1 - thick / np.maximum(reach, 1e-9))
@@ -227,7 +227,7 @@ def _outlines(
 
 
 def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[np.int64]]:
-    """Indices of the faces of each flat patch."""
+    """Indices of the faces in each flat patch."""
     edges = _edges(faces)
     owners = np.tile(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
@@ -250,12 +250,12 @@ def _patches(faces: Faces, normals: Points, points: Points) -> Iterator[NDArray[
         normal = normals[patch].mean(axis=0)
         if np.ptp(corners @ normal) <= _DENT:
             yield patch
-        else:  # a smooth bend, which is made of its facets
+        else:  # a smooth bend, which is split into its facets
             yield from (np.array([face]) for face in patch)
 
 
 def _rim(faces: Faces, flat: Points) -> list[Edge]:
-    """The edges that only one of the faces has."""
+    """The edges that belong to a single face."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     numbers = _numbered(np.sort(edges, axis=1))
     _, first, counts = np.unique(numbers, return_index=True, return_counts=True)
@@ -267,17 +267,17 @@ def _rim(faces: Faces, flat: Points) -> list[Edge]:
 
 
 def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces) -> Points | None:
-    """Half the way to the other side of the wall behind each point, within a slab's bounds.
+    """Half the wall thickness behind each point, within a slab's limits.
 
-    None where too many faces are close to too many points.
+    None if too many faces are near too many points.
     """
     a, b, c = (points[faces[:, k]] for k in range(3))
     e1, e2 = b - a, c - a
     across = np.cross(e1, e2)
     lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     found = np.full(len(middles), 2 * _THICKEST)
-    # Each ray against each triangle within its reach: Möller and Trumbore's test with the triple
-    # products of a triangle written out. Rays that are close together are looked at together.
+    # Tests each ray against each triangle in range with the Möller-Trumbore test, written as triple
+    # products. Nearby rays are tested together.
     left = _MOST_PAIRS
     for block in _near(middles):
         low = middles[block].min(axis=0) - 2 * _THICKEST
@@ -301,7 +301,7 @@ def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces)
 
 
 def _near(points: Points) -> Iterator[NDArray[np.int64]]:
-    """Indices of up to 64 points that are close together, all points once: halved by extent."""
+    """Groups of up to 64 nearby points, found by repeatedly halving the extent."""
     waiting = [np.arange(len(points))]
     while waiting:
         some = waiting.pop()
@@ -314,6 +314,6 @@ def _near(points: Points) -> Iterator[NDArray[np.int64]]:
 
 
 def _is_solid(piece: Points) -> bool:
-    """Whether it has a volume that the engine's hull can be made of."""
+    """Whether the piece has enough volume for the engine's hull."""
     spread = np.linalg.svd(piece - piece.mean(axis=0), compute_uv=False)
     return bool(spread[2] > 1e-4)

@@ -1,4 +1,4 @@
-"""STL files, binary and ASCII."""
+"""Reads STL files, binary and ASCII."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ _VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_stl(data: bytes) -> list[Submesh]:
-    """The file's triangles as one submesh, equal corners merged.
+    """The file's triangles as one submesh with merged corners.
 
-    Its facet normals are left out: they are often zero and always follow from the corners.
+    Facet normals are ignored: they are often zero and can be computed from the corners.
 
     Raises:
-        ValueError: what is wrong with the file.
+        ValueError: What is wrong with the file.
     """
     corners = _read_ascii(data) if _is_ascii(data) else _read_binary(data)
     if not np.isfinite(corners).all():
@@ -30,7 +30,7 @@ def read_stl(data: bytes) -> list[Submesh]:
 
 
 def _is_ascii(data: bytes) -> bool:
-    """Binary files too may begin with "solid": the length that the count asks for decides."""
+    """Whether the file is ASCII. Binary files may also begin with "solid", so the size decides."""
     if data.lstrip()[:5].lower() != b"solid":
         return False
     if len(data) >= _HEADER:
