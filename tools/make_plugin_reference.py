@@ -36,39 +36,39 @@ INTRODUCTION = f"""\
 
 {_MADE}
 
-These plugins and sensors are supported. Plugins are listed by the `filename` in their `<plugin>`
-tag; sensors that work without a plugin are listed by type. Each page describes the tags, topics and
-services.
+Cartwheel supports these plugins and sensors. Plugins are listed by the `filename` in their
+`<plugin>` tag. Sensors that need no plugin are listed by type. Each page describes the tags, topics
+and services.
 
-- A tag can have several spellings. If a `<plugin>` contains more than one spelling of a tag, the
-  one listed first is used. Unsupported tags are reported with file and line.
+- A tag can have several spellings. If a `<plugin>` contains several spellings of a tag, the
+  spelling that is listed first on the plugin's page is used. Tags that can be repeated use the
+  values of all spellings. Unsupported tags are reported with file and line.
 - `<robotNamespace>` (or `<ros><namespace>`) is prepended to every topic and service name that does
   not begin with `/`. `<ros><remapping>` renames topics and services.
-- `<alwaysOn>` is accepted and has no effect: a plugin works whenever its topics have subscribers.
-- Folders in `filename` are ignored, and `lib` and `.so` are optional. `ignition-gazebo-` is read
-  as `gz-sim-`.
+- `<alwaysOn>` is accepted and has no effect. A plugin that publishes sensor data is active whenever
+  one of its topics has subscribers. A plugin that drives joints or applies forces is always active.
+- Any folder in `filename` is ignored. The prefix `lib` and the extension `.so` are optional. The
+  prefix `ignition-gazebo-` is read as `gz-sim-`.
 - A plugin that is not listed here has no effect. A warning is reported when the robot is loaded.
 
 Sensors written for gz-sim (Gazebo's successor to Gazebo Classic) need no `<plugin>`. They publish
 if the world or the model contains the matching system, such as `gz-sim-sensors-system`. Without
-the system, they publish if they contain `<topic>` or `<gz_frame_id>`, or if their type exists only
-in gz-sim.
+the system, a sensor publishes if it contains `<topic>` or `<gz_frame_id>`, or if its type exists
+only in gz-sim.
 
 Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
-points to a subclass of `cartwheel.plugins.base.Plugin`. If the package cannot be loaded, only
-robots that use its plugins are affected: the warning that a plugin is not supported then contains
-the reason.
+points to a subclass of `cartwheel.plugins.base.Plugin`. A package that cannot be loaded affects
+only robots that use its plugins. For such a robot, a warning reports that the plugin is not
+supported. The hint of the warning states why the package could not be loaded.
 
 A plugin that raises an error while it runs is disabled. Its topics and services are removed, its
-motors brake and its forces become 0. The error message contains the plugin, its model, and the file
-and line of its tag; `--verbose` adds the traceback. The simulation continues; with `--strict`, it
-stops.
+motors brake and its forces become 0. The error message names the plugin, its model, and the file
+and line of its tag; `--verbose` adds the traceback. The simulation continues unless `--strict` is
+set.
 """
 
-_TABLE = (
-    "The table shows the example with every boolean tag set to `true`; the other tags have the "
-    "values in the example, or their defaults."
-)
+_TABLE = "The table lists the topics and services of the example above"
+_TABLE_SWITCHED = f"{_TABLE}, with every boolean tag set to `true`"
 
 
 _TOPICS_INTRODUCTION = f"""\
@@ -76,10 +76,11 @@ _TOPICS_INTRODUCTION = f"""\
 
 {_MADE}
 
-These tables list the plugins and sensors that publish, subscribe to or serve each type. Their pages
-contain the default names. `cartwheel topic list -v` and `cartwheel service list` show the names in
-a running simulation. Every simulation publishes `/clock`. [ROS 1](ros1.md) and [ROS 2](ros2.md)
-list the services of the node.
+These tables list the plugins and sensors that publish or subscribe to messages of each type, and
+the plugins that provide services of each type. The page of a plugin or sensor lists the default
+names of its topics and services. `cartwheel topic list -v` and `cartwheel service list` show the
+names in a running simulation. Every simulation publishes `/clock`. [ROS 1](ros1.md) and
+[ROS 2](ros2.md) list the services that Cartwheel provides independently of plugins.
 """
 
 
@@ -121,10 +122,11 @@ def reference() -> dict[str, str]:
     pictures = {_picture_name(p): picture(title(p), interfaces[p]) for p in ours if interfaces[p]}
     tables = [
         _index(
-            "In a model", [p for p in ours if p.filenames and not p.for_sensor and not p.for_world]
+            "Model plugins",
+            [p for p in ours if p.filenames and not p.for_sensor and not p.for_world],
         ),
-        _index("In a sensor", [p for p in ours if p.filenames and p.for_sensor]),
-        _index("In a world", [p for p in ours if p.filenames and p.for_world]),
+        _index("Sensor plugins", [p for p in ours if p.filenames and p.for_sensor]),
+        _index("World plugins", [p for p in ours if p.filenames and p.for_world]),
         _index("Sensors without a plugin", [p for p in ours if not p.filenames]),
     ]
     return {
@@ -138,9 +140,9 @@ def reference() -> dict[str, str]:
 def _topics(interfaces: dict[type[Plugin[Any]], Interface]) -> str:
     lines = [_TOPICS_INTRODUCTION]
     sections = {
-        "publishes": ("Published topics", "Plugins and sensors that publish it"),
-        "subscribes": ("Subscribed topics", "Plugins that subscribe to it"),
-        "serves": ("Services", "Plugins that serve it"),
+        "publishes": ("Published topics", "Published by"),
+        "subscribes": ("Subscribed topics", "Subscribed to by"),
+        "serves": ("Services", "Provided by"),
     }
     for role, (heading, users) in sections.items():
         lines += [f"## {heading}", "", f"| Type | {users} |", "|---|---|"]
@@ -187,7 +189,8 @@ def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
     if interface:
         lines += ["## Topics and services", ""]
         lines += [f"![Topics and services of {title(plugin)}](../{_picture_name(plugin)})", ""]
-        lines += [_TABLE, ""]
+        switched = any(kind is bool for _, kind in fields(plugin))
+        lines += [f"{_TABLE_SWITCHED if switched else _TABLE}.", ""]
         lines += ["| Name | Type | Role |", "|---|---|---|"]
         lines += [*(f"| `{name}` | `{kind}` | {role} |" for role, name, kind in interface), ""]
     return "\n".join([*lines, f"[All plugins and sensors](../{INDEX})", ""])

@@ -74,7 +74,7 @@ def test_a_finding_shows_its_line_a_caret_and_the_text_to_write(checked):
     assert lines[0].endswith(" inertia-impossible]")
     assert lines[1] == '    6 | <inertia ixx="2" iyy="2" izz="-2"/>'
     assert lines[2] == " " * 8 + "^" + "~" * (len(lines[1]) - 9)
-    assert lines[3] == '  write: <inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/>'
+    assert lines[3] == '  fix: <inertia ixx="2" ixy="0" ixz="0" iyy="2" iyz="0" izz="2"/>'
     assert lines[-1].endswith("bar.urdf: 1 error")
     assert "\033" not in "".join(lines), "a file shows no colours"
 
@@ -187,7 +187,7 @@ def test_parameters_are_held_against_the_plugins(checked):
     )
     out = checked(GOOD.replace("</robot>", plugin), status=1)
     assert " plugin-parameter-unknown]" in out
-    assert "write: <topicName>imu</topicName>" in out
+    assert "fix: <topicName>imu</topicName>" in out
 
 
 def test_the_shipped_robot_has_nothing_to_note(program):

@@ -108,7 +108,7 @@ def test_missing_file_suggests_near_names(folder):
     write(folder / "cart.urdf", URDF)
     assert hint("cart.udf") == 'Did you mean "cart.urdf"?'
     assert 'Did you mean "rosbots.xacro"?' in hint("robots.xacro")
-    assert "Descriptions shipped with Cartwheel:" in hint("zzzzz")
+    assert "Bundled descriptions:" in hint("zzzzz")
 
 
 @pytest.mark.parametrize("name", ["a\0b", "x" * 5000, "", "."])

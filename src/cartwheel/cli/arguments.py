@@ -27,12 +27,34 @@ Sim = Annotated[
         f"{VARIABLE}.",
     ),
 ]
+
+
+def _names(metavar: str, text: str) -> Any:
+    return typer.Argument(metavar=metavar, show_default=False, help=text)
+
+
 Names = Annotated[
     list[str] | None,
-    typer.Argument(
-        metavar="[FILE] [NAME:=VALUE]...",
-        show_default=False,
-        help="Robot description (xacro, URDF or SDF), and values for its xacro arguments.",
+    _names(
+        "FILE [NAME:=VALUE]...",
+        "Robot description (xacro, URDF or SDF) or the name of a bundled one, and values for its "
+        "xacro arguments.",
+    ),
+]
+ModelNames = Annotated[
+    list[str] | None,
+    _names(
+        "FILE [NAME:=VALUE]...",
+        "Model file (xacro, URDF or SDF) or the name of a bundled model, and values for its xacro "
+        "arguments.",
+    ),
+]
+RunNames = Annotated[
+    list[str] | None,
+    _names(
+        "[FILE] [NAME:=VALUE]...",
+        "Robot description (xacro, URDF or SDF) or the name of a bundled one, and values for its "
+        "xacro arguments. Default: the bundled cart, rosbots.xacro.",
     ),
 ]
 PackagePath = Annotated[

@@ -18,7 +18,7 @@ def add_to(app: typer.Typer) -> None:
 
 def spawn(
     *,
-    words: arguments.Names = None,
+    words: arguments.ModelNames = None,
     x: arguments.X = None,
     y: arguments.Y = None,
     z: arguments.Z = None,
@@ -29,7 +29,7 @@ def spawn(
     package_path: arguments.PackagePath = None,
     sim: Sim = None,
 ) -> None:
-    """Spawn a model from a file, or a shipped model by its name."""
+    """Spawn a model from a file, or a bundled model by name."""
     from cartwheel.cli.commands import models as work
 
     file, values = arguments.split(words)

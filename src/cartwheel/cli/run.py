@@ -18,12 +18,12 @@ def add_to(app: typer.Typer) -> None:
 
 def run(
     *,
-    words: arguments.Names = None,
+    words: arguments.RunNames = None,
     world: Annotated[
         str | None,
         typer.Option(
             metavar="FILE|NAME",
-            help="World to simulate: an SDF file, or the name of a shipped world.",
+            help="World to simulate: an SDF file, or the name of a bundled world.",
             rich_help_panel=help.WORLD,
         ),
     ] = None,
@@ -195,13 +195,13 @@ def run(
         bool, typer.Option("--verbose", help="Show informational messages.")
     ] = False,
 ) -> None:
-    """Simulate a robot, by default the shipped cart.
+    """Simulate a robot, by default the bundled cart.
 
     FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets a xacro
     argument; world:=FILE is the same as --world.
 
-    With --ros1, ROS 1 node arguments also work: __name:=NAME, _PARAMETER:=VALUE, /TOPIC:=OTHER,
-    and, if FILE is a world, TOPIC:=OTHER.
+    With --ros1, ROS 1 node arguments are also accepted: __name:=NAME, _PARAMETER:=VALUE,
+    /TOPIC:=OTHER, and, if FILE is a world, TOPIC:=OTHER.
     """
     from cartwheel.cli.commands.options import Options
     from cartwheel.cli.commands.run import simulate

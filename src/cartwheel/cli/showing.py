@@ -41,7 +41,7 @@ def shown(
     lines = [f"{place}{word} {diagnostic.message}{code}"]
     lines += _excerpt(diagnostic, styles, out)
     if diagnostic.instead:
-        verb = "add:" if diagnostic.place in ("inside", "after") else "write:"
+        verb = "add:" if diagnostic.place in ("inside", "after") else "fix:"
         lines.append(f"  {paint(verb, 'green', stream=out)} {diagnostic.instead}")
     if diagnostic.hint:
         lines.append(f"  {diagnostic.hint}")

@@ -147,7 +147,7 @@ PLUGIN_PARAMETER_UNSUPPORTED = Code(
     "CW459",
     "plugin-parameter-unsupported",
     "error",
-    "a plugin cannot work with this value, which Gazebo supports",
+    "a plugin does not support this value, but Gazebo does",
 )
 PLUGIN_RANGE_REVERSED = Code(
     "CW460",

@@ -40,7 +40,7 @@ FRICTION_DIRECTION_UNSUPPORTED = Code(
     "CW614",
     "friction-direction-unsupported",
     "warning",
-    "friction cannot differ by direction with this MuJoCo version",
+    "anisotropic friction is not available with this MuJoCo version",
 )
 MODELS_OVERLAP = Code("CW615", "models-overlap", "warning", "a model overlaps another model")
 CHAIN_TOO_LONG = Code(

@@ -83,7 +83,7 @@ def refusal(error: Exception) -> dict[str, Any]:
     """
     if isinstance(error, CartwheelError):
         return {"error": str(error), "diagnostic": packed(error.diagnostic())}
-    diagnostic = INTERNAL_FAULT.because("the simulation could not do this", error)
+    diagnostic = INTERNAL_FAULT.because("the simulation could not complete the request", error)
     return {"error": diagnostic.message, "diagnostic": packed(diagnostic)}
 
 

@@ -272,7 +272,7 @@ class Packages:
                 code=VALUE_INVALID,
                 values={"name": uri},
                 origin=origin,
-                hint="Write package://, model:// or file://.",
+                hint="Use a package://, model:// or file:// URI.",
             )
         if not name:
             raise DescriptionError(

@@ -147,6 +147,4 @@ def _meant(given: Path) -> str | None:
     near = numbers.likely(given.name, here | shipped)
     if near:
         return f'Did you mean "{near}"?'
-    return (
-        (f"Descriptions shipped with Cartwheel: {', '.join(sorted(shipped))}.") if shipped else None
-    )
+    return (f"Bundled descriptions: {', '.join(sorted(shipped))}.") if shipped else None

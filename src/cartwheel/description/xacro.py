@@ -242,8 +242,7 @@ class _Run:
                 code=codes.EXPANSION_TOO_LARGE,
                 values={"kind": "calls", "most": MAX_CALLS, "tag": call.tagName},
                 origin=replace(call.origin, stack=call.origin.stack[:MAX_SHOWN]),
-                hint="Check whether a macro calls itself or another macro more often than "
-                "necessary.",
+                hint="Check whether a macro calls itself endlessly, or reduce the number of calls.",
             )
         copy = _clone(body, (f"{call.origin} {call.tagName}", *call.origin.stack))
         self.count(copy)

@@ -17,7 +17,7 @@ from cartwheel.simulation import RunState
 
 _LOOK = 0.002
 """Interval of the checks whether steps are done, s."""
-_INTERRUPTED = "the simulation was resumed or reset by something else"
+_INTERRUPTED = "the simulation was resumed or reset before the steps were completed"
 _AT_A_TIME = 20
 """Steps of an action between two checks for cancellation."""
 

@@ -91,7 +91,8 @@ class PlayedScene:
         if isinstance(found, WorldDescription):
             self.diagnostics.append(
                 RECORDED_ROBOT_NOT_SHOWN.diagnostic(
-                    f"{topic} describes a world, which is not shown", values={"topic": topic}
+                    f"{topic} contains a world description, but only robots are shown",
+                    values={"topic": topic},
                 )
             )
             return

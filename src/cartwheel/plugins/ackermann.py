@@ -155,7 +155,8 @@ class AckermannDrive(SteeredDrive):
     Commands are received on ``cmd_vel``. ``linear.x`` is the speed in m/s at the middle of the rear
     axle. ``angular.z`` is the steering angle in rad; in reverse, its sign is inverted. The odometry
     is the ground-truth pose in the world. Wheel radius, wheel base and track are read from the
-    robot description. Source: gazebo_plugins, gazebo_ros_ackermann_drive.
+    robot description. Original plugin: ``gazebo_ros_ackermann_drive`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackermann_drive.so",)
@@ -350,7 +351,7 @@ class GzAckermann(SteeredDrive):
     """Drives and steers a car from Twist commands and publishes odometry from its wheels.
 
     ``linear.x`` is in m/s, ``angular.z`` in rad/s. The odometry is computed from the rotation of
-    the driven wheels. Source: gz-sim, AckermannSteering.
+    the driven wheels. Original plugin: ``AckermannSteering`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)

@@ -28,9 +28,9 @@ class AltimeterParameters:
 class Altimeter(Plugin[AltimeterParameters]):
     """Publishes the height of a sensor above its initial height, and its vertical velocity.
 
-    ``vertical_reference`` is the height in the world at which the sensor was spawned. The noise in
-    ``<vertical_position>`` and ``<vertical_velocity>`` is applied. Source: gz-sensors,
-    AltimeterSensor; ros_gz_bridge.
+    The message field ``vertical_reference`` is the height in the world at which the sensor was
+    spawned. The noise in ``<vertical_position>`` and ``<vertical_velocity>`` is applied. Original
+    sensor: ``AltimeterSensor`` in gz-sensors. The message type is that of ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

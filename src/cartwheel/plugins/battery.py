@@ -54,7 +54,7 @@ class BatteryParameters:
         "power_load", default=0.0, unit="W", doc="Power drawn while the battery discharges."
     )
     draining: bool = tag(
-        "start_draining", default=False, doc="Discharge from the start of the simulation."
+        "start_draining", default=False, doc="Start discharging when the simulation starts."
     )
     drain_topics: tuple[str, ...] = tag(
         "power_draining_topic",
@@ -94,12 +94,15 @@ class BatteryParameters:
 
 
 class Battery(Plugin[BatteryParameters]):
-    """Simulates a battery that discharges at constant power once the robot is commanded.
+    """Simulates a battery that discharges at constant power.
 
-    ``voltage = constant + linear (1 - charge / capacity) - resistance * current``. Recharging stops
-    at 90 % of the capacity. BatteryState is published at 50 Hz on
-    ``/model/<model>/battery/<battery_name>/state``. Its percentage is from 0 to 1, as in ROS. An
-    empty battery causes a warning and does not stop the robot. Source: gz-sim, LinearBatteryPlugin.
+    Discharging starts when a plugin first turns a joint of the model, for example after a drive
+    command. It also starts with a message on ``<power_draining_topic>``, or at startup with
+    ``<start_draining>``. The voltage is ``constant + linear (1 - charge / capacity) - resistance *
+    current``. Recharging stops at 90 % of the capacity. BatteryState is published at 50 Hz on
+    ``/model/<model>/battery/<battery_name>/state``. The message field ``percentage`` is from 0 to
+    1, as in ROS. An empty battery causes a warning and does not stop the robot. Original plugin:
+    ``LinearBatteryPlugin`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

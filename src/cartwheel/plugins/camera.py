@@ -271,20 +271,21 @@ class DepthByTypeParameters(CameraParameters):
 class Camera(RosCamera[DepthByTypeParameters]):
     """Publishes the images of a camera sensor.
 
-    The sensor looks along its x axis. An image is rendered only if a topic has subscribers. Topics
-    are under ``<cameraName>``. Without that tag they are under the sensor's name, or directly under
-    the namespace if other tags have ROS 1 spellings. Each camera of a ``multicamera`` sensor has
-    separate topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the plugin
-    also publishes depth images and points.
+    The sensor looks along its x axis. Images are rendered only while one of the topics has
+    subscribers. The topics are below ``<cameraName>``. If this tag is missing, they are below the
+    sensor's name, or directly in the plugin's namespace if other tags have ROS 1 spellings. Each
+    camera of a ``multicamera`` sensor has separate topics, such as ``<cameraName>/left/image_raw``.
+    For a ``depth`` sensor, the plugin also publishes depth images and points.
 
     ``image_raw/compressed`` contains JPEG or PNG images. ``set_camera_info`` replaces the published
-    CameraInfo; the image does not change. If the tag is written for ROS 1, dynamic_reconfigure
-    offers ``imager_rate`` and the compression parameters.
+    CameraInfo; the image does not change. If the plugin tag is written for ROS 1, ``imager_rate``
+    and the compression parameters can be changed with dynamic_reconfigure.
 
     The image is distorted with the sensor's ``<distortion>``, or else with the plugin's
     coefficients. ``camera_info`` contains the same coefficients.
 
-    Source: gazebo_plugins, gazebo_ros_camera and gazebo_ros_camera_utils, in ROS 1 and ROS 2.
+    Original plugin: ``gazebo_ros_camera`` (with ``gazebo_ros_camera_utils``) in the package
+    ``gazebo_plugins``, for ROS 1 and ROS 2.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -312,8 +313,9 @@ class Camera(RosCamera[DepthByTypeParameters]):
 class TriggeredCamera(Camera):
     """Publishes one image for each message on ``<cameraName>/image_trigger``.
 
-    Tags and topics are the same as for ``libgazebo_ros_camera.so``. Source: gazebo_plugins,
-    gazebo_ros_triggered_camera and gazebo_ros_triggered_multicamera.
+    Tags and topics are the same as for ``libgazebo_ros_camera.so``. Original plugins:
+    ``gazebo_ros_triggered_camera`` and ``gazebo_ros_triggered_multicamera`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -334,7 +336,8 @@ class Prosilica(RosCamera[ProsilicaParameters]):
     """Publishes the images of a Prosilica camera in streaming mode.
 
     Topics are the same as for ``libgazebo_ros_camera.so``. If the parameter ``trigger_mode`` is
-    ``polled``, a warning is reported. Source: gazebo_plugins, gazebo_ros_prosilica.
+    ``polled``, a warning is reported. Original plugin: ``gazebo_ros_prosilica`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)

@@ -197,14 +197,16 @@ def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
         try:
             plugin = entry.load()
             if not (isinstance(plugin, type) and issubclass(plugin, Plugin)):
-                raise TypeError(f"{entry.value} is not a subclass of Plugin")
+                raise TypeError(f"{entry.value} must be a subclass of Plugin")
             if isinstance(plugin.filenames, str):
-                raise TypeError(f"filenames of {entry.value} is a string, not a tuple of strings")
+                raise TypeError(f"{entry.value}.filenames must be a tuple of strings, not a string")
             names = (*plugin.filenames, *plugin.serves)
             if not all(isinstance(name, str) for name in names):
-                raise TypeError(f"filenames or serves of {entry.value} are not strings")
+                raise TypeError(
+                    f"{entry.value}.filenames and {entry.value}.serves must contain only strings"
+                )
             if not dataclasses.is_dataclass(plugin.parameters):
-                raise TypeError(f"parameters of {entry.value} is not a dataclass")
+                raise TypeError(f"{entry.value}.parameters must be a dataclass")
         except (Exception, SystemExit) as error:  # noqa: BLE001 - code in a different package
             broken.append(
                 f'The plugin "{entry.name}" of the installed package "{package}" cannot be '

@@ -60,8 +60,9 @@ class Create3BumperParameters:
 class Create3Bumper(_Hazard):
     """Publishes the pressed zone of the bumper as a HazardDetection of type BUMP.
 
-    The frame ID is one of five zones, such as ``bump_front_left``. If several zones are pressed, it
-    is the zone with the deepest contact. Source: irobot_create_gazebo_plugins, gazebo_ros_bumper.
+    The frame ID is one of five zones, such as ``bump_front_left``. If several zones are pressed,
+    the zone with the deepest contact is published. Original plugin: ``gazebo_ros_bumper`` in the
+    package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
@@ -102,8 +103,8 @@ class Create3CliffParameters:
 class Create3Cliff(_Hazard):
     """Publishes a HazardDetection of type CLIFF while the floor is too far from a ray sensor.
 
-    The smallest range of the sensor is compared with the threshold. Source:
-    irobot_create_gazebo_plugins, gazebo_ros_cliff_sensor.
+    The smallest range of the sensor is compared with the threshold. Original plugin:
+    ``gazebo_ros_cliff_sensor`` in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_cliff_sensor.so",)
@@ -131,9 +132,9 @@ class Create3IntensityParameters:
 class Create3Intensity(Plugin[Create3IntensityParameters]):
     """Publishes the intensity of reflected infrared light.
 
-    The intensity is ``3500 exp(-2 e d / max)``, where d is the distance of the nearest obstacle and
-    max is the maximum range of the ray sensor. Source: irobot_create_gazebo_plugins,
-    gazebo_ros_ir_intensity_sensor.
+    The intensity is ``3500 exp(-2 e d / max)``, where d is the distance to the nearest obstacle and
+    max is the maximum range of the ray sensor. Original plugin: ``gazebo_ros_ir_intensity_sensor``
+    in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
@@ -181,7 +182,8 @@ class Create3ImuParameters:
 class Create3Imu(ImuBase):
     """Publishes the measurements of an IMU sensor, with accelerations that exclude gravity.
 
-    Gazebo's plugin also excludes gravity. Source: irobot_create_gazebo_plugins, gazebo_ros_imu.
+    Gazebo's plugin also excludes gravity. Original plugin: ``gazebo_ros_imu`` in the package
+    ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
@@ -214,7 +216,7 @@ class Create3MouseParameters:
 class Create3Mouse(Plugin[Create3MouseParameters]):
     """Publishes the accumulated travel of a link along its own x and y axes, in m.
 
-    Source: irobot_create_gazebo_plugins, gazebo_ros_optical_mouse.
+    Original plugin: ``gazebo_ros_optical_mouse`` in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_optical_mouse.so",)
@@ -256,18 +258,19 @@ class Create3WheelDropParameters:
         "detection_threshold",
         default=0.7,
         unit="m",
-        doc="Joint position of a fully dropped wheel. A wheel drop is reported from 95 % of this "
-        "value until the position is below 75 %.",
+        doc="Joint position of a fully dropped wheel. A wheel drop is reported when the "
+        "position reaches 95 % of this value, until it is below 75 %.",
     )
     frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
     rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Rate of checks and messages.")
 
 
 class Create3WheelDrop(_Hazard):
-    """Publishes a HazardDetection of type WHEEL_DROP while a wheel has dropped.
+    """Publishes a HazardDetection of type WHEEL_DROP while a wheel is dropped.
 
-    A wheel drops when it loses contact with the ground: its suspension joint extends. Source:
-    irobot_create_gazebo_plugins, gazebo_ros_wheel_drop.
+    A wheel is dropped when its suspension joint has extended, for example because the robot was
+    lifted. Original plugin: ``gazebo_ros_wheel_drop`` in the package
+    ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_wheel_drop.so",)

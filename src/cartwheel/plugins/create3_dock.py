@@ -81,8 +81,9 @@ class Create3OpcodeParameters(_Dock):
 class Create3Opcode(_Docking):
     """Publishes the infrared codes from the dock that the robot's two receivers detect.
 
-    The dock emits a halo, and a red and a green buoy signal. A receiver detects a signal up to the
-    sum of both ranges. Source: irobot_create_gazebo_plugins, gazebo_ros_ir_opcode.
+    The dock emits a halo, and a red and a green buoy signal. A receiver detects a signal if the
+    distance to the dock is below the range of the receiver plus the range of the signal. Original
+    plugin: ``gazebo_ros_ir_opcode`` in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_opcode.so",)
@@ -137,7 +138,8 @@ class Create3DockStatus(_Docking):
     """Publishes whether the robot detects its dock and whether it is docked.
 
     The dock is visible while its codes are received on ``ir_opcode``. Nothing is published if the
-    world has no dock. Source: irobot_create_gazebo_plugins, gazebo_ros_docking_status.
+    world has no dock. Original plugin: ``gazebo_ros_docking_status`` in the package
+    ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_docking_status.so",)

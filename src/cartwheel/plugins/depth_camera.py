@@ -62,7 +62,8 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
     for each pixel, with the pixel's colour in ``rgb``. Reflectance and normals are not published,
     as in Gazebo 11.
 
-    Source: gazebo_plugins, gazebo_ros_depth_camera; REP 103 and 118.
+    Original plugin: ``gazebo_ros_depth_camera`` in the package ``gazebo_plugins``. See also REP 103
+    and REP 118.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_depth_camera.so",)
@@ -104,8 +105,8 @@ class KinectParameters(DepthCameraParameters):
 class OpenniKinect(DepthCamera):
     """Publishes colour images, depth images and points of a Kinect, by default up to 5 m.
 
-    Tags and topics are the same as for ``libgazebo_ros_depth_camera.so``. Source: gazebo_plugins,
-    gazebo_ros_openni_kinect.
+    Tags and topics are the same as for ``libgazebo_ros_depth_camera.so``. Original plugin:
+    ``gazebo_ros_openni_kinect`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_openni_kinect.so",)

@@ -50,7 +50,8 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
     """Attaches a link of a different model to a link of this model until a message detaches it.
 
     The links are attached when the simulation starts, in their current relative pose. A child model
-    that is spawned later is attached as soon as it exists. Source: gz-sim, DetachableJoint.
+    that is spawned later is attached as soon as it exists. Original plugin: ``DetachableJoint`` in
+    gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-detachable-joint-system",)

@@ -142,8 +142,8 @@ class DiffDrive(WheelDrive):
     Each wheel is a velocity servo with the maximum torque ``<wheelTorque>``. A command stays in
     effect until the next command. If the model is part of a world file, the topics of a ROS 1 tag
     without ``<robotNamespace>`` are below the model's name. A tag is written for ROS 2 if it
-    contains ``<ros>``, ``<left_joint>`` or ``<right_joint>``. Source: gazebo_plugins,
-    gazebo_ros_diff_drive.
+    contains ``<ros>``, ``<left_joint>`` or ``<right_joint>``. Original plugin:
+    ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)

@@ -50,8 +50,9 @@ class Elevator(Plugin[ElevatorParameters]):
     """Moves an elevator's car to the commanded floor and operates its door.
 
     For each command the door closes, the car moves, and the door opens, waits and closes. New
-    commands are ignored until then. Floor n is at the position n times ``<floor_height>`` of the
-    lift joint. Source: gazebo_plugins, gazebo_ros_elevator; Gazebo, ElevatorPlugin.
+    commands are ignored until the door is closed again. At floor n, the position of the lift joint
+    is n times ``<floor_height>``. Original plugins: ``gazebo_ros_elevator`` in the package
+    ``gazebo_plugins``, and ``ElevatorPlugin`` in Gazebo Classic.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_elevator.so", "libElevatorPlugin.so")

@@ -24,12 +24,12 @@ class F3DParameters:
 
 
 class F3D(Plugin[F3DParameters]):
-    """Publishes the force and torque that contacts, attachments and wrenches exert on a link.
+    """Publishes the force and torque of contacts, attached objects and wrenches on a link.
 
-    Attachments are made by plugins such as grippers, and wrenches are applied by plugins or
-    services. The torque is about the link's centre of mass. Both vectors are in the world frame.
-    Gravity and joint reaction forces are not included. A message is published at every step.
-    Source: gazebo_plugins, gazebo_ros_f3d.
+    Objects are attached by plugins such as grippers. Wrenches are applied by plugins or services.
+    The torque is about the link's centre of mass. Both vectors are in the world frame. Gravity and
+    joint reaction forces are not included. A message is published at every step. Original plugin:
+    ``gazebo_ros_f3d`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)

@@ -22,7 +22,8 @@ class FootContact(Plugin[FootContactParameters]):
     """Publishes the contact force on a foot, in the foot's link frame.
 
     The topic is ``/visual/<sensor>/the_force``. The force is the sum over all contacts of the
-    sensor's collisions; in Gazebo it is their mean. Source: unitree_gazebo, foot_contact_plugin.
+    sensor's collisions; in Gazebo it is their mean. Original plugin: ``foot_contact_plugin`` in the
+    package ``unitree_gazebo``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)

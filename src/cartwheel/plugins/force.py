@@ -28,7 +28,8 @@ class ForceParameters:
 class Force(Plugin[ForceParameters]):
     """Applies the last received Wrench to a link, at its centre of mass.
 
-    A wrench stays in effect until the next message. Source: gazebo_plugins, gazebo_ros_force.
+    A wrench stays in effect until the next message. Original plugin: ``gazebo_ros_force`` in the
+    package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_force.so",)

@@ -62,11 +62,12 @@ class ForceBasedMoveParameters:
 
 
 class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
-    """Moves the robot in the plane by forces that follow Twist commands, and publishes odometry.
+    """Applies forces to make the robot follow Twist commands, and publishes odometry.
 
-    Force and torque are the gain times the velocity error, and act at the centre of mass.
-    ``linear.x``, ``linear.y`` and ``angular.z`` are used. The odometry is relative to the robot's
-    initial pose. Source: ridgeback_gazebo_plugins; hector_gazebo_plugins.
+    The robot moves in the plane. The force and the torque are the gains times the velocity errors,
+    and act at the centre of mass. ``linear.x``, ``linear.y`` and ``angular.z`` are used. The
+    odometry is relative to the robot's initial pose. Original packages:
+    ``ridgeback_gazebo_plugins`` and ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -105,8 +105,8 @@ class FtSensor(_JointWrench):
     """Publishes the force and torque that a joint's child link exerts on its parent link.
 
     The wrench is in the child link's frame, and the torque is about the joint. A hanging load
-    exerts a downward force. Fixed joints are supported without ``<preserveFixedJoint>``. Source:
-    gazebo_plugins, gazebo_ros_ft_sensor.
+    exerts a downward force. Fixed joints are supported without ``<preserveFixedJoint>``. Original
+    plugin: ``gazebo_ros_ft_sensor`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ft_sensor.so",)
@@ -221,8 +221,8 @@ class GzForceTorque(_JointWrench):
     ``<force>`` and ``<torque>`` can contain noise for each axis.
 
     The default frame ID is the child or parent link. For ``sensor`` it is the child link, or the
-    sensor's name if the sensor is rotated relative to its link. Source: gz-sensors,
-    ForceTorqueSensor; sdformat.
+    sensor's name if the sensor is rotated relative to its link. Original sensor:
+    ``ForceTorqueSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

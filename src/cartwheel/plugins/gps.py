@@ -79,8 +79,8 @@ class HectorGpsParameters:
         doc="Heading of the world's x axis, clockwise from north. Defaults to 0 (x is north, y is "
         "west), or to the world's heading with `<useWorldSphericalCoordinates>`.",
     )
-    status: int = tag("status", default=0, doc="Field `status` in NavSatStatus.")
-    service: int = tag("service", default=0, doc="Field `service` in NavSatStatus.")
+    status: int = tag("status", default=0, doc="Value of the field `status` in NavSatStatus.")
+    service: int = tag("service", default=0, doc="Value of the field `service` in NavSatStatus.")
     offset: tuple[float, float, float] = tag(
         "offset", default=_NONE, unit="m", doc="Constant error of the position."
     )
@@ -130,7 +130,8 @@ class HectorGps(_Receiver):
 
     As in hector_gazebo_plugins, the Earth is treated as flat around the reference point; within a
     few kilometres the error is below 1 m. Offset, drift, noise and scale are applied as in
-    ``libhector_gazebo_ros_imu.so``. Source: hector_gazebo_plugins, gazebo_ros_gps.
+    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_gps`` in the package
+    ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)
@@ -315,9 +316,10 @@ class _GpsSensor(_Receiver):
 class GpsSensor(_GpsSensor):
     """Publishes the geographic position and the velocity of a ``gps`` sensor.
 
-    ``~/out`` is a NavSatFix; ``~/vel`` is the velocity along east, north and up. The noise in the
-    sensor's ``<gps>`` is applied, in m and m/s. The position is relative to the world's
-    ``<spherical_coordinates>``. Source: gazebo_plugins (ROS 2), gazebo_ros_gps_sensor.
+    The topic ``~/out`` contains NavSatFix messages; ``~/vel`` contains the velocity toward east,
+    north and up. The noise in the sensor's ``<gps>`` is applied, in m and m/s. The position is
+    relative to the world's ``<spherical_coordinates>``. Original plugin: ``gazebo_ros_gps_sensor``
+    in the ROS 2 package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
@@ -351,7 +353,7 @@ class GzNavSat(_GpsSensor):
     """Publishes the geographic position of a ``navsat`` sensor.
 
     The position is relative to the world's ``<spherical_coordinates>``. The noise in the sensor's
-    ``<navsat>`` is applied, in m. Source: gz-sensors, NavSatSensor.
+    ``<navsat>`` is applied, in m. Original sensor: ``NavSatSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -78,7 +78,8 @@ class GraspFix(Plugin[GraspFixParameters]):
     ``<release_tolerance>``. A hand holds one object at a time.
 
     Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, like those of
-    the original package's republisher. Source: JenniferBuehler, gazebo_grasp_plugin.
+    the original package's republisher. Original plugin: ``gazebo_grasp_plugin`` by Jennifer
+    Buehler.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_grasp_fix.so",)

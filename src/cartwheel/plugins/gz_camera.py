@@ -65,11 +65,12 @@ class GzCamera(CameraBase[GzCameraParameters]):
 
     A camera publishes images on ``<topic>``. An RGB-D camera publishes images on ``<topic>/image``,
     depths on ``<topic>/depth_image`` and points on ``<topic>/points``. A depth camera publishes
-    depths on ``<topic>`` and points on ``<topic>/points``. ``camera_info`` is next to the image
-    topic. Depths are measured along the optical axis, and are inf where nothing is hit. Points have
-    x forward, y left and z up, as in gz-sim.
+    depths on ``<topic>`` and points on ``<topic>/points``. The topic ``camera_info`` is in the same
+    namespace as the image topic. Depths are measured along the optical axis, and are inf where
+    nothing is hit. Points have x forward, y left and z up, as in gz-sim.
 
-    Source: gz-sensors, CameraSensor, DepthCameraSensor, RgbdCameraSensor; ros_gz_bridge.
+    Original sensors: ``CameraSensor``, ``DepthCameraSensor`` and ``RgbdCameraSensor`` in
+    gz-sensors. The message types are those of ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -23,7 +23,8 @@ class GzContactParameters:
 class GzContact(Bumper):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
 
-    When nothing is in contact, ``states`` is empty. Source: gz-sim, Contact.
+    When nothing is in contact, the message field ``states`` is empty. Original plugin: ``Contact``
+    in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

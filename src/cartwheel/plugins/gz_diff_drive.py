@@ -42,7 +42,8 @@ class GzDiffDriveParameters(GzLimitedParameters):
 class GzDiffDrive(WheelDrive):
     """Drives left and right wheels from Twist commands and publishes odometry from their rotation.
 
-    The wheel torque is limited only by the effort limits of the joints. Source: gz-sim, DiffDrive.
+    The wheel torque is limited only by the effort limits of the joints. Original plugin:
+    ``DiffDrive`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)

@@ -174,7 +174,8 @@ class JointPositionController(_JointController):
     """Moves a joint to the last commanded position and holds it there.
 
     Until the first command, the target is ``<initial_position>``. The default topic (Float64) is
-    ``/model/<model>/joint/<joint>/cmd_pos``. Source: gz-sim, JointPositionController.
+    ``/model/<model>/joint/<joint>/cmd_pos``. Original plugin: ``JointPositionController`` in
+    gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-position-controller-system",)
@@ -214,7 +215,7 @@ class JointController(_JointController):
     """Holds a joint at the last commanded velocity.
 
     Until the first command, the target is ``<initial_velocity>``. The default topic (Float64) is
-    ``/model/<model>/joint/<joint>/cmd_vel``. Source: gz-sim, JointController.
+    ``/model/<model>/joint/<joint>/cmd_vel``. Original plugin: ``JointController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)
@@ -242,7 +243,8 @@ class ApplyJointForce(Plugin[ApplyJointForceParameters]):
     """Applies the last commanded force or torque to a joint.
 
     The command is a torque in N m for a revolute joint, and a force in N for a prismatic joint. The
-    topic (Float64) is ``/model/<model>/joint/<joint>/cmd_force``. Source: gz-sim, ApplyJointForce.
+    topic (Float64) is ``/model/<model>/joint/<joint>/cmd_force``. Original plugin:
+    ``ApplyJointForce`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-apply-joint-force-system",)

@@ -46,9 +46,10 @@ class GzLidar(Plugin[GzLidarParameters]):
     """Publishes the middle row of a lidar as a LaserScan, and all rows as a PointCloud2.
 
     The cloud is organised and starts with the lowest row; points that hit nothing are infinite.
-    ``gpu_lidar`` and ``gpu_ray`` detect visuals; ``lidar`` and ``ray`` detect collisions.
+    ``gpu_lidar`` and ``gpu_ray`` sensors measure the visual geometry; ``lidar`` and ``ray`` sensors
+    measure the collision geometry.
 
-    Source: gz-sensors, GpuLidarSensor; ros_gz_bridge for the types.
+    Original sensor: ``GpuLidarSensor`` in gz-sensors. The message types are those of ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -44,7 +44,8 @@ class HandOfGod(Plugin[HandOfGodParameters]):
 
     The target is the frame ``<frameId>_desired``, relative to ``world``. The link is pulled once tf
     provides this transform. No other body receives the reaction force. The link's pose is published
-    as the frame ``<frameId>_actual``. Source: gazebo_plugins, gazebo_ros_hand_of_god.
+    as the frame ``<frameId>_actual``. Original plugin: ``gazebo_ros_hand_of_god`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_hand_of_god.so",)

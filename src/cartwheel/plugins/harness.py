@@ -72,12 +72,14 @@ class Harness(Plugin[HarnessParameters]):
     """Suspends links of the model from the world, and raises and lowers one of them with a winch.
 
     The winch follows ``/<model>/harness/velocity`` (Float32) in m/s. A message on
-    ``/<model>/harness/detach`` detaches the joint in ``<detach>``: a Bool that is true, or an Empty
-    if the tag contains ``<ros>``. With ``<ros>``, the topics are relative to the namespace.
+    ``/<model>/harness/detach`` detaches the joint in ``<detach>``. The message is a Bool with the
+    value true, or an Empty if the tag contains ``<ros>``. With ``<ros>``, the topics are relative
+    to the namespace.
 
     A rope can only pull. While the robot stands on the ground, the rope is slack and exerts no
-    force. While the rope is taut, it holds the link rigidly, as the prismatic joint would. Source:
-    gazebo_plugins, gazebo_ros_harness; Gazebo, HarnessPlugin.
+    force. While the rope is taut, it holds the link rigidly, as the prismatic joint would. Original
+    plugins: ``gazebo_ros_harness`` in the package ``gazebo_plugins``, and ``HarnessPlugin`` in
+    Gazebo Classic.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_harness.so", "libHarnessPlugin.so")

@@ -21,7 +21,7 @@ class HectorBaroParameters:
     topic: str = tag(
         "topicName",
         default="pressure_height",
-        doc="Topic of the height (PointStamped, in z). Not published if empty.",
+        doc="Topic of the z position (PointStamped). Not published if empty.",
     )
     altimeter_topic: str = tag(
         "altimeterTopicName",
@@ -36,7 +36,7 @@ class HectorBaroParameters:
         "elevation", default=0.0, unit="m", doc="Altitude of the world's origin above sea level."
     )
     qnh: float = tag("qnh", default=1013.25, unit="hPa", doc="Pressure at sea level.")
-    offset: float = tag("offset", default=0.0, unit="m", doc="Constant error of the height.")
+    offset: float = tag("offset", default=0.0, unit="m", doc="Constant error of the z position.")
     drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of the drift.")
     frequency: float = tag(
         "driftFrequency",
@@ -47,15 +47,16 @@ class HectorBaroParameters:
     noise: float = tag(
         "gaussianNoise", default=0.0, unit="m", doc="Standard deviation of the noise."
     )
-    scale: float = tag("scaleError", default=1.0, doc="Scale factor on the height.")
+    scale: float = tag("scaleError", default=1.0, doc="Scale factor on the z position.")
 
 
 class HectorBaro(Plugin[HectorBaroParameters]):
-    """Publishes the height of a link in the world, its altitude and the air pressure.
+    """Publishes a link's z position in the world, its altitude above sea level and the pressure.
 
-    The pressure is computed from the measured altitude: ``pressure = qnh (1 - altitude / 44330 m) ^
-    5.263157``. Offset, drift, noise and scale are applied as in ``libhector_gazebo_ros_imu.so``.
-    Source: hector_quadrotor_gazebo_plugins, gazebo_ros_baro.
+    The air pressure is computed from the measured altitude: ``pressure = qnh (1 - altitude / 44330
+    m) ^ 5.263157``. Offset, drift, noise and scale are applied as in
+    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_baro`` in the package
+    ``hector_quadrotor_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_baro.so",)

@@ -149,8 +149,8 @@ class HectorImu(Plugin[HectorImuParameters]):
 
     The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
     drift and noise. The acceleration error also tilts the orientation. The same seed produces the
-    same errors, whether or not the topic has subscribers. Source: hector_gazebo_plugins,
-    gazebo_ros_imu; REP 145.
+    same errors, whether or not the topic has subscribers. Original plugin: ``gazebo_ros_imu`` in
+    the package ``hector_gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

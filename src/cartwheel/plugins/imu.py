@@ -143,8 +143,8 @@ class Imu(ImuBase):
     """Publishes angular velocity, acceleration and orientation of an IMU on a link.
 
     The acceleration includes the reaction to gravity, and both vectors are in the IMU frame (REP
-    145). Gazebo's plugin rotates the angular velocity the wrong way and omits gravity. Source:
-    gazebo_plugins, gazebo_ros_imu.
+    145). Gazebo's plugin rotates the angular velocity the wrong way and omits gravity. Original
+    plugin: ``gazebo_ros_imu`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)
@@ -220,7 +220,8 @@ class ImuSensor(ImuBase):
 
     The orientation is relative to the world, or to the sensor's ``<orientation_reference_frame>``.
     If ``<enable_orientation>`` is false, the orientation is not measured and the first element of
-    its covariance is -1. Source: gazebo_plugins, gazebo_ros_imu_sensor; REP 145.
+    its covariance is -1. Original plugin: ``gazebo_ros_imu_sensor`` in the package
+    ``gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
@@ -269,7 +270,7 @@ class GzImu(ImuBase):
     ``<enable_orientation>`` is false, the orientation is not measured and the first element of its
     covariance is -1.
 
-    Source: gz-sensors, ImuSensor; REP 145.
+    Original sensor: ``ImuSensor`` in gz-sensors. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -38,10 +38,11 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
     """Sets joint positions to the points of a trajectory, without simulating forces.
 
     Each point is applied when its ``time_from_start`` has passed since the start. The start is the
-    header stamp or the time of arrival, whichever is later. In Gazebo, each time counts from the
-    previous point instead. The root link is not moved, so ``header.frame_id`` must be empty, the
-    root link, ``world`` or ``map``. Trajectories with a different frame, and service requests with
-    ``set_model_pose``, are rejected. Source: gazebo_plugins, gazebo_ros_joint_pose_trajectory.
+    header stamp or the time of arrival, whichever is later. In Gazebo, each time is measured from
+    the previous point instead. The root link is not moved, so ``header.frame_id`` must be empty,
+    the root link, ``world`` or ``map``. Trajectories with a different frame, and service requests
+    with ``set_model_pose``, are rejected. Original plugin: ``gazebo_ros_joint_pose_trajectory`` in
+    the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -96,7 +97,7 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
         root = self.part.description.canonical_link
         frame = trajectory.header.frame_id.rsplit("::", 1)[-1].lstrip("/")
         if frame not in ("", "world", "map", root):
-            return f'the reference must be the root link "{root}" or the world, not "{frame}"'
+            return f'header.frame_id must be "{root}", "world", "map" or empty (got "{frame}")'
         start = max(self.part.time_ns, nanoseconds(trajectory.header.stamp))
         points = []
         for point in trajectory.points:

@@ -56,8 +56,8 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
 
     If the model is part of a world file, or if ``<robotNamespace>`` is empty, the topic is
     ``/<model>/joint_states``, as in Gazebo Classic. A tag that is written for ROS 2 (it contains
-    ``<ros>``, ``<joint_name>`` or ``<update_rate>``) publishes on ``/joint_states``. Source:
-    gazebo_plugins, gazebo_ros_joint_state_publisher.
+    ``<ros>``, ``<joint_name>`` or ``<update_rate>``) publishes on ``/joint_states``. Original
+    plugin: ``gazebo_ros_joint_state_publisher`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
@@ -105,7 +105,7 @@ class GzJointStatePublisherParameters:
 class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
     """Publishes positions, velocities and efforts of joints.
 
-    Source: gz-sim, JointStatePublisher.
+    Original plugin: ``JointStatePublisher`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-state-publisher-system",)

@@ -82,12 +82,13 @@ class KobukiParameters:
 
 
 class Kobuki(WheelDrive):
-    """Drives a Kobuki base and publishes its odometry, IMU, bumper, cliff and wheel drop sensors.
+    """Drives a Kobuki base and publishes odometry and IMU, bumper, cliff and wheel drop data.
 
     The odometry uses the travelled distance of the wheels and the rotation from the gyroscope. A
     contact within 30° of straight ahead presses the centre bumper; a contact from 30° to 90°
     presses the left or right bumper. Bumper, cliff and wheel drop events are published when their
-    state changes. The robot stops while its motor power is off. Source: kobuki_gazebo_plugins.
+    state changes. The robot stops while its motor power is off. Original package:
+    ``kobuki_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_kobuki.so",)

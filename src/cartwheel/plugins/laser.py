@@ -34,11 +34,13 @@ class LaserParameters:
 class Laser(Plugin[LaserParameters]):
     """Publishes the ranges of a ray sensor as a LaserScan.
 
-    As in Gazebo, a ``ray`` sensor detects collisions and a ``gpu_ray`` sensor detects visuals. All
-    rays are measured at the time of the stamp, so ``time_increment`` and ``scan_time`` are 0. If
-    the sensor has several rows, only the middle row is published.
+    As in Gazebo, a ``ray`` sensor measures the collision geometry, and a ``gpu_ray`` sensor
+    measures the visual geometry. All rays are measured at the time in the header stamp, so
+    ``time_increment`` and ``scan_time`` are 0. If the sensor has several rows, only the middle row
+    is published.
 
-    Source: gazebo_plugins, gazebo_ros_laser and gazebo_ros_gpu_laser.
+    Original plugins: ``gazebo_ros_laser`` and ``gazebo_ros_gpu_laser`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -81,11 +81,11 @@ class _Attacher(Plugin[LinkAttacherParameters]):
 
 
 class LinkAttacher(_Attacher):
-    """Attaches and detaches any two links in the world by service.
+    """Attaches and detaches any two links in the world through ROS 1 services.
 
     Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
-    attached at a time. Failed requests return ``ok: false``. Unknown models and links also cause a
-    warning. Source: pal-robotics, gazebo_ros_link_attacher.
+    attached at the same time. Failed requests return ``ok: false``. Unknown models and links also
+    cause a warning. Original plugin: ``gazebo_ros_link_attacher`` by PAL Robotics.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_link_attacher.so",)
@@ -131,11 +131,11 @@ class LinkAttacher(_Attacher):
 
 
 class LinkAttacherRos2(_Attacher):
-    """Attaches and detaches any two links in the world by service (ROS 2).
+    """Attaches and detaches any two links in the world through ROS 2 services.
 
     Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
-    attached at a time; the original plugin supports one pair. Failed requests return ``success:
-    false`` with a message. Source: IFRA-Cranfield, IFRA_LinkAttacher.
+    attached at the same time; the original plugin supports only one pair. Failed requests return
+    ``success: false`` with a message. Original plugin: ``IFRA_LinkAttacher`` by IFRA-Cranfield.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_link_attacher.so",)

@@ -28,9 +28,9 @@ class LogicalCameraParameters:
     )
     frame: str = frame_tag()
     near: float = tag(
-        "logical_camera/near", default=0.0, unit="m", doc="Distance of the near plane."
+        "logical_camera/near", default=0.0, unit="m", doc="Distance to the near plane."
     )
-    far: float = tag("logical_camera/far", default=1.0, unit="m", doc="Distance of the far plane.")
+    far: float = tag("logical_camera/far", default=1.0, unit="m", doc="Distance to the far plane.")
     view: float = tag(
         "logical_camera/horizontal_fov", default=1.0, unit="rad", doc="Horizontal field of view."
     )
@@ -43,8 +43,9 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
     """Publishes the models in view, each with its pose relative to the sensor.
 
     The sensor looks along its x axis. A model is in view if the origin of its frame is in view.
-    Models do not occlude each other. ``pose`` is the pose of the sensor in the world. Source:
-    gz-sensors, LogicalCameraSensor; ros_gz_bridge.
+    Models do not occlude each other. The message field ``pose`` is the pose of the sensor in the
+    world. Original sensor: ``LogicalCameraSensor`` in gz-sensors. The message type is that of
+    ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()
@@ -57,7 +58,7 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
         assert sensor is not None
         if not (0 <= config.near < config.far and 0 < config.view < _HALF_TURN):
             raise PluginError(
-                "the view needs 0 <= <near> < <far> and 0 < <horizontal_fov> < pi",
+                "the view must satisfy 0 <= <near> < <far> and 0 < <horizontal_fov> < pi",
                 code=devices.SENSOR_RANGE_INVALID,
                 origin=sensor.origin,
                 values={"near": config.near, "far": config.far, "view": config.view},

@@ -89,7 +89,8 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
     """Publishes the Earth's magnetic field in the link frame.
 
     The error model is the same as in `libhector_gazebo_ros_imu.so`: scale factor, constant error,
-    drift and noise. Source: hector_gazebo_plugins, gazebo_ros_magnetic.
+    drift and noise. Original plugin: ``gazebo_ros_magnetic`` in the package
+    ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)
@@ -162,7 +163,7 @@ class GzMagnetometerParameters:
 class GzMagnetometer(Plugin[GzMagnetometerParameters]):
     """Publishes the world's ``<magnetic_field>`` in the frame of a ``magnetometer`` sensor, in T.
 
-    Source: gz-sensors, MagnetometerSensor.
+    Original sensor: ``MagnetometerSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -16,38 +16,43 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MimicJointParameters:
-    joint: str = tag("joint", default="left_joint", doc="Leading joint.")
-    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Following joint.")
+    joint: str = tag("joint", default="left_joint", doc="Joint to mimic.")
+    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Joint that mimics `<joint>`.")
     multiplier: float = tag(
         "multiplier",
         default=1.0,
         most=MOST_RATIO,
-        doc="Factor in: following position = multiplier * leading position + offset.",
+        doc="Factor in: position of `<mimicJoint>` = multiplier * position of `<joint>` + offset.",
     )
     offset: float = tag(
         "offset",
         default=0.0,
         unit="rad or m",
         most=FARTHEST,
-        doc="Offset of the following position.",
+        doc="Offset added to the position of `<mimicJoint>`.",
     )
     max_effort: float = tag(
-        "maxEffort", default=1.0, unit="N m or N", doc="No effect: the joint follows exactly."
+        "maxEffort",
+        default=1.0,
+        unit="N m or N",
+        doc="No effect: the joint mimics the position exactly.",
     )
     sensitiveness: float = tag(
         "sensitiveness",
         default=0.0,
         unit="rad or m",
-        doc="No effect: the joint follows any motion.",
+        doc="No effect: the joint mimics even the smallest motion.",
     )
-    has_pid: str | None = tag("hasPID", default=None, doc="No effect: the joint follows exactly.")
+    has_pid: str | None = tag(
+        "hasPID", default=None, doc="No effect: the joint mimics the position exactly."
+    )
 
 
 class MimicJoint(Plugin[MimicJointParameters]):
-    """Makes a joint follow a leading joint.
+    """Makes a joint mimic the position of a different joint.
 
-    ``<mimic>`` in a URDF has the same effect without a plugin. Source:
-    roboticsgroup_upatras_gazebo_plugins, MimicJointPlugin.
+    ``<mimic>`` in a URDF has the same effect without a plugin. Original plugin:
+    ``MimicJointPlugin`` in the package ``roboticsgroup_upatras_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
@@ -71,15 +76,16 @@ class DifferentialParameters:
         "jointB", default="right_joint", doc="Second joint, which turns by the same angle."
     )
     force: float = tag(
-        "forceConstant", default=0.0, unit="N m/rad", doc="No effect: both angles are equal."
+        "forceConstant", default=0.0, unit="N m/rad", doc="No effect: the coupling is rigid."
     )
 
 
 class Differential(Plugin[DifferentialParameters]):
     """Couples two joints so that their angles are equal, like a rocker-bogie differential.
 
-    In Gazebo, a spring of stiffness ``forceConstant`` couples the joints. Source:
-    leo_gazebo_plugins, differential_plugin.
+    The coupling is rigid. In Gazebo, the joints are coupled by a spring with the stiffness
+    ``<forceConstant>``. Original plugin: ``differential_plugin`` in the package
+    ``leo_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)

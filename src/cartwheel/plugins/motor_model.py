@@ -185,9 +185,10 @@ class RotorsMotorParameters(_Motor):
 
 
 class RotorsMotorModel(_MotorModel):
-    """Simulates a propeller: thrust proportional to the speed squared, drag and rolling moment.
+    """Simulates the thrust, drag and rolling moment of a propeller.
 
-    There is no wind. Source: rotors_gazebo_plugins, gazebo_motor_model.
+    The thrust is proportional to the square of the propeller's speed. Wind is not simulated.
+    Original plugin: ``gazebo_motor_model`` in the package ``rotors_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_motor_model.so",)
@@ -244,8 +245,8 @@ class Px4MotorParameters(_Motor):
 class Px4MotorModel(_MotorModel):
     """Simulates a PX4 propeller, whose thrust decreases with airspeed.
 
-    Commands are mav_msgs/Actuators messages instead of PX4's own protocol. Source:
-    PX4-SITL_gazebo-classic, gazebo_motor_model.
+    Commands are mav_msgs/Actuators messages instead of PX4's own protocol. Original plugin:
+    ``gazebo_motor_model`` in ``PX4-SITL_gazebo-classic``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_motor_model.so",)
@@ -291,9 +292,10 @@ class GzMotorParameters(_Motor):
 
 
 class GzMotorModel(_MotorModel):
-    """Simulates a propeller: thrust proportional to the speed squared, drag and rolling moment.
+    """Simulates the thrust, drag and rolling moment of a propeller.
 
-    Source: gz-sim, MulticopterMotorModel.
+    The thrust is proportional to the square of the propeller's speed. Original plugin:
+    ``MulticopterMotorModel`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-multicopter-motor-model-system",)

@@ -50,8 +50,8 @@ class MultiWheelParameters:
 class MultiWheelDrive(WheelDrive):
     """Drives any number of wheels on each side from Twist commands and publishes odometry.
 
-    All wheels on a side turn at the same speed. The odometry is the ground-truth pose. Source:
-    hector_gazebo_plugins, diffdrive_plugin_multi_wheel.
+    All wheels on a side turn at the same speed. The odometry is the ground-truth pose. Original
+    plugin: ``diffdrive_plugin_multi_wheel`` in the package ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libdiffdrive_plugin_multi_wheel.so",)

@@ -79,9 +79,9 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
     idle = ""
     if noise.precision and name != "gaussian_quantized":
         noise = replace(noise, precision=0.0)
-        idle = "<precision> only has an effect with noise of type gaussian_quantized"
+        idle = "<precision> has an effect only with noise of type gaussian_quantized"
     elif noise.walk and not noise.memory:
-        idle = "<dynamic_bias_stddev> only has an effect with <dynamic_bias_correlation_time>"
+        idle = "<dynamic_bias_stddev> has an effect only with <dynamic_bias_correlation_time>"
     if idle:
         report(devices.SENSOR_SETTING_IGNORED.diagnostic(idle, origin=element.origin))
     return noise

@@ -75,8 +75,8 @@ class P3D(Plugin[P3DParameters]):
     """Publishes the ground-truth pose and twist of a link as Odometry.
 
     As in Gazebo, the twist is expressed in the reference frame instead of the link frame. If the
-    reference frame is a link, Gazebo rotates the twist the wrong way; Cartwheel does not. Source:
-    gazebo_plugins, gazebo_ros_p3d.
+    reference frame is a link, Gazebo rotates the twist the wrong way; Cartwheel does not. Original
+    plugin: ``gazebo_ros_p3d`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
@@ -171,8 +171,8 @@ class WorldOdometryParameters(P3DParameters):
 class WorldOdometry(P3D):
     """Publishes a link's ground-truth pose in the world, with the twist in the link frame.
 
-    Everything else is the same as for `libgazebo_ros_p3d.so`. Source: pal_gazebo_plugins,
-    gazebo_world_odometry.
+    Everything else is the same as for `libgazebo_ros_p3d.so`. Original plugin:
+    ``gazebo_world_odometry`` in the package ``pal_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_world_odometry.so",)
@@ -237,7 +237,7 @@ class OdometryPublisherParameters:
 class OdometryPublisher(Plugin[OdometryPublisherParameters]):
     """Publishes the model's ground-truth pose in the world, with the twist in the model frame.
 
-    Source: gz-sim, OdometryPublisher.
+    Original plugin: ``OdometryPublisher`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-odometry-publisher-system",)

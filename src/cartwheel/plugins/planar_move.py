@@ -70,9 +70,9 @@ class PlanarMoveParameters:
 class PlanarMove(Plugin[PlanarMoveParameters]):
     """Moves the robot in the plane from Twist commands and publishes odometry.
 
-    No wheels are needed: a servo pushes the whole robot with at most five times its weight, so
-    walls stop it. The odometry is the ground-truth pose. Source: gazebo_plugins,
-    gazebo_ros_planar_move.
+    No wheels are needed: a servo pushes the whole robot with a force of at most five times its
+    weight, so walls stop it. The odometry is the ground-truth pose. Original plugin:
+    ``gazebo_ros_planar_move`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
@@ -156,7 +156,7 @@ class VelocityControl(Plugin[VelocityControlParameters]):
     """Holds the model at the commanded linear and angular velocity, expressed in the model frame.
 
     All six degrees of freedom are controlled. Without an initial velocity, the model moves freely
-    until the first command. Source: gz-sim, VelocityControl.
+    until the first command. Original plugin: ``VelocityControl`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-velocity-control-system",)

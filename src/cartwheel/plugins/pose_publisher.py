@@ -78,8 +78,9 @@ class PosePublisherParameters:
 class PosePublisher(Plugin[PosePublisherParameters]):
     """Publishes the poses of a model and of its links, visuals, collisions and sensors.
 
-    Each pose is relative to the parent. Frames are named ``<model>``, ``<model>/<link>``
-    and ``<model>/<link>/<part>``. Source: gz-sim, PosePublisher; ros_gz_bridge for the types.
+    Each pose is relative to the parent. Frames are named ``<model>``, ``<model>/<link>`` and
+    ``<model>/<link>/<part>``. Original plugin: ``PosePublisher`` in gz-sim. The message types are
+    those of ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-pose-publisher-system",)

@@ -107,7 +107,7 @@ class RangeParameters:
 class Range(_RangeBase):
     """Publishes the smallest range of a ray sensor, or its maximum range if nothing is hit.
 
-    Source: gazebo_plugins, gazebo_ros_range.
+    Original plugin: ``gazebo_ros_range`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_range.so",)
@@ -158,8 +158,8 @@ class SonarParameters:
 class HectorSonar(_RangeBase):
     """Publishes the smallest range of a ray sensor as an ultrasound range.
 
-    If nothing is hit, the maximum range is published. Source: hector_gazebo_plugins,
-    gazebo_ros_sonar.
+    If nothing is hit, the maximum range is published. Original plugin: ``gazebo_ros_sonar`` in the
+    package ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)

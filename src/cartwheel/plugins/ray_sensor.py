@@ -67,7 +67,8 @@ class RaySensor(Plugin[RaySensorParameters]):
     is the minimum over all rays: inf if nothing was hit, -inf if an object is closer than the
     minimum range (REP 117).
 
-    Source: gazebo_plugins in ROS 2, gazebo_ros_ray_sensor; conversions in gazebo_ros.
+    Original plugin: ``gazebo_ros_ray_sensor`` in the ROS 2 package ``gazebo_plugins``, with the
+    conversions in ``gazebo_ros``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ray_sensor.so",)

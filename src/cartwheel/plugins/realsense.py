@@ -165,8 +165,9 @@ class RealSense(Plugin[RealSenseParameters]):
 
     The images come from the model's sensors ``<prefix>color``, ``<prefix>ired1``, ``<prefix>ired2``
     and ``<prefix>depth``. A missing sensor causes a warning. Topics are below the plugin's name,
-    with ``camera_info`` next to each image. Depth images have the encoding 16UC1 in mm; 0 means no
-    depth. Source: pal-robotics, realsense_gazebo_plugin.
+    and each image topic has a ``camera_info`` topic in the same namespace. Depth images have the
+    encoding 16UC1, in mm; 0 means that no depth was measured. Original plugin:
+    ``realsense_gazebo_plugin`` by PAL Robotics.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librealsense_gazebo_plugin.so",)

@@ -127,7 +127,7 @@ def _serve(
             # The diagnostic about the unsupported plugin also covers the sensor.
             continue
         reason = (
-            (f' and type "{sensor.type}", which publishes nothing without a plugin')
+            (f', and sensors of type "{sensor.type}" publish nothing without a plugin')
             if wanted
             else ""
         )

@@ -52,7 +52,7 @@ class RotorsControllerParameters:
 class RotorsController(Plugin[RotorsControllerParameters]):
     """Relays motor speed commands to the motors.
 
-    Source: rotors_gazebo_plugins, gazebo_controller_interface.
+    Original plugin: ``gazebo_controller_interface`` in the package ``rotors_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_controller_interface.so",)
@@ -88,8 +88,8 @@ class RotorsBaseParameters:
 class RotorsBase(Plugin[RotorsBaseParameters]):
     """Publishes the speeds and angles of the propellers at every step.
 
-    Propellers are the links named ``…rotor_<number>`` at movable joints of ``<linkName>``. Source:
-    rotors_gazebo_plugins, gazebo_multirotor_base_plugin.
+    Propellers are the links named ``…rotor_<number>`` at movable joints of ``<linkName>``. Original
+    plugin: ``gazebo_multirotor_base_plugin`` in the package ``rotors_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_multirotor_base_plugin.so",)
@@ -184,8 +184,8 @@ class RotorsImu(ImuBase):
     """Publishes the measurements of an IMU at every step, with white noise and drifting biases.
 
     Noise densities are converted to standard deviations for the step length. The bias is the sum of
-    a constant and a random walk, which starts from its stationary distribution. Source:
-    rotors_gazebo_plugins, gazebo_imu_plugin; REP 145.
+    a constant and a random walk, which starts from its stationary distribution. Original plugin:
+    ``gazebo_imu_plugin`` in the package ``rotors_gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_imu_plugin.so",)

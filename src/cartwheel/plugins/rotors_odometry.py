@@ -100,8 +100,8 @@ class RotorsOdometryParameters:
 class RotorsOdometry(Plugin[RotorsOdometryParameters]):
     """Publishes a link's pose in the world with noise, as five message types and a transform.
 
-    The twist in the Odometry messages is in the link frame. Source: rotors_gazebo_plugins,
-    gazebo_odometry_plugin.
+    The twist in the Odometry messages is in the link frame. Original plugin:
+    ``gazebo_odometry_plugin`` in the package ``rotors_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_odometry_plugin.so",)

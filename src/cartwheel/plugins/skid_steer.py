@@ -68,7 +68,8 @@ class SkidSteerDrive(WheelDrive):
     """Drives a skid-steered robot with four wheels from Twist commands and publishes odometry.
 
     The robot turns less than commanded because its tyres slide sideways. The odometry is the
-    ground-truth pose. Source: gazebo_plugins, gazebo_ros_skid_steer_drive.
+    ground-truth pose. Original plugin: ``gazebo_ros_skid_steer_drive`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_skid_steer_drive.so",)

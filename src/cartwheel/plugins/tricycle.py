@@ -165,8 +165,8 @@ class TricycleDrive(SteeredDrive):
 
     If the model is part of a world file, the topics of a tag that is written for ROS 1 are below
     the model's name, unless the tag contains ``<robotNamespace>``. A tag is written for ROS 2 if it
-    contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``. Source: gazebo_plugins,
-    gazebo_ros_tricycle_drive.
+    contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``. Original plugin:
+    ``gazebo_ros_tricycle_drive`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)

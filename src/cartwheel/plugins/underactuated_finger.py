@@ -39,7 +39,7 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
     """Bends the joints of a finger in proportion to a motor's angle, within their limits.
 
     A joint that meets an obstacle exerts at most its effort limit; the other joints continue to
-    bend. Source: pal_gazebo_plugins, gazebo_underactuated_finger.
+    bend. Original plugin: ``gazebo_underactuated_finger`` in the package ``pal_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_underactuated_finger.so",)

@@ -16,7 +16,7 @@ class VacuumGripperParameters:
     topic: str = tag(
         "topicName",
         default="grasping",
-        doc="Topic of a Bool that is true while an object is held. ROS 1's plugin requires this "
+        doc="Topic of a Bool that is true while an object is held. The ROS 1 plugin requires this "
         "tag.",
     )
     reach: float = tag(
@@ -29,11 +29,12 @@ class VacuumGripperParameters:
 
 
 class VacuumGripper(Plugin[VacuumGripperParameters]):
-    """Holds the nearest link of a different model within reach while switched on.
+    """While switched on, holds the nearest link of a different model that is within reach.
 
-    The held link keeps its pose relative to the cup, as with a fixed joint. (In Gazebo it is pulled
-    toward the cup.) The services `on` and `off` switch the gripper. With ROS 2's ``<link_name>``,
-    the service is `switch`. Source: gazebo_plugins, gazebo_ros_vacuum_gripper.
+    The held link keeps its pose relative to the cup, as with a fixed joint. In Gazebo, the link is
+    pulled toward the cup. The services `on` and `off` switch the gripper. If the tag contains
+    ``<link_name>`` (ROS 2), the service ``switch`` replaces them. Original plugin:
+    ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)

@@ -80,7 +80,7 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
     Ring 0 is the lowest ring. Points are ordered column by column. All points are measured at the
     same time, so their ``time`` is 0.
 
-    Source: velodyne_simulator, GazeboRosVelodyneLaser.
+    Original plugin: ``GazeboRosVelodyneLaser`` in ``velodyne_simulator``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -28,7 +28,8 @@ class WarthogSuspensionParameters:
 class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
     """Applies a spring and a damper to the suspension joint on each side.
 
-    Source: warthog_gazebo, warthog_suspension_plugin, which supports only the default joints.
+    Original plugin: ``warthog_suspension_plugin`` in the package ``warthog_gazebo``, which supports
+    only the default joint names.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libwarthog_suspension_plugin.so",)

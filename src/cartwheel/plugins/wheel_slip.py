@@ -80,7 +80,8 @@ class WheelSlip(Plugin[WheelSlipParameters]):
     speed. Without ``<ros>`` (ROS 1), dynamic_reconfigure can change the compliances of all wheels
     under ``/<model>/<robotNamespace>``, by default ``/<model>/wheel_slip``.
 
-    Source: Gazebo, WheelSlipPlugin; gazebo_plugins, gazebo_ros_wheel_slip; gz-sim, WheelSlip.
+    Original plugins: ``WheelSlipPlugin`` in Gazebo Classic, ``gazebo_ros_wheel_slip`` in the
+    package ``gazebo_plugins``, and ``WheelSlip`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -171,7 +171,7 @@ def _entries() -> Any:
         ):
             raise SimulationError(
                 f"MuJoCo {mujoco.__version__} computes contacts in a way that this version of "
-                "Cartwheel does not support, so friction cannot differ by direction",
+                "Cartwheel does not support, so anisotropic friction (mu1 ≠ mu2) is not available",
                 code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
                 hint="Install an older MuJoCo, or give mu1 and mu2 the same value.",
             )
@@ -188,7 +188,8 @@ def _library() -> Path:
     )
     if not found:
         raise SimulationError(
-            f"MuJoCo's library is not in {folder}, so friction cannot differ by direction",
+            f"MuJoCo's library is not in {folder}, so anisotropic friction (mu1 ≠ mu2) is not "
+            "available",
             code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
             hint="Install MuJoCo again.",
         )

@@ -33,7 +33,8 @@ class ForkedError(SimulationError):
 
     def __init__(self) -> None:
         super().__init__(
-            "cameras do not work in this process: it was forked after its parent had opened OpenGL",
+            "cameras do not work in this process because it was forked after its parent had "
+            "opened OpenGL",
             hint='Start processes with multiprocessing.get_context("spawn"), or fork before the '
             "first image.",
         )

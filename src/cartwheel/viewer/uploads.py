@@ -118,7 +118,7 @@ class Uploads:
         if client in self._by_client:
             return "This browser is already uploading a file."
         if len(self._by_client) >= MOST_AT_ONCE:
-            return f"Too many uploads at a time; the limit is {MOST_AT_ONCE}. Try again later."
+            return f"Too many simultaneous uploads; the limit is {MOST_AT_ONCE}. Try again later."
         return None
 
     def _release(self, client: int, upload: _Upload) -> None:

@@ -20,7 +20,7 @@ _SURFACE = {
     "max_vel": "the speed at which contacts separate is not limited",
     "max_contacts": "all contacts are used",
     "surface_radius": "the contact patch does not grow with depth: set patch_radius",
-    "collide_without_contact": "it has no contacts, and contact sensors do not see it",
+    "collide_without_contact": "it has no contacts, and contact sensors do not detect it",
 }
 _HELD = ("fixed", "revolute", "continuous", "ball")
 """Joint types that are constrained correctly when they close a loop."""

@@ -84,7 +84,8 @@ class Losses:
             self._still = True
             self._warn(
                 BRIDGE_SLOW.diagnostic(
-                    "its process is suspended or blocked; messages are dropped until it reads again"
+                    "the bridge process is suspended or blocked; messages are dropped until it "
+                    "reads again"
                 )
             )
             self._later(_JUDGED, self._judge)
@@ -92,7 +93,7 @@ class Losses:
             self._still = False
             self._warn(
                 BRIDGE_RECOVERED.diagnostic(
-                    f"its process reads again; {_counted(lost)} were dropped",
+                    f"the bridge process reads again; {_counted(lost)} were dropped",
                     values={"dropped": _counted(lost)},
                 )
             )

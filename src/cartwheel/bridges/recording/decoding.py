@@ -205,7 +205,7 @@ def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> 
         for _, used in _elements(fields):
             if used not in types and used not in known:
                 raise RecordingError(
-                    f"{topic.name}: {name} has a field of the type {used}, which is not defined",
+                    f"{topic.name}: {name} has a field of type {used}, which is not defined",
                     code=RECORDED_TYPE_UNUSABLE,
                     values={"topic": topic.name, "type": used, "why": "unknown"},
                 )

@@ -226,8 +226,8 @@ class OfferedAction:
         else:
             self._tell(
                 CALL_LIMIT.diagnostic(
-                    f"more than {_WAITING} clients wait for results of {self.action.name}, so one "
-                    "result request gets no response",
+                    f"more than {_WAITING} clients are waiting for results of {self.action.name}, "
+                    "so one result request gets no response",
                     values={"action": self.action.name, "most": _WAITING},
                 )
             )

@@ -114,7 +114,7 @@ class SimulationControls:
         """
         if time_ns > 0:
             raise CartwheelError(
-                "a simulation can only jump back to its start", code=SEEK_UNSUPPORTED
+                "a simulation cannot seek; it can only be reset", code=SEEK_UNSUPPORTED
             )
         self._do(self._simulation.reset)
 

@@ -89,7 +89,7 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     )
     add = parser.add_argument
     add("world", nargs="*", metavar="WORLD", help=f"world file; default: {WORLD}. Searched in the "
-        "current folder, in GAZEBO_RESOURCE_PATH, and among the shipped worlds")  # fmt: skip
+        "current folder, in GAZEBO_RESOURCE_PATH, and among the bundled worlds")  # fmt: skip
     add("-h", "--help", action="store_true", help="show this message and exit")
     add("-v", "--version", action="store_true", help="show the version and exit")
     add("--verbose", action="store_true", help="show informational messages")

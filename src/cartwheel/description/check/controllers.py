@@ -210,8 +210,8 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
                     },
                     origin=claim.value.origin,
                     mark=claim.value.text,
-                    hint="Only one of the two can run at a time. The other controller is at "
-                    f"{first.value.origin}.",
+                    hint="The two controllers cannot run at the same time. The other controller is "
+                    f"at {first.value.origin}.",
                 )
 
 
@@ -243,7 +243,7 @@ def _unanswered(
                 origin=claim.value.origin,
                 instead=_ros2_joint(claim) if ros2 else _transmission(claim),
                 mark=claim.value.text,
-                hint="Add it to the robot" + ("'s <ros2_control>." if ros2 else "."),
+                hint="Add this element to the robot" + ("'s <ros2_control>." if ros2 else "."),
             )
             continue
         element = held[joint][0][1]

@@ -83,7 +83,7 @@ def lumped_joint(subject: Subject) -> Iterator[Diagnostic]:
             instead=f'<gazebo reference="{joint.name}"><preserveFixedJoint>true'
             "</preserveFixedJoint></gazebo>",
             mark=joint.name,
-            hint="Add it to the robot to keep the joint.",
+            hint="Add this element to the robot to keep the joint.",
         )
 
 
@@ -110,8 +110,8 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
                 origin=element.origin,
                 instead=keep,
                 mark=name,
-                hint="Add it to the robot to keep the link. Gazebo replaces the name only in "
-                "<bodyName>.",
+                hint="Add this element to the robot to keep the link. Gazebo replaces the name only "
+                "in <bodyName>.",
             )
         elif not _same_frame(robot, name, root):
             yield devices_codes.LUMPED_LINK.diagnostic(
@@ -121,7 +121,7 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
                 origin=element.origin,
                 instead=keep,
                 mark=name,
-                hint="Add it to the robot to keep the link.",
+                hint="Add this element to the robot to keep the link.",
             )
 
 

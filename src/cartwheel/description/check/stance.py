@@ -39,7 +39,7 @@ def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
                     origin=node.origin if node is not None else collision.origin,
                     instead="<mu1>1.0</mu1>" if node is not None else "",
                     place="element" if node is not None else "",
-                    hint="Write the same for <mu2>.",
+                    hint="Use the same value for <mu2>.",
                 )
 
 
@@ -66,7 +66,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 values={"link": link.name, "friction": mu},
                 origin=collision.origin,
                 instead=text,
-                hint="Add it to the robot, or change the existing values.",
+                hint="Add these tags to the robot, or change the existing values.",
             )
 
 

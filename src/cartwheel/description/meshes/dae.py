@@ -81,7 +81,9 @@ class _Scene:
         unit = self.root.find("asset/unit")
         metres = float(unit.get("meter", "1")) if unit is not None else 1.0
         if not (math.isfinite(metres) and metres > 0):
-            raise ValueError(f"its unit must be positive and finite (got {metres} m)")
+            raise ValueError(
+                f"the length unit in <asset> must be positive and finite (got {metres} m)"
+            )
         base = np.diag([metres, metres, metres, 1.0])
         result: list[Submesh] = []
         scene = self._visual_scene()

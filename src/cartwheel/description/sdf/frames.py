@@ -112,7 +112,7 @@ class Frames:
                 return self.default_link
             if name in seen:
                 raise DescriptionError(
-                    f"frames are attached to each other in a cycle: {' -> '.join([*seen, name])}",
+                    f"frames form an attachment cycle: {' -> '.join([*seen, name])}",
                     code=codes.FRAMES_CIRCULAR,
                     values={"names": (*seen, name)},
                     origin=origin,
@@ -171,7 +171,7 @@ class Frames:
         if name in asking:
             circle = " -> ".join([*asking[asking.index(name) :], name])
             raise DescriptionError(
-                f"poses are relative to each other in a cycle: {circle}",
+                f"poses form a reference cycle: {circle}",
                 code=codes.FRAMES_CIRCULAR,
                 origin=frame.origin,
                 values={"names": (*asking[asking.index(name) :], name)},

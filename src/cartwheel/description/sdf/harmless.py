@@ -13,7 +13,7 @@ _WIND = "wind is not simulated"
 _STOP = "joint limits are always stiff"
 _MEASURED = "it is computed from the geometry because auto is true"
 _SURFACE = "only the colour image of a physically based material is rendered"
-_INERTIA = 'it is used with <inertial auto="true">'
+_INERTIA = 'it is only used with <inertial auto="true">'
 
 HARMLESS: dict[tuple[str, str], str] = {
     ("axis", "initial_position"): "Gazebo does not read it either; joints start at 0",
@@ -38,7 +38,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("limit", "dissipation"): _STOP,
     ("limit", "stiffness"): _STOP,
     ("link", "acceleration"): _STATE,
-    ("link", "static"): "it is an element of the model",
+    ("link", "static"): "it belongs in the <model>",
     ("link", "wrench"): _STATE,
     ("material", "ambient"): "surfaces have only a diffuse colour",
     ("material", "double_sided"): _LIGHT,
@@ -51,13 +51,13 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("model", "allow_auto_disable"): _REST,
     ("model", "enable_wind"): _WIND,
     ("model", "static"): "the first one is used",
-    ("ode", "bounce"): "joint limits do not bounce",
+    ("ode", "bounce"): "joints do not bounce off their limits",
     ("ode", "cfm"): _ENGINE,
     ("ode", "erp"): _ENGINE,
-    ("ode", "fudge_factor"): "joint limits do not overshoot in Cartwheel",
+    ("ode", "fudge_factor"): "joints do not overshoot their limits in Cartwheel",
     ("ode", "max_force"): "Gazebo does not read it either: joints are driven by plugins",
-    ("ode", "max_vel"): "it is an element of <contact>",
-    ("ode", "min_depth"): "it is an element of <contact>",
+    ("ode", "max_vel"): "it belongs in <contact>",
+    ("ode", "min_depth"): "it belongs in <contact>",
     ("ode", "soft_cfm"): _STIFFNESS,
     ("ode", "soft_erp"): _STIFFNESS,
     ("ode", "suspension"): "only revolute2 joints have a suspension",

@@ -142,7 +142,7 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
         # As Gazebo's building editor writes the wall above a door that reaches the ceiling.
         ctx.report(
             tags.VALUE_IGNORED.diagnostic(
-                f"the box size {node.text} is flat, so a thickness of {_FLAT * 1e3:g} mm is used",
+                f"a side of the box has length 0 (size {node.text}), so {_FLAT * 1e3:g} mm is used",
                 origin=node.origin,
                 values={"stated": node.text},
             )

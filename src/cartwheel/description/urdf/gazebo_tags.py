@@ -224,7 +224,8 @@ def _read_joint_tags(
         fudge.mark()
         ctx.report(
             codes.NOT_SIMULATED.diagnostic(
-                "<fudgeFactor> has no effect because joint limits do not overshoot in Cartwheel",
+                "<fudgeFactor> has no effect because joints do not overshoot their limits in "
+                "Cartwheel",
                 origin=fudge.origin,
                 values={"tag": "fudgeFactor"},
             )

@@ -186,7 +186,7 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
     if inertial.mass <= 0:
         ctx.report(
             robot.MASS_NOT_POSITIVE.diagnostic(
-                f'link "{name}" has the mass {inertial.mass:g}: it becomes a frame without mass',
+                f'link "{name}" has the mass {inertial.mass:g}, so it becomes a frame without mass',
                 origin=inertial.origin,
                 severity="info" if fixed and inertial.mass == 0 else "warning",
                 values={"link": name, "stated": inertial.mass},

@@ -91,7 +91,7 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
             code=robot.MULTIPLE_ROOTS,
             values={"links": tuple(name for name, _ in roots)},
             origin=roots[1][1],
-            hint=f'Is a joint missing that has "{roots[1][0]}" for its child?',
+            hint=f'Is a joint with the child link "{roots[1][0]}" missing?',
         )
     order = [roots[0][0]]
     for name in order:

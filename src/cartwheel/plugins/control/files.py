@@ -182,7 +182,7 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
     content = for_robot(read_yaml(path), path, robot)
     if content and not is_ros2(content):
         raise PluginError(
-            "the file has no ros__parameters, but the robot has ros2_control",
+            "the file has no ros__parameters, but the robot uses ros2_control",
             code=devices.CONTROLLERS_FILE_MISMATCH,
             origin=Origin(file=str(path)),
             hint="In ROS 2, parameters belong under the name of their node and ros__parameters.",

@@ -58,20 +58,20 @@ class Ros2ControlParameters:
     description: str = tag(
         "robot_param",
         default="robot_description",
-        doc="No effect: the description is the one that contains the plugin.",
+        doc="No effect: the description that contains the plugin is used.",
     )
     description_node: str = tag(
         "robot_param_node",
         default="",
-        doc="No effect: the description is the one that contains the plugin.",
+        doc="No effect: the description that contains the plugin is used.",
     )
 
 
 class Ros2Control(ControlPlugin):
     """Runs the controllers in its YAML files, at the `update_rate` of the controller manager.
 
-    The files are those in ``<parameters>`` and those that `cartwheel run` receives by
-    `--controllers`. Source: gazebo_ros2_control, gz_ros2_control.
+    The YAML files are specified by ``<parameters>`` and by the option ``--controllers`` of
+    ``cartwheel run``. Original packages: ``gazebo_ros2_control`` and ``gz_ros2_control``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

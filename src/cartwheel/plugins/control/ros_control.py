@@ -51,11 +51,11 @@ class RosControlParameters:
 
 
 class RosControl(ControlPlugin):
-    """Runs the controllers that are loaded by the services of its controller manager.
+    """Runs the controllers that are loaded through its controller manager's services.
 
     The controllers in the files that `cartwheel run` receives by `--controllers` start
-    automatically. If neither the tag nor the spawner specifies a namespace, the global one is used,
-    as with spawn_model. Source: gazebo_ros_control.
+    automatically. If neither the tag nor the spawner specifies a namespace, the controller manager
+    uses the global namespace, as with spawn_model. Original package: ``gazebo_ros_control``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)
@@ -135,7 +135,7 @@ class RosControl(ControlPlugin):
         """Sets a file's parameters in the namespace, as rosparam does; returns its controllers."""
         if is_ros2(content):
             raise PluginError(
-                "the file is for ros2_control, but the robot has gazebo_ros_control",
+                "the file is for ros2_control, but the robot uses gazebo_ros_control",
                 code=devices.CONTROLLERS_FILE_MISMATCH,
                 origin=Origin(file=path),
                 hint="Pass the file that the launch file loads with rosparam.",

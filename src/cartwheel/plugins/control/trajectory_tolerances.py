@@ -69,7 +69,8 @@ class Tolerances:
             if each.name not in self._names:
                 raise InvalidTrajectoryError(
                     INVALID_JOINTS,
-                    f'a tolerance is for joint "{each.name}", which the controller does not have',
+                    f'a tolerance refers to joint "{each.name}", which does not belong to this '
+                    "controller",
                 )
             index = self._names.index(each.name)
             # 0 keeps the default; a negative value disables the check.
