@@ -202,7 +202,8 @@ def _picture_name(plugin: type[Plugin[Any]]) -> str:
 
 def _prose(plugin: type[Plugin[Any]]) -> list[str]:
     paragraphs = inspect.cleandoc(plugin.__doc__ or "").replace("``", "`").split("\n\n")
-    return "\n\n".join(_markdown(" ".join(part.split())) for part in paragraphs).splitlines()
+    text = "\n\n".join(_markdown(" ".join(part.split())) for part in paragraphs)
+    return re.sub(r" (?=Original (?:plugin|package|sensor)s?: )", "\n\n", text).splitlines()
 
 
 def _markdown(text: str) -> str:

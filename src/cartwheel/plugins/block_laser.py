@@ -48,8 +48,8 @@ class BlockLaserParameters:
 class BlockLaser(Plugin[BlockLaserParameters]):
     """Publishes the points hit by a ray sensor as a PointCloud.
 
-    Points have x forward, y left and z up. The point cloud contains only the rays that hit
-    something. Original plugin: ``gazebo_ros_block_laser`` in the package ``gazebo_plugins``.
+    Points have x forward, y left and z up. The point cloud contains only the points that were hit.
+    Original plugin: ``gazebo_ros_block_laser`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)

@@ -103,7 +103,7 @@ class Create3CliffParameters:
 class Create3Cliff(_Hazard):
     """Publishes a HazardDetection of type CLIFF while the floor is too far from a ray sensor.
 
-    The smallest range of the sensor is compared with the threshold. Original plugin:
+    The smallest range of the sensor is compared with ``<detection_threshold>``. Original plugin:
     ``gazebo_ros_cliff_sensor`` in the package ``irobot_create_gazebo_plugins``.
     """
 

@@ -28,7 +28,7 @@ class _Dock:
     robot: str = tag(
         "robot_model_name",
         default="",
-        doc="No effect: the robot is the plugin's own model.",
+        doc="No effect: the robot is the model that contains the plugin.",
     )
     receiver: str = tag("receiver_link_name", doc="Link of the robot's infrared receiver.")
     dock: str = tag("dock_model_name", default="", doc="Name of the dock's model in the world.")

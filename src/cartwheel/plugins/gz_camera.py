@@ -36,7 +36,7 @@ class GzCameraParameters:
     info_topic: str = tag(
         "camera/camera_info_topic",
         default="",
-        doc="Topic of the CameraInfo. Default: `camera_info` next to the image topic.",
+        doc="Topic of the CameraInfo. Default: `camera_info` in the namespace of the image topic.",
     )
     triggered: bool = tag(
         "camera/triggered", default=False, doc="Publish an image only after a trigger message."

@@ -42,10 +42,10 @@ class HandOfGodParameters:
 class HandOfGod(Plugin[HandOfGodParameters]):
     """Pulls a link to a tf frame with a critically damped spring.
 
-    The target is the frame ``<frameId>_desired``, relative to ``world``. The link is pulled once tf
-    provides this transform. No other body receives the reaction force. The link's pose is published
-    as the frame ``<frameId>_actual``. Original plugin: ``gazebo_ros_hand_of_god`` in the package
-    ``gazebo_plugins``.
+    The target is the pose of the frame ``<frameId>_desired`` relative to ``world``. The link is
+    pulled once tf provides this transform. No other body receives the reaction force. The link's
+    pose is published as the frame ``<frameId>_actual``. Original plugin: ``gazebo_ros_hand_of_god``
+    in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_hand_of_god.so",)

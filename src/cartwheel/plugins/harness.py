@@ -76,10 +76,10 @@ class Harness(Plugin[HarnessParameters]):
     value true, or an Empty if the tag contains ``<ros>``. With ``<ros>``, the topics are relative
     to the namespace.
 
-    A rope can only pull. While the robot stands on the ground, the rope is slack and exerts no
-    force. While the rope is taut, it holds the link rigidly, as the prismatic joint would. Original
-    plugins: ``gazebo_ros_harness`` in the package ``gazebo_plugins``, and ``HarnessPlugin`` in
-    Gazebo Classic.
+    A rope pulls but does not push. While the robot stands on the ground, the rope is slack and
+    exerts no force. While the rope is taut, it holds the link rigidly, as the prismatic joint
+    would. Original plugins: ``gazebo_ros_harness`` in the package ``gazebo_plugins``, and
+    ``HarnessPlugin`` in Gazebo Classic.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_harness.so", "libHarnessPlugin.so")

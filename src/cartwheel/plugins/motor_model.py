@@ -245,8 +245,8 @@ class Px4MotorParameters(_Motor):
 class Px4MotorModel(_MotorModel):
     """Simulates a PX4 propeller, whose thrust decreases with airspeed.
 
-    Commands are mav_msgs/Actuators messages instead of PX4's own protocol. Original plugin:
-    ``gazebo_motor_model`` in ``PX4-SITL_gazebo-classic``.
+    Commands are received as mav_msgs/Actuators messages instead of through PX4's own protocol.
+    Original plugin: ``gazebo_motor_model`` in ``PX4-SITL_gazebo-classic``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_motor_model.so",)

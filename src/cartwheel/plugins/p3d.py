@@ -171,7 +171,7 @@ class WorldOdometryParameters(P3DParameters):
 class WorldOdometry(P3D):
     """Publishes a link's ground-truth pose in the world, with the twist in the link frame.
 
-    Everything else is the same as for `libgazebo_ros_p3d.so`. Original plugin:
+    All other tags and topics are the same as for ``libgazebo_ros_p3d.so``. Original plugin:
     ``gazebo_world_odometry`` in the package ``pal_gazebo_plugins``.
     """
 

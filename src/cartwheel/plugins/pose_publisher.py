@@ -78,7 +78,7 @@ class PosePublisherParameters:
 class PosePublisher(Plugin[PosePublisherParameters]):
     """Publishes the poses of a model and of its links, visuals, collisions and sensors.
 
-    Each pose is relative to the parent. Frames are named ``<model>``, ``<model>/<link>`` and
+    Each pose is relative to the parent frame. Frames are named ``<model>``, ``<model>/<link>`` and
     ``<model>/<link>/<part>``. Original plugin: ``PosePublisher`` in gz-sim. The message types are
     those of ros_gz_bridge.
     """

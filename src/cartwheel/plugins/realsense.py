@@ -98,22 +98,22 @@ class RealSenseParameters:
     color_info: str = tag(
         "colorCameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is next to the image topic.",
+        doc="No effect: `camera_info` is in the namespace of the image topic.",
     )
     infrared1_info: str = tag(
         "infrared1CameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is next to the image topic.",
+        doc="No effect: `camera_info` is in the namespace of the image topic.",
     )
     infrared2_info: str = tag(
         "infrared2CameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is next to the image topic.",
+        doc="No effect: `camera_info` is in the namespace of the image topic.",
     )
     depth_info: str = tag(
         "depthCameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is next to the image topic.",
+        doc="No effect: `camera_info` is in the namespace of the image topic.",
     )
 
 

@@ -110,8 +110,8 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
                 origin=element.origin,
                 instead=keep,
                 mark=name,
-                hint="Add this element to the robot to keep the link. Gazebo replaces the name only "
-                "in <bodyName>.",
+                hint="Add this element to the robot to keep the link. Gazebo replaces the name "
+                "only in <bodyName>.",
             )
         elif not _same_frame(robot, name, root):
             yield devices_codes.LUMPED_LINK.diagnostic(
