@@ -76,8 +76,8 @@ class RosControl(ControlPlugin):
         if short_name(self.tag.filename) != ROS_CONTROL:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
-                f'plugin "{self.tag.filename}" is simulated as lib{ROS_CONTROL}.so, without its '
-                "additional functions",
+                f'plugin "{self.tag.filename}" is simulated as lib{ROS_CONTROL}.so; '
+                "its additional functions are not supported",
                 values={"hardware": self.tag.filename},
             )
         self.namespace = self.namespace.strip("/")
