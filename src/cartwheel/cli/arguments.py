@@ -54,7 +54,7 @@ RunNames = Annotated[
     _names(
         "[FILE] [NAME:=VALUE]...",
         "Robot description (xacro, URDF or SDF) or the name of a bundled one, and values for its "
-        "xacro arguments. Default: the bundled cart, rosbots.xacro.",
+        "xacro arguments. Default: the bundled example cart, rosbots.xacro.",
     ),
 ]
 PackagePath = Annotated[

@@ -195,7 +195,7 @@ def run(
         bool, typer.Option("--verbose", help="Show informational messages.")
     ] = False,
 ) -> None:
-    """Simulate a robot, by default the bundled cart.
+    """Simulate a robot, by default the bundled example cart.
 
     FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets a xacro
     argument; world:=FILE is the same as --world.
