@@ -110,6 +110,11 @@ async fn within<T>(seconds: u64, future: impl std::future::Future<Output = T>) -
     .await
 }
 
+/// Waiting messages, at most a hundred: on a busy computer they can come faster than they are taken.
+fn taken<T, E>(mut take: impl FnMut() -> Result<Option<T>, E>) -> Vec<T> {
+    std::iter::from_fn(|| take().ok().flatten()).take(100).collect()
+}
+
 fn main() {
     let argument = |n: usize, default: u64| std::env::args().nth(n).and_then(|s| s.parse().ok()).unwrap_or(default);
     let mapping = match std::env::args().nth(2).as_deref() {
@@ -177,20 +182,20 @@ fn main() {
         let mut size = (0, 0, 0);
         while Instant::now() < end && (n[..3].iter().any(|&n| n <= 200) || n[3] <= 20 || x <= 0.5) {
             commands.publish(Twist { linear: Vector3 { x: 0.5, ..zero() }, angular: zero() }).unwrap();
-            while let Ok(Some((message, _))) = odometry.take() {
+            for (message, _) in taken(|| odometry.take()) {
                 n[0] += 1;
                 x = message.pose.position.x;
             }
-            while let Ok(Some((message, _))) = transforms.take() {
+            for (message, _) in taken(|| transforms.take()) {
                 n[1] += 1;
                 if let Some(one) = message.transforms.iter().find(|one| one.header.frame_id == "odom") {
                     frame = one.child_frame_id.clone();
                 }
             }
-            while let Ok(Some(_)) = clocks.take() {
+            for _ in taken(|| clocks.take()) {
                 n[2] += 1;
             }
-            while let Ok(Some((message, _))) = images.take() {
+            for (message, _) in taken(|| images.take()) {
                 n[3] += 1;
                 size = (message.width, message.height, message.data.len());
             }
