@@ -1,1 +1,1 @@
-"""The command line: parsing here, the work of each command in `commands`."""
+"""The command line: argument parsing here, the implementation of each command in `commands`."""

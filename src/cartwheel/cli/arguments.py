@@ -1,4 +1,4 @@
-"""Arguments that several commands share."""
+"""Arguments shared by several commands."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ OpenBrowser = Annotated[
 
 
 def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
-    """The file and the ``name:=value`` among the words of a command, in any order.
+    """The file and the ``name:=value`` arguments of a command, in any order.
 
     Raises:
         CartwheelError: There are two files.
@@ -166,9 +166,9 @@ def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
 
 
 def split_ros1(words: Sequence[str] | None) -> tuple[list[str], list[str]]:
-    """The words of a command without ROS 1's, and ROS 1's: ``__name:=``, ``_param:=``, ``/a:=b``.
+    """A command's words without ROS 1 arguments, and those: ``__name:=``, ``_param:=``, ``/a:=b``.
 
-    What may be an argument of a xacro file or a remapping stays among the first.
+    Words that may be xacro arguments or remappings stay in the first list.
     """
     ours: list[str] = []
     ros: list[str] = []
@@ -178,10 +178,10 @@ def split_ros1(words: Sequence[str] | None) -> tuple[list[str], list[str]]:
 
 
 def rmw(name: str) -> Literal["dds", "zenoh"]:
-    """The middleware by our name or by that of ROS's implementation.
+    """The middleware by Cartwheel's name or the name of the RMW implementation.
 
     Raises:
-        CartwheelError: There is none of that name.
+        CartwheelError: The name is unknown.
     """
     if name in ("dds", "rmw_fastrtps_cpp", "rmw_cyclonedds_cpp"):
         return "dds"
@@ -195,10 +195,10 @@ def rmw(name: str) -> Literal["dds", "zenoh"]:
 
 
 def needed(file: str | None) -> str:
-    """The file of a command that cannot do without.
+    """The file argument of a command that requires one.
 
     Raises:
-        CartwheelError: There is none.
+        CartwheelError: The file is missing.
     """
     if file is None:
         raise CartwheelError(
@@ -208,5 +208,5 @@ def needed(file: str | None) -> str:
 
 
 def place(**values: float | None) -> dict[str, float]:
-    """The given ones of x, y, z, roll, pitch, yaw."""
+    """The given values of x, y, z, roll, pitch, yaw."""
     return {name: value for name, value in values.items() if value is not None}

@@ -12,7 +12,7 @@ from cartwheel.cli import arguments, help
 
 
 class Format(StrEnum):
-    """Forms of a report."""
+    """Formats of a report."""
 
     text = "text"
     json = "json"

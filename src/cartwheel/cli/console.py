@@ -1,4 +1,4 @@
-"""What commands print: results to stdout, all else to stderr; colours only on a terminal."""
+"""Output of commands: results on stdout, everything else on stderr; colours only on terminals."""
 
 from __future__ import annotations
 
@@ -15,49 +15,50 @@ _COMMANDS = re.compile(
     rf"({_OWN})|[\x00-\x08\x0b-\x1f\x7f-\x9f]"
     r"|[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-"""Characters that are commands to a terminal, turn the order of a text, or cannot be written.
-Colours of `paint` are kept."""
+"""Characters that control a terminal, reverse the text direction, or cannot be encoded. Colours of
+`paint` are kept.
+"""
 
 
 def is_terminal(stream: TextIO) -> bool:
-    """Whether colours may be written there."""
+    """Whether the stream supports colours."""
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM", "") != "dumb"
 
 
 def paint(text: str, *styles: str, stream: TextIO | None = None) -> str:
-    """The text in colour, where `stream` (stdout by default) shows colours."""
+    """The text in colour, if `stream` (stdout by default) supports it."""
     if not styles or not is_terminal(stream or sys.stdout):
         return text
     return f"\033[{';'.join(_CODES[style] for style in styles)}m{text}\033[0m"
 
 
 def printable(text: str) -> str:
-    """A text that does nothing to a terminal: names and texts of strangers may be in it.
+    """A text that is safe for a terminal: it may contain names and texts from untrusted sources.
 
-    What is not printable is written as in Python, as a code with a backslash.
+    Unprintable characters are escaped with a backslash, as in Python.
     """
     return _COMMANDS.sub(lambda found: found[1] or found[0].encode("unicode_escape").decode(), text)
 
 
 def say(text: str = "") -> None:
-    """A line of the result; at once, so that a reader of a pipe has it."""
+    """Prints a result line and flushes it, for readers of a pipe."""
     print(printable(text), flush=True)
 
 
 def say_version() -> None:
-    """Which Cartwheel this is."""
+    """Prints the version."""
     import cartwheel
 
     say(f"cartwheel {cartwheel.__version__}")
 
 
 def note(text: str) -> None:
-    """A line about the result."""
+    """Prints a note about the result."""
     print(printable(text), file=sys.stderr, flush=True)
 
 
 def say_table(rows: Sequence[Sequence[str]]) -> None:
-    """`table`, its head dim."""
+    """Prints a `table` with a dim header."""
     head, *lines = table(rows).splitlines()
     say(paint(head, "dim"))
     for line in lines:
@@ -65,7 +66,7 @@ def say_table(rows: Sequence[Sequence[str]]) -> None:
 
 
 def table(rows: Iterable[Sequence[str]], *, indent: str = "") -> str:
-    """Rows in columns as wide as they need; the last may be of any width."""
+    """Aligned columns; the last column may have any width."""
     kept = [list(row) for row in rows]
     if not kept:
         return ""

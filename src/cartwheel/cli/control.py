@@ -22,7 +22,7 @@ def parse_speed(text: str) -> float | None:
     """A real-time factor, or None for ``max``.
 
     Raises:
-        CartwheelError: It is neither.
+        CartwheelError: The text is neither.
     """
     if text.lower() in ("max", "inf"):
         return None
@@ -30,7 +30,7 @@ def parse_speed(text: str) -> float | None:
         value = float(text)
     except ValueError:
         value = -1.0
-    # How large it may be is the simulation's to say: its rooms would take long to import.
+    # The simulation checks the upper limit, because importing it here would be slow.
     if not value > 0:
         raise CartwheelError(
             f'the speed must be a positive number or max (got "{text}")',

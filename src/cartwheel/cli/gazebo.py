@@ -1,8 +1,8 @@
-"""``cartwheel gzserver``, ``gzclient`` and their like: Gazebo's own programs by their names.
+"""``cartwheel gzserver``, ``gzclient`` and similar: Gazebo's programs under their own names.
 
-Launch files start them, by way of the package gazebo_ros in the folder ros1. They have
-options of their own, and what reads those of Cartwheel is not imported for them: launch
-files wait for the first clock.
+Launch files start them through the package gazebo_ros in the folder ros1. They have separate
+options, and Cartwheel's option parser is not imported for them, because launch files wait for the
+first clock message.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def is_program(name: str) -> bool:
 
 
 def start(name: str, words: Sequence[str]) -> None:
-    """Runs a program with its words."""
+    """Runs a program with its arguments."""
     if name == CLIENT:
         from cartwheel.cli.commands.gzclient import show
 

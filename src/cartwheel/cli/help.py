@@ -43,7 +43,7 @@ class Command(TyperCommand):
 
 
 class Group(TyperGroup):
-    """A command with commands of its own, in a section for each group."""
+    """A command with subcommands, in a section for each group."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Writes the sections."""

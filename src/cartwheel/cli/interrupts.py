@@ -1,8 +1,8 @@
-"""Ctrl-C and SIGTERM end a command at once, whatever it does, and leave no traceback.
+"""Ctrl-C and SIGTERM end any command immediately and without a traceback.
 
-The first signal asks: a running simulation stops, anything else is left by an exception.
-Where it is not heard, as inside a compiler of meshes, where the end takes too long, or where a
-second signal comes, the process ends there and then.
+The first signal requests the end: a running simulation stops, anything else is left by an
+exception. The process is terminated if it does not respond, as inside a mesh compiler, if the
+shutdown takes too long, or after a second signal.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from collections.abc import Callable, Iterator
 from types import FrameType
 
 PATIENCE = 0.35
-"""s that the first signal may take to be heard."""
+"""Maximum time to respond to the first signal, s."""
 
 FOR_THE_END = 2.0
-"""s that the end may take once the signal was heard; a busy machine needs some."""
+"""Maximum shutdown time after the response, s; a busy machine needs some."""
 
 
 class Interrupted(BaseException):
-    """A signal asked for the end; no `Exception`, so that nobody takes it for a failure."""
+    """A signal requested the end; not an `Exception`, so that it is not handled as a failure."""
 
     def __init__(self, number: int) -> None:
         self.number = number
@@ -32,7 +32,7 @@ class Interrupted(BaseException):
 
 
 class _State:
-    """What the handler knows."""
+    """State of the signal handler."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -46,9 +46,9 @@ _state = _State()
 
 
 def install() -> None:
-    """Takes over both signals; once, on the main thread."""
-    # A byte is written here by the signal itself, also while the interpreter is inside a
-    # long call and cannot run its handler.
+    """Installs the handlers for both signals; call it once, on the main thread."""
+    # The signal itself writes a byte here, even while the interpreter is in a long call and cannot
+    # run its handler.
     reader, writer = socket.socketpair()
     writer.setblocking(False)
     signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
@@ -60,11 +60,11 @@ def install() -> None:
 
 @contextlib.contextmanager
 def handled_by(handler: Callable[[], None], *, status: int | None = None) -> Iterator[None]:
-    """Calls `handler` at a signal instead of raising `Interrupted`.
+    """Calls `handler` for a signal instead of raising `Interrupted`.
 
     Args:
         handler: Must make the enclosed code return soon.
-        status: Of the process when it has to be ended; the signal's own when None.
+        status: Exit status if the process must be terminated; None for the signal's status.
     """
     _state.handler = handler
     before, _state.status = _state.status, _state.status if status is None else status
@@ -76,7 +76,7 @@ def handled_by(handler: Callable[[], None], *, status: int | None = None) -> Ite
 
 @contextlib.contextmanager
 def finally_do(rite: Callable[[], None]) -> Iterator[None]:
-    """Calls `rite` at the end of the enclosed code, also where the process is ended within."""
+    """Calls `rite` at the end of the enclosed code, even if the process is terminated there."""
     _state.last_rites.append(rite)
     try:
         yield
@@ -87,21 +87,21 @@ def finally_do(rite: Callable[[], None]) -> Iterator[None]:
 
 
 def came() -> bool:
-    """Whether a signal has come and was not the end that a command waits for."""
+    """Whether a signal was received that is not the normal end of a command."""
     return _state.count > 0
 
 
 def last_signal() -> int:
-    """The number of the last signal that came."""
+    """The number of the last signal."""
     return _state.number
 
 
 def leave(status: int, *, patience: float | None = None) -> None:
-    """Ends the process now: no thread and no library has a say, or a word, any more.
+    """Ends the process immediately: no thread or library can delay it or print anything.
 
     Args:
-        status: Of the process.
-        patience: s that whoever reads our output has for the rest of it; None waits for it.
+        status: Exit status.
+        patience: Maximum time for readers of the output, s; None waits without limit.
     """
     for rite in reversed(_state.last_rites):
         with contextlib.suppress(Exception):
@@ -129,9 +129,9 @@ def _on_signal(number: int, _: FrameType | None) -> None:
 
 
 def _on_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
-    """Ends the process where the interpreter would report `Interrupted` and go on without it.
+    """Ends the process where the interpreter would only print `Interrupted` and continue.
 
-    It does so in callbacks of its own, those of weak references for one, as while importing.
+    This happens in callbacks, for example of weak references during imports.
     """
     if isinstance(unraisable.exc_value, Interrupted):
         leave(128 + unraisable.exc_value.number, patience=PATIENCE)
@@ -139,7 +139,7 @@ def _on_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
 
 
 def _watch(reader: socket.socket, _writer: socket.socket) -> None:
-    """Ends the process where the first signal did not do so in time, or at a second one."""
+    """Ends the process if the first signal is not handled in time, or at a second signal."""
     _await_signal(reader)
     for patience in (PATIENCE, FOR_THE_END):
         reader.settimeout(patience)
@@ -153,6 +153,6 @@ def _watch(reader: socket.socket, _writer: socket.socket) -> None:
 
 
 def _await_signal(reader: socket.socket) -> None:
-    """The next of both; each signal that has a handler writes its number."""
+    """Waits for either signal; each signal with a handler writes its number."""
     while reader.recv(1)[0] not in (signal.SIGINT, signal.SIGTERM):
         pass

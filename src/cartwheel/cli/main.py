@@ -1,7 +1,7 @@
-"""The program: runs a command, and turns what goes wrong into a message and a status.
+"""The program: runs a command, and converts errors to messages and an exit status.
 
-Status 0 is success; 1 a fault of Cartwheel; 2 something the user can mend; 128 and the
-signal's number where a command was interrupted before it was done.
+Status 0 is success; 1 is an internal error of Cartwheel; 2 is an error that the user can correct;
+128 plus the signal's number means that a command was interrupted before it finished.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def main() -> None:
 
 
 def run() -> int:
-    """Runs the command that the arguments name; returns the status."""
+    """Runs the command in the arguments; returns the status."""
     try:
         if gazebo.is_program(name := (sys.argv[1:2] or [""])[0]):
             gazebo.start(name, sys.argv[2:])
             return 0
-        # The rest is imported only now, so that a signal meanwhile finds its handler.
+        # Imported only now, so that a signal in the meantime finds its handler.
         from cartwheel.cli.app import app
 
         return _status(app(prog_name="cartwheel", standalone_mode=False))
@@ -44,7 +44,7 @@ def run() -> int:
             _print(error.diagnostic())
         return 2
     except BrokenPipeError:
-        # Whoever read our output has seen enough, as `head` does.
+        # The reader of the output has closed it, as `head` does.
         _drop_output()
         return 0
     except SystemExit as done:
@@ -78,20 +78,20 @@ _REMEDIES = {
 
 
 def _remedy(error: Exception) -> str:
-    """What helps where the system refused something that a run needs; empty for other errors."""
+    """A remedy if the system refused a required resource; empty for other errors."""
     return _REMEDIES.get(error.errno or 0, "") if isinstance(error, OSError) else ""
 
 
 def _open_streams() -> None:
-    """Gives the process those of its standard streams that it was started without.
+    """Opens standard streams that were closed when the process started.
 
-    Otherwise a socket or a recording gets their number, and what is printed goes there.
+    Otherwise a socket or a recording would get their number and receive printed output.
     """
     for number, mode in ((0, "r"), (1, "w"), (2, "w")):
         try:
             os.fstat(number)
         except OSError:
-            # The lowest free number is the one that is missing.
+            # The lowest free number is the missing one.
             os.open(os.devnull, os.O_RDWR)
             stream = open(number, mode, closefd=False)  # noqa: SIM115 - for the whole process
             setattr(sys, ("stdin", "stdout", "stderr")[number], stream)
@@ -120,7 +120,7 @@ def _status(result: object) -> int:
 
 
 def _drop_output() -> None:
-    """Lets nothing be written to a closed pipe at the end of the process."""
+    """Prevents writes to a closed pipe at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -1,4 +1,4 @@
-"""``cartwheel play``: a recording in place of a simulation."""
+"""``cartwheel play``: plays a recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``cartwheel service``: the services of the simulation's nodes."""
+"""``cartwheel service``: services of the simulation's nodes."""
 
 from __future__ import annotations
 

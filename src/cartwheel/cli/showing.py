@@ -1,4 +1,4 @@
-"""How a diagnostic looks in the terminal: its line with a caret, its fix and its code."""
+"""Formats a diagnostic for the terminal: source line with a caret, fix and code."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ _WORDS = {"info": "note"}
 _LINES_SHOWN = 10
 _NAMES_SHOWN = 6
 _LONGEST = 200
-"""Characters of a line that are shown."""
+"""Maximum characters of a line to show."""
 _LOOK_AHEAD = 8
-"""Lines of an element that are searched for the caret's text."""
+"""Lines of an element to search for the marked text."""
 
 
 def shown(
     diagnostic: Diagnostic, others: Sequence[Diagnostic] = (), *, stream: TextIO | None = None
 ) -> str:
-    """A diagnostic with the line it is about, a caret, and the text to write.
+    """A diagnostic with its source line, a caret, and the replacement text.
 
     Args:
-        diagnostic: To be shown.
-        others: The same message for other lines of the same file.
-        stream: Where it is printed; stdout by default. Only terminals get colours.
+        diagnostic: The diagnostic.
+        others: Diagnostics with the same message for other lines in the file.
+        stream: Output stream, stdout by default. Only terminals get colours.
     """
     out = stream or sys.stdout
     styles = STYLES[diagnostic.severity]
@@ -66,24 +66,24 @@ def shown(
 
 
 def quiet(text: str) -> str:
-    """A text of which no line is a command to GitHub's runner: names of strangers are in it."""
+    """A text without lines that GitHub treats as commands: it may contain untrusted names."""
     return re.sub(r"\n(?=\s*::)", r"\\n", text)
 
 
 def print_diagnostic(diagnostic: Diagnostic) -> None:
-    """Prints a diagnostic to stderr, behind what was written to stdout."""
+    """Prints a diagnostic to stderr, after flushing stdout."""
     sys.stdout.flush()
     note(shown(diagnostic, stream=sys.stderr))
 
 
 def difference(diagnostic: Diagnostic, other: Diagnostic) -> str:
-    """The first name in its values that another diagnostic of its kind does not share."""
+    """The first name in its values that differs from a different diagnostic of its kind."""
     pairs = ((value, other.values.get(key)) for key, value in diagnostic.values.items())
     return next((one for one, its in pairs if isinstance(one, str) and one != its), "")
 
 
 def column_of(diagnostic: Diagnostic) -> int:
-    """The column of what a diagnostic is about, from 1; 0 where it is not known."""
+    """The column of the diagnostic's subject, from 1; 0 if unknown."""
     origin = diagnostic.origin
     if origin is None or not origin.line:
         return 0
@@ -103,11 +103,11 @@ def _excerpt(diagnostic: Diagnostic, styles: tuple[str, ...], out: TextIO) -> li
     if origin.line > len(lines):
         return []
     number, column, width = _caret(lines, origin.line, diagnostic.mark)
-    # Tabs are one column wide here, as the caret's line cannot know the terminal's stops.
+    # Tabs are shown one column wide, because the terminal's tab stops are unknown.
     source = lines[number - 1].replace("\t", " ")
     indent = len(source) - len(source.lstrip())
     if len(source) - indent > _LONGEST:
-        # Of a file on one line, what is around the mark.
+        # For a file on a single line, show the part around the mark.
         indent = max(indent, column - _LONGEST // 4)
         source = source[: indent + _LONGEST]
         width = max(1, min(width, len(source) - column))
@@ -129,7 +129,7 @@ def _lines_of(file: str) -> Sequence[str]:
 
 @lru_cache(maxsize=4)
 def _lines_of_state(file: str, _changed_ns: int, _size: int) -> Sequence[str]:
-    """The lines as XML's reader counts them; a file with many findings is read once."""
+    """The lines as counted by the XML parser; cached, because a file may have many findings."""
     from cartwheel.description import xml
     from cartwheel.description.regular import read_regular_text
 
@@ -140,7 +140,7 @@ def _lines_of_state(file: str, _changed_ns: int, _size: int) -> Sequence[str]:
 
 
 def _caret(lines: Sequence[str], first: int, mark: str) -> tuple[int, int, int]:
-    """Line, column from 0, and width of what a finding is about."""
+    """Line, column from 0, and width of a finding's subject."""
     if mark:
         pattern = rf"\b{re.escape(mark)}\s*=\s*(\"[^\"]*\"|'[^']*')" if mark.isidentifier() else ""
         for number in range(first, min(first + _LOOK_AHEAD, len(lines) + 1)):

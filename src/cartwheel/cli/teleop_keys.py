@@ -1,6 +1,6 @@
-"""The keys of ROS's teleop_twist_keyboard and what they ask for; needs nothing but Python.
+"""The keys of ROS's teleop_twist_keyboard and their commands; requires only Python.
 
-`cartwheel teleop` and the ROS 1 program of that name (folder ros1) both read this file.
+`cartwheel teleop` and the ROS 1 program with that name (folder ros1) both use this file.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOVES: dict[str, tuple[int, int, int, int]] = {
     "t": (0, 0, 1, 0),
     "b": (0, 0, -1, 0),
 }
-"""Key: sense of travel along x, y and z, and of turning about z."""
+"""By key: direction along x, y and z, and of rotation about z."""
 
 SPEEDS: dict[str, tuple[float, float]] = {
     "q": (1.1, 1.1),
@@ -37,7 +37,7 @@ SPEEDS: dict[str, tuple[float, float]] = {
     "e": (1.0, 1.1),
     "c": (1.0, 0.9),
 }
-"""Key: factors of the linear and the angular speed."""
+"""By key: factors of the linear and the angular speed."""
 
 HELP = """\
    u  i  o      forward, turning left or right      U I O   sideways with shift,
@@ -50,7 +50,7 @@ HELP = """\
 
 @dataclass
 class Driver:
-    """What the keys have asked for so far; a move goes on until the next key."""
+    """The state set by the keys; a movement continues until the next key."""
 
     speed: float
     """m/s."""
@@ -59,7 +59,7 @@ class Driver:
     move: tuple[int, int, int, int] = (0, 0, 0, 0)
 
     def press(self, key: str) -> None:
-        """Takes a key."""
+        """Handles a key."""
         if key in SPEEDS:
             linear, angular = SPEEDS[key]
             self.speed *= linear

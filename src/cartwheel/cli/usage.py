@@ -1,4 +1,4 @@
-"""Wrong usage of the command line, as the parser of its arguments reports it."""
+"""Errors of the argument parser."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from cartwheel.cli.showing import print_diagnostic
 from cartwheel.codes.command import OPTION_INVALID, USAGE
 from cartwheel.errors import Diagnostic
 
-# Releases of typer differ in whether click is a package of its own or a part of theirs.
+# Releases of typer differ in whether click is separate or included.
 _PARSER_ERROR: type[Exception] = typer.BadParameter.__mro__[2]
 
 
 def is_wrong(error: Exception) -> bool:
-    """Whether the parser raised an error."""
+    """Whether an error comes from the parser."""
     return isinstance(error, _PARSER_ERROR | typer.Abort)
 
 
 def report(error: Exception) -> int:
-    """Prints what is wrong; returns the status."""
+    """Prints an error; returns the status."""
     if isinstance(error, typer.Abort):
         return 1
     parser_error: Any = error
@@ -32,7 +32,7 @@ def report(error: Exception) -> int:
 
 
 def _diagnostic(error: Any) -> Diagnostic:
-    """Here alone the parser's texts are put into ours."""
+    """Only this function converts the parser's messages."""
     hints = []
     possible = getattr(error, "possibilities", None)
     if possible:

@@ -1,4 +1,4 @@
-"""Files that a command writes where the user says."""
+"""Writes output files of commands."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cartwheel.errors import CartwheelError
 
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turns what the system refuses into an error with the path.
+    """Converts system errors to an error with the path.
 
     Raises:
         CartwheelError: The file cannot be written.

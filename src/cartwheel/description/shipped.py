@@ -1,4 +1,4 @@
-"""From what a user types to the file that is meant: paths, folders, and names of shipped things."""
+"""Resolves user input to a description file: paths, folders, and names of built-in files."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ SUFFIXES = (".urdf.xacro", ".xacro", ".urdf", ".sdf", ".world")
 
 
 def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Path:
-    """The description file that a path, a URI or the name of a shipped thing means.
+    """The description file for a path, a URI or the name of a built-in file.
 
     Args:
-        path: A file; a folder with a model in it; ``package://`` or ``model://``; where no such
-            file is there, one below GAZEBO_RESOURCE_PATH, such as ``worlds/mud.world``, which is
-            also shipped; or a name such as ``empty``, ``rosbots.xacro`` or ``traffic_cone``.
-        package_path: Further folders in which packages and models are looked for.
+        path: A file; a folder with a model; a ``package://`` or ``model://`` URI; a path below
+            GAZEBO_RESOURCE_PATH or the built-in folders, such as ``worlds/mud.world``; or a name
+            such as ``empty``, ``rosbots.xacro`` or ``traffic_cone``.
+        package_path: Additional folders to search for packages and models.
 
     Raises:
-        DescriptionError: there is none; names those that may be meant.
+        DescriptionError: The file was not found; the hint suggests names.
     """
     text = str(path)
-    # A Path turns the two slashes of a URI into one.
+    # A Path merges the two slashes in a URI.
     for scheme in ("package", "model", "file"):
         if text.startswith(f"{scheme}:/"):
             uri = f"{scheme}://{text.partition(':')[2].lstrip('/')}"
@@ -38,7 +38,7 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
     given = Path(path)
     try:
         exists, folder = given.exists(), given.is_dir()
-    except (OSError, ValueError):  # a name too long, or with a zero byte in it
+    except (OSError, ValueError):  # a name that is too long or contains a zero byte
         exists = folder = False
     if folder:
         return _in_folder(given)
@@ -61,7 +61,7 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
 
 
 def shipped_descriptions() -> Iterator[Path]:
-    """The robots, worlds and models that come with Cartwheel."""
+    """The built-in robots, worlds and models."""
     root = share()
     for pattern in ("robots/*/urdf/*", "robots/*/*", "worlds/*", "models/*", "models/*/*"):
         for path in sorted(root.glob(pattern)):
@@ -70,7 +70,7 @@ def shipped_descriptions() -> Iterator[Path]:
 
 
 def _resource_folders() -> list[Path]:
-    """Where Gazebo looks for ``worlds/mud.world``; what is shipped lies there as well."""
+    """Folders that Gazebo searches for ``worlds/mud.world``, and the built-in folder."""
     named = os.environ.get("GAZEBO_RESOURCE_PATH", "").split(os.pathsep)
     folders = [Path(part).expanduser() for part in named if part]
     return [*folders, *(folder / "worlds" for folder in folders), share(), share() / "worlds"]
@@ -79,12 +79,12 @@ def _resource_folders() -> list[Path]:
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
-    except (OSError, ValueError):  # a name too long, or with a zero byte in it
+    except (OSError, ValueError):  # a name that is too long or contains a zero byte
         return False
 
 
 def _shipped(name: str) -> Path | None:
-    """A file of that name, with or without its ending; or the model in a folder of that name."""
+    """A file with this name, with or without its extension; or the model in such a folder."""
     all_shipped = list(shipped_descriptions())
     for path in all_shipped:
         if path.name == name:
@@ -100,12 +100,12 @@ def _shipped(name: str) -> Path | None:
 
 
 def _in_folder(folder: Path) -> Path:
-    """The model in a folder: what its model.config names, model.sdf, or its only description."""
+    """The model in a folder: the file in model.config, model.sdf, or its only description."""
     origin = Origin(file=xml.shown_path(folder))
     config = folder / "model.config"
     if config.is_file():
         sdfs = [node.text for node in xml.read_file(config).all("sdf") if node.text]
-        for name in reversed(sdfs):  # the newest version is the last
+        for name in reversed(sdfs):  # the newest version is last
             if (folder / name).is_file():
                 return folder / name
         if sdfs:

@@ -1,7 +1,7 @@
 """Heightmaps: images whose brightness is a height.
 
-Source: Gazebo Classic's ImageHeightmap: the brightest pixel is as high as ``<size>`` says, black
-is 0; the first row of the image lies at +y, its first column at -x.
+Source: Gazebo Classic's ImageHeightmap. The brightest pixel has the height in ``<size>``, and black
+is 0. The first row of the image is at +y, its first column at -x.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from cartwheel.description.pictures import PictureError, open_picture
 from cartwheel.errors import CartwheelError, Origin
 
 MOST_SAMPLES = 513
-"""In each direction; finer images are thinned out."""
+"""Maximum in each direction; larger images are downsampled."""
 ELEVATION_MODELS = (".dem", ".tif", ".tiff", ".hgt", ".asc", ".nc", ".adf")
-"""Geographic data that GDAL reads for Gazebo; an image in grey is what is read here."""
+"""Geographic data that Gazebo reads with GDAL; only grey images are supported here."""
 
 
 class TerrainError(CartwheelError):
@@ -33,15 +33,15 @@ class TerrainError(CartwheelError):
 def heights_of(
     shape: Heightmap, *, most: int = MOST_SAMPLES, origin: Origin | None = None
 ) -> NDArray[np.float64]:
-    """Heights above `shape.position`, m, shape (rows, columns); row 0 lies at +y.
+    """Heights above `shape.position`, m, shape (rows, columns); row 0 is at +y.
 
     Args:
         shape: The heightmap.
-        most: Samples in each direction.
+        most: Maximum samples in each direction.
         origin: The element, for the error.
 
     Raises:
-        TerrainError: The file is no image that can be read, or too large.
+        TerrainError: The file is not a readable image, or is too large.
     """
     try:
         changed = shape.path.stat().st_mtime_ns
@@ -62,7 +62,7 @@ def heights_of(
 def _grey(path: Path, _changed: int, most: int) -> NDArray[np.float64]:
     """Brightness, 1 at the brightest pixel, shape (rows, columns)."""
     with open_picture(path) as image:
-        # A colour counts by its red, as in Gazebo.
+        # For colours, the red channel is used, as in Gazebo.
         if image.mode == "P":
             channel = image.convert("RGB").getchannel(0)
         else:
@@ -80,14 +80,14 @@ def _grey(path: Path, _changed: int, most: int) -> NDArray[np.float64]:
 
 
 def _samples(count: int, most: int) -> NDArray[np.float64]:
-    """Where along an axis of `count` pixels the samples lie; the first and last are kept."""
+    """Sample positions along an axis with `count` pixels, including the first and last pixel."""
     if count < 2:
         return np.zeros(2)
     return np.linspace(0, count - 1, min(count, most))
 
 
 def _interpolated(grey: NDArray[Any], at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rows at `at`; only these become floats, since there may be many others."""
+    """The rows at `at`; only these are converted to floats, to save memory."""
     low = np.floor(at).astype(int)
     high = np.minimum(low + 1, len(grey) - 1)
     part = (at - low)[:, None]

@@ -1,6 +1,6 @@
-"""How Gazebo lays an image on its simple shapes: which corner of it is where.
+"""Texture coordinates of simple shapes, as in Gazebo.
 
-The engine lays images on its own shapes otherwise: upside down on a box, mirrored on a plane.
+MuJoCo's texture coordinates differ: images are upside down on a box and mirrored on a plane.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from cartwheel.description.model import Box, Cylinder, Plane, Shape, Sphere
 from cartwheel.geometry import Array
 
 _AROUND = 64
-"""Faces around what is round: 1.2 thousandths of the radius from it at most."""
+"""Segments in a circle: the maximum deviation is 0.0012 radii."""
 _BOX = (
-    # The corners of each side's image, from the upper left one clockwise: signs of x, y, z.
+    # The image corners of each side, clockwise from the upper left: signs of x, y, z.
     ((-1, -1, 1), (1, -1, 1), (1, -1, -1), (-1, -1, -1)),
     ((1, 1, 1), (-1, 1, 1), (-1, 1, -1), (1, 1, -1)),
     ((-1, 1, 1), (-1, -1, 1), (-1, -1, -1), (-1, 1, -1)),
@@ -25,25 +25,26 @@ _BOX = (
     ((1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, 1)),
     ((-1, 1, -1), (-1, -1, -1), (1, -1, -1), (1, 1, -1)),
 )
-"""Upright on the sides; on top its upper edge is ahead, below behind. Source: Gazebo 11's
-``MeshManager``, as for the other shapes."""
+"""Upright on the sides; the upper edge is in front on the top face, and behind on the bottom face.
+Source: Gazebo 11's ``MeshManager``, as for the other shapes.
+"""
 _SQUARE = ((0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wrapped:
-    """A surface with an image's coordinates."""
+    """A surface with texture coordinates."""
 
     vertices: Array
     """m, shape (n, 3)."""
     faces: Any
     """Shape (m, 3), counter-clockwise from outside."""
     uv: Array
-    """Of an image, from its lower left corner, shape (n, 2)."""
+    """Texture coordinates from the image's lower left corner, shape (n, 2)."""
 
 
 def wrapped(shape: Shape) -> Wrapped | None:
-    """The surface of a shape on which Gazebo lays images; None for the others."""
+    """The textured surface of a shape; None for shapes without texture coordinates in Gazebo."""
     match shape:
         case Box(size=size):
             return _quads(np.array(_BOX) * np.array(size) / 2)
@@ -58,13 +59,13 @@ def wrapped(shape: Shape) -> Wrapped | None:
 
 
 def scaled(uv: Any, scale: tuple[float, float]) -> Array:
-    """Coordinates of an image that covers only a part of the surface, and is repeated."""
+    """Coordinates of an image that covers part of the surface and is repeated."""
     found: Array = (np.asarray(uv) - 0.5) / scale + 0.5
     return found
 
 
 def _quads(corners: Array) -> Wrapped:
-    """Each with a whole image; shape (n, 4, 3), from the upper left corner clockwise."""
+    """Quads with a whole image each; shape (n, 4, 3), clockwise from the upper left corner."""
     count = len(corners)
     triangles = np.array([(0, 2, 1), (0, 3, 2)])
     faces = (np.arange(count)[:, None, None] * 4 + triangles).reshape(-1, 3)
@@ -72,7 +73,7 @@ def _quads(corners: Array) -> Wrapped:
 
 
 def _sphere(radius: float) -> Wrapped:
-    """With its poles along y; the image's edges meet above."""
+    """A sphere with its poles along y; the image's edges meet on top."""
     rows = _AROUND // 2
     down, around = np.meshgrid(
         np.linspace(0, math.pi, rows + 1), np.linspace(0, 2 * math.pi, _AROUND + 1), indexing="ij"
@@ -86,7 +87,9 @@ def _sphere(radius: float) -> Wrapped:
 
 
 def _cylinder(radius: float, length: float) -> Wrapped:
-    """Upside down around it, the edges meeting at the left; a cap shows rays of its edge."""
+    """A cylinder with the image upside down and its edges at the left; caps repeat the image's
+    edge.
+    """
     turn = np.linspace(0, 2 * math.pi, _AROUND + 1)
     part = turn / (2 * math.pi)
     x, y = radius * np.sin(turn), radius * np.cos(turn)

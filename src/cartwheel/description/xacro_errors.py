@@ -1,6 +1,6 @@
-"""The errors and warnings of the package xacro, as ours: with codes, places and likely typos.
+"""Converts errors and warnings of the xacro package: adds codes, locations and suggestions.
 
-This is the only place that looks at the texts of that package.
+Only this module parses the package's messages.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from cartwheel.errors import Code, DescriptionError, Origin, Value, meant, sugge
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Failure:
-    """An exception of xacro and what was defined where it happened."""
+    """An exception in xacro and the names defined at its location."""
 
     error: Exception
     origin: Origin
     call: Origin | None
-    """Of the innermost macro call in progress."""
+    """Origin of the innermost active macro call."""
     call_tag: str
     macros: tuple[str, ...]
     properties: tuple[str, ...]
     arguments: tuple[str, ...]
     parameters: tuple[str, ...]
-    """Of the macro called."""
+    """Parameters of the called macro."""
 
 
 _LONGEST = 4000
-"""Characters of an error that are looked at."""
+"""Maximum characters of an error message to examine."""
 
 _UNDEFINED = re.compile(r"name '([^']*)' is not defined")
 _MACRO = re.compile(r"unknown macro name: xacro:(\S+)")
@@ -48,8 +48,8 @@ _EXPRESSION = re.compile(r"when evaluating expression '(.*?)'\s*(?:\Z|when evalu
 
 
 def explain(failure: Failure) -> DescriptionError:
-    """The error to show for a failed expansion."""
-    # What an error quotes may be as long as the file.
+    """The error to report for a failed expansion."""
+    # The error may quote a text as long as the file.
     text = str(failure.error)[:_LONGEST] or type(failure.error).__name__
     inner = _innermost(failure.error)
     origin = failure.origin
@@ -135,7 +135,7 @@ def explain(failure: Failure) -> DescriptionError:
 
 
 def code_of(message: str) -> Code:
-    """The code of a warning of xacro's, or of a message that the description prints."""
+    """The code of a warning from xacro, or of a message printed by the description."""
     return codes.XACRO_DEPRECATED if "deprecated" in message else codes.XACRO_MESSAGE
 
 
@@ -157,7 +157,7 @@ def _innermost(error: BaseException) -> BaseException:
 
 
 def _evaluated(text: str) -> str:
-    """The expression that failed; empty where it is unknown."""
+    """The expression that failed; empty if unknown."""
     match = _EXPRESSION.search(text)
     return match[1].strip() if match else ""
 
@@ -168,6 +168,6 @@ def _expression(text: str) -> str:
 
 
 def _meant(name: str, known: list[str] | tuple[str, ...]) -> tuple[str | None, str]:
-    """A hint with the name that was likely meant, and that name."""
+    """A hint with the suggested name, and that name."""
     near = numbers.likely(name, known)
     return (f'Did you mean "{near}"?', near) if near else (None, "")

@@ -1,4 +1,4 @@
-"""Copies of the module xacro, each with a state of its own."""
+"""Creates independent copies of the xacro module."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _NAME = "_cartwheel_xacro"
 
 
 def fresh_xacro() -> ModuleType:
-    """A copy of xacro's module that nobody else has."""
+    """A new copy of xacro's module."""
     main, substitution = _codes()
     module = ModuleType(_NAME)
-    # Its own modules find each other by this name, whatever else is called xacro.
+    # Its submodules import each other by this name, regardless of other xacro modules.
     vars(module).update(__package__=_NAME, __path__=[])
     exec(main, vars(module))  # noqa: S102 (the code of the installed package)
     inner = ModuleType(f"{_NAME}.substitution_args")
@@ -31,13 +31,13 @@ def fresh_xacro() -> ModuleType:
 
 @lru_cache(maxsize=1)
 def _codes() -> tuple[CodeType, CodeType]:
-    """The code of xacro's module and of its part for ``$(…)``.
+    """The code of xacro's module and of its module for ``$(…)``.
 
-    It is read at the first use, since that takes a while.
+    It is loaded at first use, because loading is slow.
     """
     folder = _folder()
     package = folder / "__init__.py"
-    # Those of its modules that have no state are found below this name.
+    # Its stateless submodules are imported below this name.
     spec = importlib.util.spec_from_file_location(
         _NAME, package, submodule_search_locations=[str(folder)]
     )
@@ -47,9 +47,9 @@ def _codes() -> tuple[CodeType, CodeType]:
 
 
 def _folder() -> Path:
-    """Where the xacro lies that Cartwheel needs.
+    """The folder of the xacro version that Cartwheel requires.
 
-    A sourced ROS workspace puts modules of its own before it, an older xacro among them.
+    A sourced ROS workspace may have its own, older xacro earlier in the path.
     """
     for entry in sys.path:
         folder = Path(entry, "xacro")

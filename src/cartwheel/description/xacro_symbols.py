@@ -1,4 +1,4 @@
-"""What xacro's expressions know: functions and names, `$(eval …)`, and YAML with units."""
+"""Names in xacro's expressions: functions, `$(eval …)`, and YAML with units."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MESSAGES = frozenset({"message", "warning", "error", "print_location"})
 
 
 def symbols_of(module: Any, functions: Mapping[str, Callable[..., Any]]) -> dict[str, Any]:
-    """The names that all expressions know: xacro's own, with functions that are bounded."""
+    """The names in all expressions: xacro's own, with limited functions."""
 
     def offered(name: str, plain: Callable[..., Any]) -> Function:
         def run(evaluator: Evaluator, *args: Any, **named: Any) -> Any:
@@ -56,7 +56,7 @@ def symbols_of(module: Any, functions: Mapping[str, Callable[..., Any]]) -> dict
 
 
 def eval_extension_of(substitution: Any, evaluator: Evaluator) -> Callable[..., str]:
-    """What evaluates ``$(eval …)``: its names are the arguments and a few functions."""
+    """The evaluator of ``$(eval …)``, whose names are the arguments and a few functions."""
 
     def plain(name: str, called: Callable[..., Any]) -> Function:
         return Function(name, lambda _, *args: called(*args))
@@ -84,7 +84,7 @@ def eval_extension_of(substitution: Any, evaluator: Evaluator) -> Callable[..., 
 
 
 class _Arguments(dict[str, Any]):
-    """Names of ``$(eval …)``: those that are given, else the arguments."""
+    """Names in ``$(eval …)``: given names first, then the arguments."""
 
     def __init__(
         self, names: dict[str, Any], given: Mapping[str, str], value: Callable[[str], Any]
@@ -106,11 +106,11 @@ _UNITS = {
 
 
 def read_yaml(text: str, path: Path, number: Callable[[str], float]) -> object:
-    """What a YAML file says; its numbers with units are expressions of xacro's."""
+    """The contents of a YAML file; numbers with units are xacro expressions."""
     import yaml
 
     class Loader(yaml_text.loader()):  # type: ignore[misc]
-        """Of this file alone: xacro's own adds its units to PyYAML's."""
+        """For this file only: xacro itself adds its units to PyYAML's loader."""
 
     for unit, factor in _UNITS.items():
         Loader.add_constructor(

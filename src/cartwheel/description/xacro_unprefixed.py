@@ -1,7 +1,7 @@
-"""xacro's elements in the spelling without a prefix: as ROS took them until Melodic.
+"""xacro's elements without a prefix, which ROS supported until Melodic.
 
-Since Noetic they have no effect there, and whoever needs what they define is refused. Many a
-robot was published before.
+Since Noetic, they have no effect in ROS, and files that need their definitions fail. Many published
+robots are older.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _NEEDED = {
     "unless": ("value",),
     "arg": ("name", "default"),
 }
-"""Elements of xacro's own, with the attributes without which they are something else."""
+"""xacro's elements, with the attributes that distinguish them from other elements."""
 _OTHERS = frozenset(
     ("robot", "link", "joint", "gazebo", "transmission", "material", "sensor", "plugin", "model",
      "world", "include", "light", "frame", "inertial", "visual", "collision", "origin", "mass",
@@ -31,15 +31,15 @@ _OTHERS = frozenset(
      "length", "camera", "ray", "lidar", "imu", "gps", "contact", "surface", "friction",
      "ros2_control", "state_interface", "command_interface")
 )  # fmt: skip
-"""What stands in a description in its own right, whatever macros are called."""
+"""Elements that are valid in a description themselves, regardless of macro names."""
 
 
 def prefixed(root: Any, report: Callable[[Any, str, int], None]) -> None:
-    """Gives xacro's own elements below a file's root their prefix.
+    """Adds the prefix to xacro's elements below a file's root.
 
     Args:
-        root: The DOM's root element; changed.
-        report: Takes, once for each tag, its first element, the tag and how many there are.
+        root: The DOM's root element; changed in place.
+        report: Called once per tag with its first element, the tag and the number of elements.
     """
     found = [element for element in root.getElementsByTagName("*") if _is_xacro(element)]
     count = Counter(element.tagName for element in found)
@@ -50,12 +50,12 @@ def prefixed(root: Any, report: Callable[[Any, str, int], None]) -> None:
 
 
 def call_prefixed(element: Any, macros: Any, within: Iterable[str]) -> bool:
-    """Gives a call of a macro its prefix where an element without one can be nothing else.
+    """Adds the prefix to a macro call if an element without prefix can only be a call.
 
     Args:
-        element: Of the DOM, not evaluated yet.
-        macros: xacro's table of those that are defined.
-        within: The tags of the calls in progress: what a macro makes may have its own name.
+        element: A DOM element, not yet evaluated.
+        macros: xacro's table of defined macros.
+        within: The tags of active calls: a macro may create an element with its own name.
 
     Returns:
         Whether it is a call. Otherwise nothing has changed.
@@ -83,7 +83,7 @@ def _is_xacro(element: Any) -> bool:
     needed = _NEEDED.get(element.tagName)
     if needed is None or not all(element.hasAttribute(name) for name in needed):
         return False
-    # An include of SDF has its <uri> inside.
+    # An SDF include contains a <uri>.
     inside = any(child.nodeType == child.ELEMENT_NODE for child in element.childNodes)
     return not (inside and element.tagName == "include")
 

@@ -23,20 +23,20 @@ __all__ = [
 ]  # fmt: skip
 
 MAX_BYTES = 64 * 1024 * 1024
-"""Larger than any description; a mesh or a bag given by mistake stops here."""
-# What was matched stays matched: there would be two ways to part any comment from the next.
+"""Larger than any description; stops meshes or bags that were passed by mistake."""
+# Possessive: otherwise there would be two ways to separate consecutive comments.
 _LATE_DECLARATION = re.compile(r"\A(?>\s+|<!--.*?-->)++<\?xml.*?\?>", re.DOTALL)
 _LATE_DECLARATION_BYTES = re.compile(_LATE_DECLARATION.pattern.encode(), re.DOTALL)
-# One without an end goes to the end of the text: otherwise each place where one begins would be
-# followed to there in vain.
+# An unterminated comment extends to the end of the text. Otherwise the rest would be searched again
+# from each start of a comment.
 _COMMENT = re.compile(r"(?s)<!--(.*?)(-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)")
 _COMMENT_BYTES = re.compile(_COMMENT.pattern.encode())
 MAX_DEPTH = 100
-"""Deeper nesting is damage, and would end in Python's own recursion limit."""
+"""Deeper nesting indicates a damaged file, and would exceed Python's recursion limit."""
 
 
 def shown_path(path: Path) -> str:
-    """A path as users should see it: from the current folder where it lies in there."""
+    """A path for messages: relative to the current folder if it is inside."""
     try:
         return str(path.absolute().relative_to(Path.cwd()))
     except (ValueError, OSError):
@@ -44,7 +44,9 @@ def shown_path(path: Path) -> str:
 
 
 def read_bytes(path: Path) -> bytes:
-    """A file's content; its absence, kind or size become a `DescriptionError`."""
+    """A file's contents; raises a `DescriptionError` if it is missing, not a regular file or too
+    large.
+    """
     origin = Origin(file=shown_path(path))
     try:
         if path.is_dir():
@@ -81,7 +83,7 @@ def _unreadable(message: str, origin: Origin, hint: str | None = None) -> Descri
 
 
 def near_files(path: Path) -> str | None:
-    """A sentence that names the file likely meant by a path that does not exist."""
+    """A sentence that suggests a file for a path that does not exist."""
     try:
         names = [entry.name for _, entry in zip(range(2000), path.parent.iterdir(), strict=False)]
     except OSError:
@@ -109,12 +111,12 @@ def parse(text: str | bytes, file: str = "<string>") -> Node:
     """The tree of an XML text.
 
     Args:
-        text: The XML; bytes are decoded as their XML declaration says.
-        file: What errors and origins call it.
+        text: The XML; bytes are decoded according to the XML declaration.
+        file: File name for errors and origins.
 
     Raises:
-        DescriptionError: Where the text is no well-formed XML, nested too deeply, or declares
-            entities, which no robot needs and by which a small file grows without bound.
+        DescriptionError: The text is not well-formed XML, is nested too deeply, or declares
+            entities, which robots do not need and which can expand without limit.
     """
     builder = _Builder(file)
     run_expat(text, file, builder)
@@ -123,7 +125,7 @@ def parse(text: str | bytes, file: str = "<string>") -> Node:
 
 
 class _Builder:
-    """Makes Nodes of expat's events."""
+    """Creates nodes from expat's events."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -151,10 +153,10 @@ class _Builder:
 
 
 class Handler(Protocol):
-    """Takes what `run_expat` reads; xacro works on another kind of tree than the rest."""
+    """Receives the events of `run_expat`; xacro uses a different tree than the other readers."""
 
     def start(self, tag: str, attributes: dict[str, str], line: int) -> None:
-        """An element begins in that line."""
+        """An element begins on this line."""
 
     def end(self) -> None:
         """The innermost element ends."""
@@ -168,7 +170,7 @@ _DECLARATION = '<?xml version="1.0" encoding="ISO-8859-1"?>'
 
 
 def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
-    """Reads XML and reports malformed text as a `DescriptionError` with its place."""
+    """Parses XML; malformed text raises a `DescriptionError` with its location."""
     parser = expat.ParserCreate()
     parser.buffer_text = True
     still_open: list[tuple[str, int]] = []
@@ -226,15 +228,16 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
             origin=Origin(file=file, line=1),
         ) from error
     finally:
-        # The handlers refer to the parser: all that was read would wait for Python's collector.
+        # The handlers refer to the parser: this cycle would keep everything until garbage
+        # collection.
         parser.StartElementHandler = parser.EndElementHandler = None
         parser.CharacterDataHandler = parser.EntityDeclHandler = None
 
 
 def _declared_first(text: str | bytes) -> str | bytes:
-    """The text without a declaration that stands after blank lines and comments.
+    """The text without a declaration that follows blank lines or comments.
 
-    Gazebo's reader takes it there, and published worlds begin so; expat does not.
+    Gazebo's reader accepts it there, and some published worlds contain it; expat does not.
     """
     if isinstance(text, bytes):
         return _LATE_DECLARATION_BYTES.sub(lambda found: b"\n" * found[0].count(b"\n"), text)
@@ -244,8 +247,8 @@ def _declared_first(text: str | bytes) -> str | bytes:
 def _plain_comments(text: str | bytes) -> str | bytes:
     """The text without dashes in its comments.
 
-    XML forbids two in a row there. Gazebo's reader takes them, and published worlds tell in
-    comments how ``gz topic --pub`` is called; expat does not.
+    XML does not allow two consecutive dashes there. Gazebo's reader accepts them, and comments in
+    published worlds contain commands such as ``gz topic --pub``; expat does not.
     """
     if isinstance(text, bytes):
         return _COMMENT_BYTES.sub(

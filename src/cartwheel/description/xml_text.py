@@ -1,4 +1,4 @@
-"""A tree as XML text: what ROS calls robot_description, clean of xacro and of our own marks."""
+"""Writes a tree as XML text, as for robot_description, without xacro and internal marks."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ _WITH_FILES = ("mesh", "texture")
 
 
 def write_xml(root: Node, packages: Packages | None = None) -> str:
-    """XML text, two spaces to a level, attributes in the file's order.
+    """XML text, indented by two spaces per level, with attributes in file order.
 
     Args:
         root: The tree.
-        packages: Where given, the files of meshes and textures are named by ``file://`` and
-            where it finds them.
+        packages: If given, the URIs of meshes and textures become ``file://`` URIs.
 
     Raises:
-        DescriptionError: such a file does not exist.
+        DescriptionError: A mesh or texture does not exist.
     """
     return '<?xml version="1.0"?>\n' + "".join(_lines(root, 0, packages))
 
@@ -29,7 +28,7 @@ def _escaped(text: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    # The reader would make a space of a line break that is not written so.
+    # The XML parser converts unescaped line breaks to spaces.
     text = _escaped(text).replace('"', "&quot;")
     return '"' + text.replace("\n", "&#10;").replace("\t", "&#9;").replace("\r", "&#13;") + '"'
 

@@ -1,4 +1,4 @@
-"""Meshes and textures, for programs that show robots elsewhere."""
+"""Meshes and textures for remote programs that display robots."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ if TYPE_CHECKING:
 SHAPES = frozenset({".stl", ".dae", ".obj", ".mtl", ".ply", ".glb", ".gltf", ".bin"})
 PICTURES = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".tga", ".bmp", ".webp"})
 LARGEST = 200 << 20
-"""Bytes of a file that is handed out."""
+"""Maximum size of a file to send, bytes."""
 _FILE = re.compile(r'file://[^"\'<>\s]+')
 
 
 class Assets:
-    """The content of files that the models of a simulation refer to, by their URIs.
+    """Returns files that a simulation's models refer to, by URI.
 
-    Shapes and pictures alone: by ``package://`` and ``model://`` those of packages and models; by
-    ``file://`` those that a description names, and what lies beside them, where that description
-    was itself read from a file. One that came over a wire could name any file.
+    Only meshes and images are returned: with ``package://`` and ``model://`` from packages and
+    models; with ``file://`` those that a description refers to and files near them, if the
+    description itself was read from a file. A description received over the network could contain
+    any file name.
 
     Args:
-        session: Whose models.
-        package_path: Where packages are looked for first.
+        session: The session with the models.
+        package_path: Folders to search for packages first.
     """
 
     def __init__(self, session: Session, package_path: Sequence[Path]) -> None:
@@ -42,9 +43,9 @@ class Assets:
         self._package_path = package_path
 
     def __call__(self, uri: str) -> bytes | None:
-        """The content; None where there is none to be had."""
+        """The contents, or None if the file is not available."""
         plain = unquote(uri)
-        # `Packages` expands $(find ...), which no URI of a mesh needs by now.
+        # `Packages` expands $(find ...), which no mesh URI contains at this point.
         if ".." in plain.split("/") or any(sign in plain for sign in "\0\\$"):
             return None
         scheme, _, rest = plain.partition("://")
@@ -81,15 +82,15 @@ class Assets:
 
 
 def _content(path: Path) -> bytes | None:
-    """Of a shape or a picture.
+    """The contents of a mesh or image.
 
     Raises:
-        OSError: It cannot be read.
+        OSError: The file cannot be read.
     """
     real = path.resolve()
     if not {path.suffix.lower(), real.suffix.lower()} <= SHAPES | PICTURES:
         return None
-    # Neither a link that was put there since, nor a pipe on which a reader waits for ever.
+    # Rejects links created in the meantime, and pipes that would block.
     with open(os.open(real, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:  # noqa: PTH123
         status = os.fstat(file.fileno())
         if not stat.S_ISREG(status.st_mode) or status.st_size > LARGEST:

@@ -1,4 +1,4 @@
-"""The processes of a run's bridges, one for each wire."""
+"""The bridge processes of a simulation, one per wire protocol."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Bridges:
-    """Those that a run wants."""
+    """The requested bridges."""
 
     ros1: BridgeProcess | None = None
     ros2: BridgeProcess | None = None
@@ -29,7 +29,7 @@ class Bridges:
 
 @contextlib.contextmanager
 def bridges_for(options: Options) -> Iterator[Bridges]:
-    """Starts them: they come up while the run's files are read."""
+    """Starts the bridges, which start up while the simulation's files are read."""
     found = Bridges()
     wanted = (options.ros1_node, options.ros2_node, options.foxglove_port)
     if not options.record and all(each is None for each in wanted):
@@ -56,12 +56,12 @@ def bridges_for(options: Options) -> Iterator[Bridges]:
 
 
 def log_on(process: BridgeProcess, simulation: Simulation, diagnostic: Diagnostic) -> None:
-    """Says something on the ``/rosout`` of a bridge."""
+    """Logs a diagnostic on the ``/rosout`` of a bridge."""
     process.tell("log", diagnostic, simulation.time_ns)
 
 
 def log_all_on(process: BridgeProcess, simulation: Simulation) -> None:
-    """Says there what the user was told, and will be."""
+    """Logs all past and future diagnostics there."""
     engine = simulation.engine
     for diagnostic in engine.diagnostics:
         log_on(process, simulation, diagnostic)

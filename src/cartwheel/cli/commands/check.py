@@ -1,4 +1,4 @@
-"""Findings about descriptions, as a compiler shows them or for other programs."""
+"""Prints findings in the style of a compiler or for other programs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cartwheel.errors import Diagnostic
 
 
 def list_codes() -> None:
-    """Prints the codes that a check can report, each with its severity and one line."""
+    """Prints the codes that a check can report, each with its severity and summary."""
     say(table((code.number, code.name, code.severity, code.summary) for code in REPORTED))
 
 
@@ -92,7 +92,7 @@ def check(
         if text:
             say(text)
     if format in ("github", "junit", "sarif"):
-        # The log shows how it went as well.
+        # CI logs also need the summary.
         sys.stdout.flush()
         note(_summary(result))
     if not result.complete:
@@ -106,9 +106,9 @@ def _findings(count: int) -> str:
 
 
 def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagnostic]]]:
-    """Each with those that say the very same of other lines, which are shown with it.
+    """Each finding with those that have the same message for other lines, which are shown together.
 
-    Only what has no text to write is gathered: a text belongs to its line.
+    Only findings without replacement text are combined, because the text belongs to its line.
     """
     groups: dict[tuple[object, ...], tuple[Diagnostic, list[Diagnostic]]] = {}
     for finding in findings:

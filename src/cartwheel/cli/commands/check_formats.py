@@ -1,4 +1,4 @@
-"""The report of a check as JSON, SARIF, annotations of GitHub, and JUnit's XML."""
+"""Check reports as JSON, SARIF, GitHub annotations and JUnit XML."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COMMANDS = {"error": "error", "warning": "warning", "info": "notice"}
 
 
 def as_json(result: Result) -> str:
-    """The report in the form that docs/check.md defines."""
+    """The report in the format documented in docs/check.md."""
     return json.dumps(as_mapping(result), indent=2)
 
 
@@ -107,12 +107,12 @@ def as_sarif(result: Result) -> str:
 
 
 def as_github(result: Result) -> str:
-    """Workflow commands, which GitHub Actions shows beside the lines they are about."""
+    """Workflow commands, which GitHub Actions shows next to the affected lines."""
     return "\n".join(map(_annotation, result.findings))
 
 
 def as_junit(result: Result) -> str:
-    """JUnit's XML: a test case for each description, which fails with errors and warnings."""
+    """JUnit XML: a test case per description, which fails for errors and warnings."""
     suite = ElementTree.Element("testsuite", {"name": "cartwheel check"})
     failures = 0
     for report in result.reports:
@@ -147,7 +147,7 @@ FORMATS: Mapping[str, Callable[[Result], str]] = {
     "github": as_github,
     "junit": as_junit,
 }
-"""All but ``text``, by name."""
+"""All formats except ``text``, by name."""
 
 
 def _first_paragraph(code: Any) -> str:
@@ -174,13 +174,13 @@ def _location(finding: Diagnostic) -> dict[str, Any]:
 
 
 def _relative(file: str) -> str:
-    """A path from the working directory with slashes; as it is where it lies elsewhere."""
+    """A path relative to the working directory with slashes; unchanged if it is elsewhere."""
     path = Path(os.path.relpath(file))
     return Path(file).as_posix() if path.parts[:1] == ("..",) else path.as_posix()
 
 
 def _in_xml(text: str) -> str:
-    """A text without the characters that XML cannot hold."""
+    """A text without characters that are invalid in XML."""
     return _NOT_XML.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
@@ -195,7 +195,7 @@ def _annotation(finding: Diagnostic) -> str:
 
 
 def _escaped(text: str, more: str = "") -> str:
-    """As workflow commands need it: a line break would begin another command."""
+    """Escapes a text for workflow commands: a line break would begin a new command."""
     for letter in ("%", "\r", "\n", *more):
         text = text.replace(letter, f"%{ord(letter):02X}")
     return text

@@ -1,4 +1,4 @@
-"""What the commands for a running simulation share."""
+"""Shared by the commands for a running simulation."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from cartwheel.errors import CartwheelError
 
 
 def connect(sim: int | None) -> ControlClient:
-    """The simulation that a command means.
+    """Connects to the selected simulation.
 
     Raises:
-        ControlError: There is none, or several.
+        ControlError: No simulation is running, or several are.
     """
     return ControlClient(find(sim))
 
 
 def parse_yaml(words: Sequence[str]) -> Any:
-    """A message as the command line gives it: one YAML value, or one for each field.
+    """A message from the command line: one YAML value, or one value per field.
 
     Raises:
-        CartwheelError: It is no YAML.
+        CartwheelError: The YAML is invalid.
     """
     import yaml
 
@@ -38,5 +38,5 @@ def parse_yaml(words: Sequence[str]) -> Any:
         ) from None
     if not values:
         return {}
-    # One value is the message itself; a list of it all is what rostopic takes for Twist.
+    # A single value is the message itself; rostopic also accepts a list of field values.
     return values[0] if len(values) == 1 else values

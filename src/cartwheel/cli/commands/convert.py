@@ -1,4 +1,4 @@
-"""A description written in another form."""
+"""Converts a description to a different format."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether there is a desktop, on which a browser shows up before the user."""
+"""Detects whether a browser would be visible to the user."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import sys
 
 
 def is_desktop() -> bool:
-    """Whether a browser can be expected to show up before the user."""
+    """Whether an opened browser is likely to be visible to the user."""
     return sys.stdout.isatty() and has_display()
 
 
 def has_display() -> bool:
-    """Whether windows that this process opens are before its user."""
+    """Whether windows opened by this process are visible to the user."""
     if "SSH_CONNECTION" in os.environ:
         return False
     return sys.platform == "darwin" or bool(

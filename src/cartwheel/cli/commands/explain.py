@@ -12,11 +12,11 @@ from cartwheel.errors import Code
 
 
 def explain(names: Sequence[str], *, json: bool) -> None:
-    """Prints what codes mean; lists all where none is named.
+    """Prints explanations of codes; lists all codes without arguments.
 
     Args:
         names: Numbers or names of codes.
-        json: Whether to print one JSON array, with a ``text`` in Markdown for each code.
+        json: Whether to print a JSON array with the ``text`` of each code in Markdown.
 
     Raises:
         UnknownNameError: A code does not exist.

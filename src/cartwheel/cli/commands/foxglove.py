@@ -1,4 +1,4 @@
-"""A run that Foxglove can look at."""
+"""Serves a simulation to Foxglove."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def shown_by_foxglove(
     """Serves the enclosed run to Foxglove.
 
     Raises:
-        CartwheelError: The extra is missing, or the port is taken.
+        CartwheelError: The optional dependency is missing, or the port is in use.
     """
     from cartwheel.gazebo.ros2_api import Ros2Api
 
@@ -64,7 +64,7 @@ def shown_by_foxglove(
             },
         )
         if options.ros1_node is None and options.ros2_node is None:
-            # Where a run is no part of ROS, nobody else offers what Gazebo does.
+            # Without ROS, no other bridge offers Gazebo's services.
             Ros2Api(session, package_path=options.package_path).start()
         url = process.call("start")
         log_all_on(process, simulation)
@@ -73,18 +73,18 @@ def shown_by_foxglove(
 
 
 class SimulationControls:
-    """Time of a simulation, from any thread."""
+    """Time control of a simulation. Thread-safe."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
 
     @property
     def time_ns(self) -> int:
-        """What time it is."""
+        """The simulation time."""
         return self._simulation.time_ns
 
     def state(self) -> TimeState:
-        """How it goes; numbers that may be read while they change."""
+        """The run state; these values may be read while they change."""
         from cartwheel.bridges.foxglove.controls import TimeState
 
         simulation = self._simulation
@@ -95,22 +95,22 @@ class SimulationControls:
         )
 
     def pause(self) -> None:
-        """Holds time."""
+        """Pauses the simulation."""
         self._do(self._simulation.pause)
 
     def resume(self) -> None:
-        """Lets it go on."""
+        """Resumes the simulation."""
         self._do(self._simulation.resume)
 
     def set_speed(self, speed: float | None) -> None:
-        """Sets the wanted real-time factor."""
+        """Sets the target real-time factor."""
         self._do(lambda: self._simulation.set_speed(speed))
 
     def seek(self, time_ns: int) -> None:
-        """Back to the start, which is where a simulation can go.
+        """Resets the simulation to the start, the only time that it can seek to.
 
         Raises:
-            CartwheelError: It is asked to go elsewhere.
+            CartwheelError: The requested time is not the start.
         """
         if time_ns > 0:
             raise CartwheelError(
@@ -119,6 +119,6 @@ class SimulationControls:
         self._do(self._simulation.reset)
 
     def _do(self, function: Callable[[], None]) -> None:
-        # Waited for: the client is told the state that it has brought about.
+        # Wait, so that the client receives the resulting state.
         with contextlib.suppress(TimeoutError):
             self._simulation.call(function).result(5.0)

@@ -1,4 +1,4 @@
-"""Command lines of Gazebo's programs, and what of them there is something to say about.
+"""Command-line arguments of Gazebo's programs, with notes about unsupported options.
 
 Source: gzserver 11 and gzclient 11, their ``--help``; gazebo_ros, its launch files and scripts.
 """
@@ -18,30 +18,30 @@ from cartwheel.codes.command import GAZEBO_OPTION_UNSUPPORTED, OPTION_INVALID, U
 from cartwheel.errors import CartwheelError
 
 WORLD = "worlds/empty.world"
-"""Where none is named."""
+"""The default world."""
 
 OWN_PLUGINS = frozenset(
     f"libgazebo_ros_{name}"
     for name in ("api_plugin", "paths_plugin", "init", "factory", "state", "force_system", "clock")
 )
-"""System plugins whose work is Cartwheel's own; without their endings."""
+"""System plugins that Cartwheel replaces, without file extensions."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ClientArguments:
-    """What gzclient was asked for."""
+    """The arguments of gzclient."""
 
     verbose: bool = False
     ros: tuple[str, ...] = ()
-    """``name:=value``, for the ROS node."""
+    """``name:=value`` arguments for the ROS node."""
     notes: tuple[str, ...] = ()
-    """What does not apply here, a line each."""
+    """Notes about options without effect, one per line."""
     help: str = ""
-    """The text of ``--help``, where it was asked for."""
+    """The text of ``--help``, if requested."""
     version: bool = False
 
     def tell(self) -> bool:
-        """Says what does not apply; returns whether no more than a text was asked for."""
+        """Prints the notes; returns whether only a text was requested."""
         if self.help:
             say(self.help)
         elif self.version:
@@ -54,15 +54,15 @@ class ClientArguments:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ServerArguments(ClientArguments):
-    """What gzserver was asked for."""
+    """The arguments of gzserver."""
 
     world: str = WORLD
     paused: bool = False
     seed: int = 0
     iterations: int | None = None
-    """Steps to make, then end."""
+    """Number of steps to run."""
     allow_path: tuple[Path, ...] = ()
-    """Folders whose files services may name."""
+    """Folders with files that services may access."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -76,10 +76,10 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
-    """The arguments of gzserver, gazebo, debug or perf.
+    """Parses the arguments of gzserver, gazebo, debug or perf.
 
     Raises:
-        CartwheelError: There is no such option, its value is none, or it cannot be met.
+        CartwheelError: An option is unknown or unsupported, or its value is invalid.
     """
     parser = _Parser(
         prog=program,
@@ -144,10 +144,10 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
 
 
 def parse_client(words: Sequence[str]) -> ClientArguments:
-    """The arguments of gzclient.
+    """Parses the arguments of gzclient.
 
     Raises:
-        CartwheelError: There is no such option.
+        CartwheelError: An option is unknown.
     """
     parser = _Parser(
         prog="gzclient",

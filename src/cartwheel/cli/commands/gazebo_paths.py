@@ -1,4 +1,4 @@
-"""Where Gazebo finds worlds and models: its variables, and what ROS packages say of themselves.
+"""Gazebo's search paths: environment variables, and exports of ROS packages.
 
 Source: gazebo 11, `SystemPaths`; gazebo_ros, gazebo_ros_paths_plugin.
 """
@@ -15,7 +15,7 @@ from cartwheel.description.packages import share
 from cartwheel.errors import CartwheelError, likely
 
 _LEVELS = 4
-"""Folders between a workspace's source folder and a package at most."""
+"""Maximum number of folders between a workspace's source folder and a package."""
 _IGNORE = ("CATKIN_IGNORE", "AMENT_IGNORE", "COLCON_IGNORE", "rospack_nosubdirs")
 _EXPORTS = {
     "gazebo_model_path": "GAZEBO_MODEL_PATH",
@@ -25,14 +25,14 @@ _EXPORTS = {
 
 
 def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
-    """The file of a world as Gazebo's command line names it.
+    """The file of a world in Gazebo's command line.
 
     Args:
-        name: A path, or a path below a folder of GAZEBO_RESOURCE_PATH or of Cartwheel's own.
+        name: A path, or a path below a folder in GAZEBO_RESOURCE_PATH or Cartwheel's own folder.
         environment: For tests; `os.environ` otherwise.
 
     Raises:
-        CartwheelError: There is none; says where it was looked for.
+        CartwheelError: The world was not found; the hint lists the searched folders.
     """
     environment = os.environ if environment is None else environment
     given = Path(name).expanduser()
@@ -62,7 +62,7 @@ def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
 
 
 def adopt_exports(environment: dict[str, str]) -> None:
-    """Adds what the packages of ROS_PACKAGE_PATH export for Gazebo to Gazebo's variables."""
+    """Adds the exports of packages in ROS_PACKAGE_PATH to Gazebo's variables."""
     found: dict[str, list[Path]] = {variable: [] for variable in _EXPORTS.values()}
     for root in _paths(environment, "ROS_PACKAGE_PATH"):
         for manifest in _manifests(root, _LEVELS):
@@ -81,7 +81,7 @@ def _exports(manifest: Path) -> Iterator[tuple[str, Path]]:
         data = manifest.read_bytes()
         if b"<gazebo_ros" not in data:
             return
-        # A file of the user's own workspace.
+        # A file in the user's own workspace.
         root = ElementTree.fromstring(data)  # noqa: S314
     except (OSError, ElementTree.ParseError):
         return

@@ -1,4 +1,4 @@
-"""Diagnostics of one kind as one, which lists the other places."""
+"""Combines diagnostics of one kind into one that lists the other locations."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from cartwheel.cli.showing import difference
 from cartwheel.errors import Diagnostic, Origin
 
 _SHOWN = 3
-"""Places, or names, beside the first."""
+"""Number of locations or names to show, besides the first."""
 _ORDER = ("error", "warning", "info")
 
 
 def grouped(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """One for all of a kind, which may differ in names and numbers alone.
+    """One diagnostic for each kind, where diagnostics may differ only in names and numbers.
 
-    Errors come first; diagnostics of the same severity are in the order of their files and lines,
-    files in the order in which they come. The first of a group is whole, and the places of some
-    others follow. Two that differ in their values stay two.
+    Errors come first; within a severity, diagnostics are sorted by file and line, with files in
+    order of appearance. The first diagnostic in a group is complete, followed by some of the other
+    locations. Diagnostics with different values are not merged.
     """
     groups: dict[tuple[object, ...], list[Diagnostic]] = {}
     files: dict[str, int] = {"": -1}

@@ -1,4 +1,4 @@
-"""The page of the running simulation, opened as Gazebo's client opens its window."""
+"""Opens the web viewer of the running simulation, as Gazebo's client opens its window."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from cartwheel.control.registry import VARIABLE
 from cartwheel.errors import ControlError
 
 _TELL = 1.0
-"""s of waiting after which the user should know what for."""
+"""Waiting time after which the user is informed, s."""
 _LOOKS = 0.1
-"""s between two looks."""
+"""Interval of checks, s."""
 _BROWSER = 60.0
-"""s in which a browser that was opened is looked for on the page."""
+"""Maximum time for an opened browser to connect, s."""
 
 
 def show(words: Sequence[str]) -> None:
-    """Opens the page in a browser, or prints its address, until the simulation ends.
+    """Opens the web viewer in a browser, or prints its URL, until the simulation ends.
 
     Raises:
-        CartwheelError: No simulation runs, or it has no page.
+        CartwheelError: No simulation is running, or it has no web viewer.
     """
     arguments = parse_client(words)
     if arguments.tell():
@@ -40,20 +40,20 @@ def show(words: Sequence[str]) -> None:
     special = dict(word.split(":=", 1) for word in arguments.ros)
     master = special.get("__master") or os.environ.get("ROS_MASTER_URI")
     simulation = find() if os.environ.get(VARIABLE) else wait_for_simulation(master or None)
-    with contextlib.suppress(interrupts.Interrupted):  # The way to end it.
+    with contextlib.suppress(interrupts.Interrupted):  # The normal way to end it.
         _stay(simulation)
 
 
 def wait_for_simulation(master: str | None) -> Running:
-    """The simulation to show: the newest of a ROS master, for which this waits.
+    """The simulation to show: the newest on a ROS master, which this function waits for.
 
     Args:
-        master: Its URI. None where the user has named none: then a simulation of the default
-            master will do, or one without ROS, and there must be one.
+        master: URI of the master. None uses a running simulation on the default master or without
+            ROS, without waiting.
 
     Raises:
-        ControlError: There is no such simulation where none is waited for, or several; or the
-            process that started this one has ended.
+        ControlError: There is no such simulation (without waiting), or several; or the parent
+            process has ended.
     """
     began, parent, told = time.monotonic(), os.getppid(), False
     while True:
@@ -105,7 +105,7 @@ def _listing(known: Sequence[Running]) -> str:
 
 
 def is_same(uri: str | None, other: str) -> bool:
-    """Whether two URIs mean the same ROS master; one computer has several names."""
+    """Whether two URIs refer to the same ROS master; a computer may have several names."""
     return bool(uri) and uri is not None and _place(uri) == _place(other)
 
 
@@ -120,7 +120,7 @@ def _place(uri: str) -> tuple[str, int | None]:
 
 
 def _open(url: str) -> bool:
-    """Whether a program was there to open it with."""
+    """Whether a program to open the URL was found."""
     try:
         return webbrowser.open(url)
     except webbrowser.Error:
@@ -132,13 +132,13 @@ def _stay(simulation: Running) -> None:
         page = client.request("page")
         say(f"web interface: {paint(page['url'], 'bold', 'cyan')}")
         if has_display() and _open(page["url"]):
-            with contextlib.suppress(ControlError):  # It has ended, which is seen below.
+            with contextlib.suppress(ControlError):  # it has ended, as seen below
                 _look_for_browser(client, page["browsers"])
         client.wait_for_end()
 
 
 def _look_for_browser(client: ControlClient, before: int) -> None:
-    """Says whether a browser shows the page: a program that was started may show nothing."""
+    """Reports whether a browser has connected: a started program may show nothing."""
     deadline = time.monotonic() + _BROWSER
     while time.monotonic() < deadline:
         if client.request("page")["browsers"] > before:

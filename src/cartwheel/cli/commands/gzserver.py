@@ -1,4 +1,4 @@
-"""A simulation started as Gazebo's server is."""
+"""Runs a simulation with gzserver's arguments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cartwheel.cli.commands.ports import free_port
 from cartwheel.cli.commands.run import simulate
 
 NODE = "gazebo"
-"""Of ROS, where ``__name:=`` gives no other."""
+"""Default name of the ROS node, unless ``__name:=`` is given."""
 
 
 def serve(program: str, words: Sequence[str]) -> None:
@@ -21,10 +21,10 @@ def serve(program: str, words: Sequence[str]) -> None:
 
     Args:
         program: gzserver, gazebo, debug or perf.
-        words: Of its command line.
+        words: The command-line arguments.
 
     Raises:
-        CartwheelError: Whatever is wrong with the options or the world.
+        CartwheelError: An option or the world is invalid.
     """
     arguments = parse_server(program, words)
     if arguments.tell():
@@ -36,7 +36,7 @@ def serve(program: str, words: Sequence[str]) -> None:
 
 
 def translated(program: str, arguments: ServerArguments) -> Options:
-    """The same as options of ``cartwheel run``.
+    """The equivalent options of ``cartwheel run``.
 
     Raises:
         CartwheelError: The world does not exist.

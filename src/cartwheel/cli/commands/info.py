@@ -14,14 +14,14 @@ from cartwheel.cli.showing import print_diagnostic
 from cartwheel.codes.command import RECORDING_UNFINISHED
 
 _SINCE_1970 = 10**17
-"""ns; recordings that begin later have stamps of a wall clock."""
+"""ns; recordings that begin later have wall-clock timestamps."""
 
 
 def info(path: Path, *, as_json: bool) -> None:
     """Prints the contents of a recording in any format.
 
     Raises:
-        RecordingError: It cannot be read.
+        RecordingError: The recording cannot be read.
     """
     recording = open_recording(path)
     try:

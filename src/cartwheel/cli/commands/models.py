@@ -25,7 +25,7 @@ def spawn(
 ) -> None:
     """Spawns a file. The simulation's process reads the description."""
     with connect(sim) as client:
-        # Names are relative to the user's folder, not the simulation's.
+        # Paths are relative to the user's folder, not the simulation's.
         from cartwheel.description.shipped import find_description
 
         path = find_description(file, package_path).absolute()

@@ -1,4 +1,4 @@
-"""What can be said of a run."""
+"""The options of a simulation."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from typing import Literal
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Options:
-    """What the user asked for."""
+    """The user's options."""
 
     file: str | None = None
     values: Mapping[str, str]
-    """Of ``name:=value``."""
+    """Values of ``name:=value`` arguments."""
     world: str | None = None
     headless: bool = False
     speed: float | None = 1.0
-    """Real-time factor; None is as fast as it can."""
+    """Real-time factor; None is as fast as possible."""
     seconds: float | None = None
-    """Of simulated time; None is endless."""
+    """Simulation time; None is unlimited."""
     steps: int | None = None
-    """To make, instead of `seconds`."""
+    """Number of steps, instead of `seconds`."""
     paused: bool = False
     seed: int = 0
     strict: bool = False
@@ -35,23 +35,23 @@ class Options:
     model: str | None = None
     package_path: tuple[Path, ...] = ()
     allow_path: tuple[Path, ...] = ()
-    """Folders whose files clients may name."""
+    """Folders with files that clients may access."""
     controllers: tuple[Path, ...] = ()
-    """YAML files whose controllers start."""
+    """YAML files whose controllers are started."""
     bridge: tuple[Path, ...] = ()
-    """YAML files of ros_gz_bridge."""
+    """Configuration files of ros_gz_bridge."""
     ros1_node: str | None = None
-    """Name of the ROS 1 node; None is to be none."""
+    """Name of the ROS 1 node; None for no node."""
     ros1_arguments: tuple[str, ...] = ()
     ros2_node: str | None = None
-    """Name of the ROS 2 node; None is to be none."""
+    """Name of the ROS 2 node; None for no node."""
     rmw: Literal["dds", "zenoh"] = "dds"
     record: tuple[Path, ...] = ()
     """Files or folders to record to."""
     record_topics: tuple[str, ...] = ()
-    """Patterns; all topics where there are none."""
+    """Patterns; all topics if empty."""
     record_encoding: str | None = None
     overwrite: bool = False
     foxglove_port: int | None = None
-    """To serve Foxglove's protocol on; None is not to."""
+    """Port for Foxglove's protocol; None for no server."""
     verbose: bool = False

@@ -1,4 +1,4 @@
-"""The viewer of a run: started beside it, announced when it is up."""
+"""The web viewer of a simulation, started in parallel and announced when it is ready."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 
 class Page:
-    """The browser's page of a session.
+    """The web viewer of a session.
 
     Args:
-        session: To show.
-        server: Tells other processes where the page is.
-        report: Tells the user.
-        access: Who may see it.
+        session: The session to show.
+        server: Announces the URL to other processes.
+        report: Prints messages for the user.
+        access: Who may connect.
         port: Port to listen on.
-        open_browser: Whether to open it; None does on a desktop.
-        desk: Makes its panels; None makes those of a simulation.
+        open_browser: Whether to open a browser; None opens it only on a desktop.
+        desk: Creates its panels; None for a simulation's panels.
     """
 
     def __init__(
@@ -58,22 +58,22 @@ class Page:
         )
 
     def start(self, pacer: Pacer) -> None:
-        """Brings the page up, while the simulation begins."""
+        """Starts the web viewer while the simulation begins."""
         self._viewer.start(pacer)
         self._started.set()
         threading.Thread(target=self._announce, name="announce", daemon=True).start()
 
     def raise_failure(self) -> None:
-        """Raises what kept the page from coming up.
+        """Raises the error that prevented the start.
 
         Raises:
-            CartwheelError: That.
+            CartwheelError: The web viewer could not start.
         """
         if self._failure is not None:
             raise self._failure
 
     def _url(self) -> str:
-        """Where the page is, once it is up."""
+        """The URL, once the viewer is ready."""
         if not self._started.wait(PATIENCE):
             raise ControlError(
                 f"the web interface did not start within {PATIENCE:g} s", code=VIEWER_NOT_STARTED

@@ -1,4 +1,4 @@
-"""The viewer of a run that began without one."""
+"""The web viewer of a simulation that was started without one."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 
 class PageOnDemand:
-    """The page of a session that runs without one, brought up when a client asks for it.
+    """A session's web viewer, started when a client requests it.
 
     Args:
-        session: To show.
-        server: Whose clients ask, and which then tells where the page is.
+        session: The session to show.
+        server: Receives the requests, and announces the URL.
         pacer: Runs the session.
-        report: Tells the user.
-        access: Who may see it.
-        port: The first to try; one that is taken is left to whoever has it.
+        report: Prints messages for the user.
+        access: Who may connect.
+        port: The first port to try; ports in use are skipped.
     """
 
     def __init__(
@@ -51,14 +51,15 @@ class PageOnDemand:
         server.offer_page(PageOffer(show=self.show, browsers=self._browsers))
 
     def show(self) -> str:
-        """Where the page is; it is up when this returns. From any thread but the simulation's.
+        """The URL; the viewer is ready when this returns. Call it on any thread except the
+        simulation's.
 
         Raises:
-            ControlError: No port can be had.
+            ControlError: No port is available.
         """
         with self._lock:
             if self._url is None:
-                # A third of a second that a run which nobody looks at does not spend.
+                # The import takes 0.3 s, which simulations without viewers save.
                 from cartwheel.viewer import Viewer
 
                 port = free_port(self._access.host, self._port)

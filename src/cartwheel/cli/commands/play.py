@@ -1,4 +1,4 @@
-"""A recording from its file to its end."""
+"""Plays a recording."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Options:
-    """What the user asked for."""
+    """The user's options."""
 
     file: Path
     headless: bool
     speed: float | None
     start: float
-    """s after the beginning."""
+    """Start time, s after the beginning."""
     loop: bool
     paused: bool
     world: str | None
@@ -79,7 +79,7 @@ def play(options: Options) -> None:
         player.seek(player.start_ns + round(options.start * 1e9))
     if options.paused:
         player.pause()
-    # To clients a recording is what a simulation is: time, topics and models.
+    # For clients, a recording is equivalent to a simulation: time, topics and models.
     session = cast("Session", played)
     report = Report(verbose=False)
     with interrupts.handled_by(player.stop, status=0):

@@ -1,4 +1,4 @@
-"""Ports that are taken, and by whom."""
+"""Checks whether ports are in use, and by which process."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _NEAR = 50
 
 
 def refuse_taken(host: str, port: int) -> None:
-    """Says who has a port before anything else is done.
+    """Raises an early error if a port is in use.
 
     Raises:
-        CartwheelError: The port cannot be listened on.
+        CartwheelError: The port is not available.
     """
     problem = _problem(host, port)
     if problem is None:
@@ -47,10 +47,10 @@ def refuse_taken(host: str, port: int) -> None:
 
 
 def free_port(host: str, port: int) -> int:
-    """The first port from `port` on that can be listened on.
+    """The first available port from `port` on.
 
     Raises:
-        ControlError: There is none near.
+        ControlError: No port nearby is available.
     """
     for candidate in range(port, min(port + _NEAR, 65536)):
         if not _problem(host, candidate):

@@ -1,4 +1,4 @@
-"""A run that is recorded."""
+"""Records a simulation."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 
 def check_recording(options: Options) -> None:
-    """Refuses what cannot be recorded, before anything is built.
+    """Rejects invalid recording options before anything is built.
 
     Raises:
-        CartwheelError: That.
+        CartwheelError: An option is invalid.
     """
     from cartwheel.bridges.recording.formats import check_writable, encoding_for
 
@@ -48,16 +48,16 @@ def check_recording(options: Options) -> None:
 def recorded(
     session: Session, processes: Mapping[Path, BridgeProcess], options: Options, report: Report
 ) -> Iterator[None]:
-    """Records the enclosed run, if that was asked for; a recording that breaks off ends it.
+    """Records the enclosed run, if requested; a failing recording stops the run.
 
     Args:
-        session: To record.
-        processes: Of the recorders, by file.
-        options: Of the run.
-        report: Tells the user.
+        session: The session to record.
+        processes: The recorders' processes, by file.
+        options: Options of the run.
+        report: Prints messages for the user.
 
     Raises:
-        RecordingError: One cannot be written, or broke off.
+        RecordingError: A recording cannot be written, or failed.
     """
     with contextlib.ExitStack() as stack:
         for path, process in processes.items():
@@ -86,8 +86,8 @@ def _recorded_to(
     )
     process.on_lost = simulation.stop
     ending = _Ending(process, path)
-    # Stays among the last rites until it is done: a second of messages takes longer to write
-    # than Ctrl-C allows.
+    # Completed even after Ctrl-C: a second of messages takes longer to write than the normal
+    # shutdown timeout allows.
     with interrupts.finally_do(ending.finish):
         process.call("start")
         report.recording(path)
@@ -97,7 +97,7 @@ def _recorded_to(
             ending.finish()
             simulation.drain()
             if ending.failure is not None:
-                # In place of whatever else ended the run: the failure did.
+                # Raised instead of other errors, because it stopped the run.
                 raise ending.failure
             found = ending.summary
             if found is not None:
@@ -105,7 +105,7 @@ def _recorded_to(
 
 
 class _Ending:
-    """The end of a recording, on whichever thread comes first; the others wait for it."""
+    """Finishes a recording on the first thread that calls it; other threads wait."""
 
     def __init__(self, process: BridgeProcess, path: Path) -> None:
         self._process = process
@@ -122,7 +122,7 @@ class _Ending:
             self._done = True
             self._process.leave_graph()
             try:
-                # However long the disk takes.
+                # without a timeout, because the disk may be slow
                 self.summary = self._process.call("close", self._process.written, timeout=None)
             except ControlError:
                 self.failure = RecordingError(

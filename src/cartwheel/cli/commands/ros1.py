@@ -1,4 +1,4 @@
-"""A run as a node of ROS 1, with Gazebo's own services."""
+"""Runs a session as a ROS 1 node with Gazebo's services."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Ros1:
             self._api.close()
 
     def close(self) -> None:
-        """Leaves ROS."""
+        """Disconnects from ROS."""
         self._process.close()
 
     def _ended(self, diagnostic: Diagnostic) -> None:

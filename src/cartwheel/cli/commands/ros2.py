@@ -1,4 +1,4 @@
-"""A run as a node of ROS 2."""
+"""Runs a session as a ROS 2 node."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Ros2:
         log_all_on(self._process, simulation)
 
     def close(self) -> None:
-        """Leaves ROS."""
+        """Disconnects from ROS."""
         self._process.close()
 
     # -- for the bridge
@@ -114,11 +114,11 @@ class Ros2:
 
 
 def node_parameters(session: Session) -> list[Parameter]:
-    """What ``ros2 param`` reads and sets of a session."""
+    """The session's parameters for ``ros2 param``."""
     simulation = session.simulation
 
     def set_speed(factor: float) -> None:
-        # Here as well as where it is set, which is too late for the answer.
+        # Checked here too, because it is set only after the response.
         check_speed(factor or None)
         simulation.post(lambda: simulation.set_speed(factor or None))
 

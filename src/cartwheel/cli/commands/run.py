@@ -1,4 +1,4 @@
-"""A simulation from its files to its end."""
+"""Runs a simulation."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from cartwheel.simulation.pacing import Pacer
 
 ROBOT, WORLD = "rosbots.xacro", "post"
-"""What is run where nothing is named."""
+"""The default robot and world."""
 
 
 def simulate(options: Options) -> None:
-    """Reads, builds, runs, and says so.
+    """Reads, builds and runs a simulation, and prints messages.
 
     Raises:
-        CartwheelError: Whatever is wrong with the files or the options.
+        CartwheelError: A file or an option is invalid.
     """
     if options.seconds is not None and not 0 < options.seconds < 1e9:
         raise CartwheelError(
@@ -66,7 +66,7 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     world, robot, remappings = _read(options)
     if not options.headless:
         refuse_taken(options.host, options.port)
-    # The engine is imported while the files are known to be right, and not before.
+    # The engine is imported only after the files have been checked.
     from cartwheel.control.place import placed
     from cartwheel.control.server import ControlServer
     from cartwheel.session import Session
@@ -97,7 +97,7 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     # Ctrl-C is how an endless run is meant to end, so it is no failure; a run that was to
     # last a certain time has failed when it is ended before.
     endless = options.seconds is None and options.steps is None
-    # From the moment on at which others can see that it runs.
+    # From the time at which other processes can see the simulation.
     with interrupts.handled_by(session.simulation.stop, status=0 if endless else None):
         ros = options.ros1_node is not None
         server = ControlServer(session, title=title, load=_load_robot, ros=ros)
@@ -120,7 +120,7 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
 
 
 def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterator[str]:
-    """The files of a run."""
+    """The files of a simulation."""
     for each in descriptions:
         if each is not None and not each.origin.file.startswith("<"):
             yield each.origin.file
@@ -224,7 +224,7 @@ def _read(
     from cartwheel.description.model import WorldDescription
 
     values = dict(options.values)
-    # As with a launch file: world:=arena.world.
+    # As in a launch file: world:=arena.world.
     named = options.world or values.pop("world", None)
     file = options.file or ROBOT
     found = load(file, arguments=values, package_path=options.package_path)
@@ -244,7 +244,7 @@ def _read(
             )
         remappings: tuple[str, ...] = ()
         if options.ros1_node is not None and values:
-            # There is no xacro for them to be arguments of.
+            # Without a xacro, they cannot be xacro arguments.
             remappings = tuple(f"{name}:={value}" for name, value in values.items())
             found = load_world(file, package_path=options.package_path)
         return found, None, remappings
@@ -280,7 +280,7 @@ def _page(
     *,
     access: Access,
 ) -> Page | None:
-    """The page of the run; None where it is brought up when somebody asks for it."""
+    """The web viewer of the run; None if it is started on request."""
     if options.headless:
         from cartwheel.cli.commands.page_on_demand import PageOnDemand
 

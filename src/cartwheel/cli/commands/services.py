@@ -22,7 +22,7 @@ def print_list(sim: int | None, *, verbose: bool) -> None:
 
 
 def call(sim: int | None, service: str, words: Sequence[str]) -> None:
-    """Calls a service and prints the answer as YAML."""
+    """Calls a service and prints the response as YAML."""
     request = parse_yaml(words)
     with connect(sim) as client:
         answer = client.request("call", service=service, request=request)

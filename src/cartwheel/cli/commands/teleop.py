@@ -42,11 +42,11 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
                 note(f"driving {paint(topic, 'bold', stream=sys.stderr)}\n\n{HELP}\n")
                 for key in keys(suspension):
                     driver.press(key)
-                    # Where this process ends without a word, the simulation itself stops the robot.
+                    # If this process dies, the simulation itself stops the robot.
                     client.publish(topic, kind, _message(driver, kind), at_end=_end(driver, kind))
                     _show(driver)
         except interrupts.Interrupted:
-            pass  # The way to end it.
+            pass  # The normal way to end it.
         finally:
             driver.press("k")
             client.publish(topic, kind, _message(driver, kind))
@@ -54,7 +54,7 @@ def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> N
 
 
 def topics_read(client: ControlClient) -> dict[str, str]:
-    """The types of the topics on which robots wait for a Twist, stamped or not."""
+    """The types of the topics with subscribers for Twist messages, stamped or not."""
     return {
         one["name"]: one["type"]
         for one in client.request("topics")["topics"]
@@ -63,10 +63,10 @@ def topics_read(client: ControlClient) -> dict[str, str]:
 
 
 def the_topic(found: Iterable[str]) -> str:
-    """The one of them that drives.
+    """The only drive topic.
 
     Raises:
-        CartwheelError: There is none, or several.
+        CartwheelError: There is none, or there are several.
     """
     found = list(found)
     driven = [name for name in found if name.rsplit("/", 1)[-1] == "cmd_vel"] or found
@@ -88,9 +88,9 @@ def the_topic(found: Iterable[str]) -> str:
 
 @contextlib.contextmanager
 def single_keys() -> Iterator[list[Any] | None]:
-    """Makes a terminal hand over each key as it is pressed, and puts it back as it was.
+    """Sets the terminal to deliver single keys, and restores it afterwards.
 
-    Yields how it was; None where standard input is no terminal.
+    Yields the previous settings; None if standard input is not a terminal.
     """
     descriptor = sys.stdin.fileno()
     if not os.isatty(descriptor):
@@ -98,20 +98,20 @@ def single_keys() -> Iterator[list[Any] | None]:
         return
     before = termios.tcgetattr(descriptor)
     with interrupts.finally_do(lambda: termios.tcsetattr(descriptor, termios.TCSANOW, before)):
-        # Ctrl-C stays a signal, which also another process can send.
+        # Ctrl-C remains a signal, which other processes can also send.
         tty.setcbreak(descriptor, termios.TCSANOW)
         yield before
 
 
 class _SuspendedError(Exception):
-    """SIGTSTP came."""
+    """SIGTSTP was received."""
 
 
 class Suspension:
-    """Puts SIGTSTP, Ctrl-Z at a terminal, off until the robot has been stopped.
+    """Delays SIGTSTP (Ctrl-Z in a terminal) until the robot has been stopped.
 
     Args:
-        terminal: How it was before; None is no terminal.
+        terminal: Previous terminal settings; None without a terminal.
     """
 
     def __init__(self, terminal: list[Any] | None) -> None:
@@ -126,14 +126,14 @@ class Suspension:
         signal.signal(signal.SIGTSTP, signal.SIG_DFL)
 
     def read(self) -> bytes | None:
-        """What comes next from standard input; None where the process is to be suspended."""
+        """The next input; None if the process is about to be suspended."""
         try:
             return self._read()
         except _SuspendedError:
             return None
 
     def suspend(self) -> None:
-        """Suspends the process, and returns once it goes on."""
+        """Suspends the process, and returns when it is resumed."""
         self._asked = False
         signal.signal(signal.SIGTSTP, signal.SIG_DFL)
         descriptor = sys.stdin.fileno()
@@ -152,7 +152,7 @@ class Suspension:
             self._reading = False
 
     def _on_signal(self, *_: object) -> None:
-        # In the middle of a request to the simulation it waits for the next key.
+        # During a request to the simulation, wait for the next key.
         self._asked = True
         if self._reading:
             self._reading = False
@@ -160,9 +160,9 @@ class Suspension:
 
 
 def keys(suspension: Suspension) -> Iterator[str]:
-    """Keys as they are pressed, or the letters of a pipe; ends with it.
+    """Keys as they are pressed, or the characters of a pipe until it ends.
 
-    One that stops the robot comes before the process is suspended.
+    A key that stops the robot is returned before the process is suspended.
     """
     while (data := suspension.read()) != b"":
         if data is None:
@@ -170,7 +170,7 @@ def keys(suspension: Suspension) -> Iterator[str]:
             suspension.suspend()
             continue
         text = data.decode("utf-8", "replace")
-        # An arrow or a function key is an escape and letters that mean nothing here.
+        # Arrow and function keys are an escape sequence whose letters must be ignored.
         yield from ("k",) if text.startswith("\x1b") else "".join(text.split("\n"))
 
 
@@ -181,7 +181,7 @@ def _message(driver: Driver, kind: str) -> dict[str, Any]:
 
 
 def _end(driver: Driver, kind: str) -> dict[str, Any] | None:
-    """What stops a robot that moves; one that stands may be driven by others."""
+    """A stop message for a moving robot; a stationary robot may be driven by others."""
     return _message(Driver(0.0, 0.0), kind) if any(driver.move) else None
 
 

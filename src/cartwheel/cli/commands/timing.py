@@ -1,4 +1,4 @@
-"""Holding, stepping and setting the time of a running simulation."""
+"""Pauses, steps and sets the speed of a running simulation."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from cartwheel.control.registry import VARIABLE, Running
 
 
 def ask(sim: int | None, request: str, **parameters: Any) -> None:
-    """Asks for one thing and prints the time and the state after it."""
+    """Sends a request and prints the resulting time and state."""
     with connect(sim) as client:
         answer = client.request(request, **parameters)
     say(f"{answer['state']} at {answer['time']:.3f} s")
 
 
 def print_status(sim: int | None) -> None:
-    """What runs; all of it where several do and none is named."""
+    """Prints the simulation's state; of all simulations if several run and none is selected."""
     known = running()
     if sim is None and len(known) > 1 and VARIABLE not in os.environ:
         for entry in known:

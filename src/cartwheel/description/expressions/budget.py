@@ -1,4 +1,4 @@
-"""Bounds on what an expansion may use."""
+"""Limits on the resources of an expansion."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from cartwheel.codes.files import EXPANSION_TOO_LARGE, EXPRESSION_INVALID
 from cartwheel.errors import DescriptionError
 
 MAX_CHARACTERS = 1_000_000
-"""Of one text, and of all texts in one value."""
+"""Maximum length of a string, and of all strings in one value."""
 MAX_ITEMS = 100_000
-"""Of one list, dict or range, those in it included."""
+"""Maximum items in a list, dict or range, including nested items."""
 MAX_BITS = 4096
-"""Of one integer."""
+"""Maximum size of an integer."""
 MAX_SECONDS = 10.0
-"""CPU time of one expansion. The largest public robots take less than two."""
+"""CPU time of an expansion. The largest public robots take less than two seconds."""
 MAX_OPERATIONS = 20_000_000
 MAX_TOTAL = 100_000_000
-"""Characters that one expansion makes. Each may take four bytes."""
+"""Maximum characters created by an expansion; each may take four bytes."""
 ITEM = 32
-"""Characters that stand for the memory of an item of a list: its place and a small value."""
+"""Memory of a list item in characters: its slot and a small value."""
 _SMALL_BITS = 64
 
 _LOOK = 1000
-"""Operations between two looks at the clock, which costs as much as one of them."""
+"""Operations between two looks at the clock, which costs as much as one operation."""
 
 
 class ExpressionError(DescriptionError):
@@ -38,7 +38,7 @@ class TooLargeError(ExpressionError):
 
     Args:
         message: One sentence.
-        kind: What exceeds it, for programs.
+        kind: What exceeds the limit, for programs.
         most: The limit.
     """
 
@@ -49,10 +49,10 @@ class TooLargeError(ExpressionError):
 
 
 class Budget:
-    """What one expansion may still use.
+    """The remaining resources of an expansion.
 
     Args:
-        seconds: CPU time of the thread that expands. Other programs do not shorten it.
+        seconds: CPU time of the expanding thread; other programs do not reduce it.
     """
 
     def __init__(self, seconds: float = MAX_SECONDS) -> None:
@@ -76,7 +76,7 @@ class Budget:
             self.look()
 
     def look(self) -> None:
-        """Looks at the clock.
+        """Checks the CPU time.
 
         Raises:
             ExpressionError: As `spend`.
@@ -95,10 +95,10 @@ class Budget:
             )
 
     def make(self, size: int) -> None:
-        """Counts characters that were made.
+        """Counts characters that were created.
 
         Raises:
-            ExpressionError: They are too many in all.
+            ExpressionError: The total is too large.
         """
         self._total += size
         if self._total > MAX_TOTAL:
@@ -107,10 +107,10 @@ class Budget:
             )
 
     def text(self, length: int) -> None:
-        """Counts a text before it is made.
+        """Counts a string before it is created.
 
         Raises:
-            ExpressionError: It is too long.
+            ExpressionError: The string is too long.
         """
         if length > MAX_CHARACTERS:
             raise TooLargeError(
@@ -119,10 +119,10 @@ class Budget:
         self.make(length)
 
     def items(self, count: int) -> None:
-        """Counts the items of a list, dict or range before it is made.
+        """Counts the items of a list, dict or range before it is created.
 
         Raises:
-            ExpressionError: They are too many.
+            ExpressionError: There are too many items.
         """
         room(count)
         self.make(ITEM * count)
@@ -131,20 +131,20 @@ class Budget:
         """Counts items before they are added to a list, dict or set.
 
         Args:
-            count: Items in it.
-            more: Items that come.
+            count: Current number of items.
+            more: Number of additional items.
 
         Raises:
-            ExpressionError: They are too many.
+            ExpressionError: There are too many items.
         """
         room(count + more)
         self.make(ITEM * more)
 
     def result(self, value: Any) -> Any:
-        """Counts a value that was made; its own size, not that of what is in it.
+        """Counts the size of a new value, without nested values.
 
         Raises:
-            ExpressionError: It is too large.
+            ExpressionError: The value is too large.
         """
         kind = type(value)
         if kind is float or kind is bool:
@@ -161,15 +161,15 @@ class Budget:
         return value
 
     def weigh(self, value: Any) -> int:
-        """Counts all that is in a value, each part as often as it is in there.
+        """Counts everything in a value; parts that occur several times count several times.
 
-        A list that holds one list a thousand times is small; its text is not.
+        A list that contains the same list a thousand times is small, but its text is not.
 
         Returns:
-            The characters of its texts.
+            The total number of characters in its strings.
 
         Raises:
-            ExpressionError: It is too much.
+            ExpressionError: The value is too large.
         """
         if isinstance(value, str):
             return len(value)
@@ -204,27 +204,27 @@ class Budget:
                 left.extend(dict.keys(each))
                 left.extend(dict.values(each))
             else:
-                # Not a subclass's own iteration, which makes wrappers.
+                # Not a subclass's own iteration, which creates wrappers.
                 left.extend(list.__iter__(each) if isinstance(each, list) else each)
         self.spend(count // 8)
         return characters
 
 
 def room(count: int) -> None:
-    """Refuses lists with too many items.
+    """Rejects lists with too many items.
 
     Raises:
-        ExpressionError: They are too many.
+        ExpressionError: There are too many items.
     """
     if count > MAX_ITEMS:
         raise TooLargeError(f"the list has more than {MAX_ITEMS:,} items", "list", MAX_ITEMS)
 
 
 def bits(count: int) -> None:
-    """Refuses integers with too many bits, before they are made.
+    """Rejects integers with too many bits before they are created.
 
     Raises:
-        ExpressionError: They are too many.
+        ExpressionError: There are too many bits.
     """
     if count > MAX_BITS:
         raise TooLargeError(f"the number has more than {MAX_BITS} bits", "number", MAX_BITS)

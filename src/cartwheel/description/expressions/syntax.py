@@ -1,4 +1,4 @@
-"""From an expression's text to closures, one for each node of its syntax tree."""
+"""Compiles an expression to closures, one for each node of its syntax tree."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ from cartwheel.description.expressions.operations import (
 )
 
 MAX_LENGTH = 5000
-"""Characters of an expression. The longest in public robots has some 300."""
+"""Maximum length of an expression. The longest in public robots has some 300 characters."""
 _KEPT_LENGTH = 300
-"""Characters of an expression whose closure is kept; that of a longest one has a megabyte."""
+"""Maximum length of an expression whose closure is cached; the closure of the longest takes 1 MB.
+"""
 MAX_NESTING = 100
 MAX_CALLS = 30
-"""Lambdas that call each other."""
+"""Maximum depth of nested lambda calls."""
 
 _lock = threading.Lock()
 
@@ -39,7 +40,7 @@ class Evaluator:
     """Evaluates expressions for one expansion.
 
     Args:
-        budget: What they may use together.
+        budget: The shared limits.
         namespace: Type of xacro's tables, whose entries are read as attributes.
         dotted: Type of the dicts whose values are read as attributes.
     """
@@ -55,13 +56,13 @@ class Evaluator:
         """The value of an expression.
 
         Args:
-            text: Of the expression, in Python's syntax.
-            names: The values of the names in it.
+            text: The expression, in Python's syntax.
+            names: The values of its names.
 
         Raises:
-            ExpressionError: It is not allowed, or its value is too large.
-            SyntaxError: It is no expression.
-            Exception: What Python raises for it, as ZeroDivisionError or TypeError.
+            ExpressionError: The expression is not allowed, or its value is too large.
+            SyntaxError: The text is not an expression.
+            Exception: Errors of the operation itself, such as ZeroDivisionError or TypeError.
         """
         self.budget.spend()
         value = compiled(text.strip())(_Scope(self, names, {}))
@@ -70,7 +71,7 @@ class Evaluator:
         return value
 
     def call(self, called: Any, args: list[Any], named: dict[str, Any]) -> Any:
-        """Calls what an expression may call."""
+        """Calls an allowed function."""
         self.budget.spend()
         found = CLASSES.get(called) if isinstance(called, type) else called
         if isinstance(found, Function):
@@ -109,7 +110,7 @@ class Evaluator:
         )
 
     def attribute(self, value: Any, name: str) -> Any:
-        """An entry of a namespace, or of a dict that YAML made."""
+        """An entry of a namespace, or of a dict from YAML."""
         if name.startswith("_"):
             raise not_allowed(f'"{name}"')
         if isinstance(value, self.namespace):
@@ -125,7 +126,7 @@ class Evaluator:
 
 
 def not_allowed(part: str, *, hint: str | None = None) -> ExpressionError:
-    """The error for a part that no expression may have; without its quotes it is a value."""
+    """The error for a part that is not allowed; the value omits the quotes in the message."""
     return ExpressionError(
         f"{part} is not allowed in an expression", hint=hint, values={"refused": part.strip('"')}
     )
@@ -136,7 +137,7 @@ class _Scope:
     evaluator: Evaluator
     names: Mapping[str, Any]
     local: dict[str, Any]
-    """Names of comprehensions and lambdas."""
+    """Names in comprehensions and lambdas."""
 
     def inner(self) -> _Scope:
         return _Scope(self.evaluator, self.names, dict(self.local))
@@ -154,8 +155,8 @@ def compiled(text: str) -> _Code:
     """The closure of an expression.
 
     Raises:
-        ExpressionError: It is not allowed.
-        SyntaxError: It is no expression.
+        ExpressionError: The expression is not allowed.
+        SyntaxError: The text is not an expression.
     """
     return _kept(text) if len(text) <= _KEPT_LENGTH else _compiled(text)
 
@@ -172,7 +173,8 @@ def _compiled(text: str) -> _Code:
             values={"kind": "expression", "most": MAX_LENGTH},
         )
     try:
-        # Python warns on the terminal of what it finds odd. The filters are the process's.
+        # Python prints warnings about unusual syntax. The warning filters are shared by the
+        # process.
         with _lock, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             tree = compile(text, "<expression>", "eval", ast.PyCF_ONLY_AST, dont_inherit=True)
@@ -438,7 +440,7 @@ def _lambda(node: ast.Lambda, depth: int) -> _Code:
 def _loop(
     loops: list[ast.comprehension], depth: int, visit: Callable[[_Scope, list[Any]], None]
 ) -> Callable[[_Scope], list[Any]]:
-    """Runs `visit` for each round of nested loops; it appends to the list that is returned."""
+    """Runs `visit` in each iteration of nested loops; it appends to the returned list."""
     for loop in loops:
         if loop.is_async:
             raise not_allowed("async")
@@ -539,4 +541,4 @@ _NODES: dict[type[ast.expr], Callable[[Any, int], _Code]] = {
     ast.SetComp: _set_comprehension,
     ast.DictComp: _dict_comprehension,
 }
-"""All that an expression may consist of."""
+"""All syntax that an expression may contain."""

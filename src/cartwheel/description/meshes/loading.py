@@ -1,11 +1,11 @@
-"""Mesh files into triangles, the way rviz and Gazebo place them.
+"""Loads mesh files as triangles, placed as in rviz and Gazebo.
 
-STL, OBJ and DAE are read here, since they are what robots use and must load within the first
-second; PLY and glTF go through trimesh, which takes a tenth of a second to import alone.
+STL, OBJ and DAE, which most robots use, are read here, because they must load within the first
+second. PLY and glTF are read with trimesh, whose import alone takes 0.1 s.
 
-Axes are taken as the file states its coordinates. COLLADA's ``<up_axis>`` is not applied, nor is
-glTF's y-up turned: rviz and Gazebo apply neither, and every published robot's ``rpy`` is written
-to look right there. COLLADA's ``<unit>`` is applied, as both do.
+Coordinate axes are used as written in the file. COLLADA's ``<up_axis>`` and glTF's y-up axis are
+ignored, because rviz and Gazebo ignore both, and published robots have matching ``rpy`` values.
+COLLADA's ``<unit>`` is applied, as in both programs.
 """
 
 from __future__ import annotations
@@ -49,18 +49,18 @@ class _Loaded:
 
 
 def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submesh, ...]:
-    """The mesh's submeshes, scaled, in the frame of the visual or collision that shows it.
+    """The mesh's submeshes, scaled, in the frame of the visual or collision.
 
-    Files are read once for each state on disk; the arrays are shared and read-only.
+    Files are cached by modification time and size; the arrays are shared and read-only.
 
     Args:
-        mesh: The file, its scale, and which submesh of it.
-        origin: The element that asks for it, for the error.
+        mesh: The file, its scale, and the selected submesh.
+        origin: The element that refers to the file, for the error.
 
     Raises:
-        MeshError: the file is missing, empty, damaged or of an unknown format.
+        MeshError: The file is missing, empty, damaged or in an unsupported format.
     """
-    # Below and above these a single-precision coordinate is nothing, or without an end.
+    # Outside this range, single-precision coordinates under- or overflow.
     if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
         raise MeshError(
             mesh.path,
@@ -75,16 +75,16 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
 
 
 def mesh_notes(mesh: model.Mesh) -> tuple[str, ...]:
-    """What of the file is not shown as written: a missing texture, a part that is no surface.
+    """Parts of the file that are not shown as written: missing textures, parts without a surface.
 
     Raises:
-        MeshError: as `load_mesh`.
+        MeshError: As `load_mesh`.
     """
     return _loaded(mesh.path, None).notes
 
 
 def convex_hull_input(submeshes: Sequence[Submesh]) -> tuple[Floats, Ints]:
-    """All submeshes as one surface, equal vertices merged: what physics makes its hull of.
+    """All submeshes as one surface with merged vertices, as input for the convex hull.
 
     Returns:
         Vertices (n, 3) in metres and faces (m, 3).
@@ -101,15 +101,15 @@ def convex_hull_input(submeshes: Sequence[Submesh]) -> tuple[Floats, Ints]:
 
 
 def standing_parts(mesh: model.Mesh) -> Standing:
-    """What a mesh collides with where it stands still; see `standing`.
+    """Collision geometry of a fixed mesh; see `standing`.
 
     Raises:
-        MeshError: as `load_mesh`.
+        MeshError: As `load_mesh`.
     """
     return _standing(mesh, mesh.path.stat().st_mtime_ns)
 
 
-@lru_cache(maxsize=1024)  # a furnished house has a hundred, and each spawn asks for all
+@lru_cache(maxsize=1024)  # a furnished house has a hundred meshes, and each spawn needs them all
 def _standing(mesh: model.Mesh, _mtime_ns: int) -> Standing:
     return standing_pieces(*convex_hull_input(load_mesh(mesh)))
 
@@ -117,7 +117,7 @@ def _standing(mesh: model.Mesh, _mtime_ns: int) -> Standing:
 def _select(
     mesh: model.Mesh, submeshes: tuple[Submesh, ...], origin: Origin | None
 ) -> tuple[Submesh, ...]:
-    # Gazebo goes by the node's name.
+    # Gazebo uses the node's name.
     chosen = tuple(part for part in submeshes if part.name == mesh.submesh) or tuple(
         part for part in submeshes if part.geometry == mesh.submesh
     )
@@ -161,7 +161,7 @@ def _loaded(path: Path, origin: Origin | None) -> _Loaded:
 
 @lru_cache(maxsize=256)
 def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
-    """The file as it is; time and size are the cache's, so that an edited file is read anew."""
+    """Loads a file; time and size are cache keys, so that a changed file is loaded again."""
     kind = path.suffix.lower().lstrip(".")
     reader = _READERS.get(kind)
     if reader is None:
@@ -186,7 +186,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
         submeshes = reader(path, read_regular(path, MOST_BYTES), notes)
     except (OSError, MemoryError):
         raise
-    except Exception as error:  # a damaged file may fail anywhere in its reader
+    except Exception as error:  # a damaged file may cause any error in its reader
         raise MeshError(path, str(error) or type(error).__name__) from error
     if not submeshes:
         raise MeshError(path, "has no triangles")

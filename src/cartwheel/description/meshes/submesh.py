@@ -1,4 +1,4 @@
-"""One coloured piece of a mesh, and the error of a mesh file that gives none."""
+"""A coloured part of a mesh, and the error for unusable mesh files."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Floats = NDArray[np.float32]
 Ints = NDArray[np.int32]
 
 MOST_BYTES = 1 << 28
-"""Of a file."""
+"""Maximum file size."""
 MOST_TRIANGLES = 5_000_000
-"""Of a file, with all its instances; a scanned building has two million."""
+"""Maximum triangles in a file, with all instances; a scanned building has two million."""
 
 
 class MeshError(DescriptionError):
@@ -31,11 +31,11 @@ class MeshError(DescriptionError):
     Args:
         path: The file.
         reason: What is wrong with it, without its name.
-        code: Where it is not `MESH_UNREADABLE`.
-        origin: The element that names it.
+        code: Replaces `MESH_UNREADABLE`.
+        origin: The element that refers to the file.
         hint: The likely fix.
-        meant: The submesh that was likely meant, where one is unknown.
-        values: What else the reason names, for programs.
+        meant: The suggested submesh, if the name is unknown.
+        values: Other names and numbers in the reason, for programs.
     """
 
     code = MESH_UNREADABLE
@@ -65,24 +65,24 @@ class MeshError(DescriptionError):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Submesh:
-    """Triangles of one material, in the frame of the visual or collision; arrays are read-only."""
+    """Triangles with one material, in the frame of the visual or collision. Read-only arrays."""
 
     name: str
-    """The node's; the geometry's where it has none."""
+    """Name of the node, or of the geometry if the node has none."""
     vertices: Floats
     """(n, 3), metres."""
     faces: Ints
     """(m, 3), counter-clockwise seen from outside."""
     normals: Floats | None = None
-    """(n, 3), unit length; None where the file states none."""
+    """(n, 3), unit length; None if the file contains none."""
     uv: Floats | None = None
     """(n, 2), v up: (0, 0) is the image's lower left corner."""
     rgba: Rgba | None = None
-    """Diffuse colour; None where the file states none."""
+    """Diffuse colour; None if the file states none."""
     texture: Path | bytes | None = None
-    """An image file, or one's contents."""
+    """An image file, or its contents."""
     geometry: str = ""
-    """What the file calls the geometry, which a ``<submesh>`` may name as well."""
+    """The geometry's name in the file, which a ``<submesh>`` may also use."""
 
 
 def build_submesh(
@@ -95,10 +95,10 @@ def build_submesh(
     rgba: Rgba | None = None,
     texture: Path | bytes | None = None,
 ) -> Submesh | None:
-    """A checked submesh without its degenerate triangles; None where no triangle is left.
+    """A validated submesh without degenerate triangles; None if no triangle remains.
 
     Raises:
-        ValueError: a vertex is not finite, or a face names a vertex that does not exist.
+        ValueError: A vertex is not finite, or a face refers to a vertex that does not exist.
     """
     points = np.ascontiguousarray(vertices, dtype=np.float32).reshape(-1, 3)
     triangles = np.ascontiguousarray(faces, dtype=np.int64).reshape(-1, 3)
@@ -113,7 +113,7 @@ def build_submesh(
         triangles = triangles[proper]
         if not len(triangles):
             return None
-        # A degenerate triangle's corners often have no normal either: they go with it.
+        # The vertices of degenerate triangles often have no normal: they are removed as well.
         used, compact = np.unique(triangles, return_inverse=True)
         triangles, points = compact.reshape(-1, 3), points[used]
         directions = directions[used] if directions is not None else None
@@ -123,7 +123,7 @@ def build_submesh(
     if directions is not None:
         lengths = np.linalg.norm(directions, axis=1, keepdims=True)
         if not (np.isfinite(lengths).all() and (lengths > 1e-9).all()):
-            directions = None  # the renderer's own are better than half of them
+            directions = None  # the renderer's normals are better than incomplete ones
         else:
             directions = (directions / lengths).astype(np.float32)
     return _frozen(
@@ -140,7 +140,7 @@ def build_submesh(
 
 
 def scale_submesh(submesh: Submesh, scale: tuple[float, float, float]) -> Submesh:
-    """The submesh scaled along its axes; a mirroring scale turns the faces, so outside stays."""
+    """The submesh scaled along its axes; mirroring also reverses the faces to keep the outside."""
     if scale == (1.0, 1.0, 1.0):
         return submesh
     factors = np.asarray(scale, dtype=np.float32)
@@ -160,12 +160,13 @@ def scale_submesh(submesh: Submesh, scale: tuple[float, float, float]) -> Submes
 
 
 def unique_rows(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Indices of the distinct rows, and for each row the number of its distinct one.
+    """Indices of the distinct rows, and for each row the number of its distinct row.
 
-    Rows are told apart by a 64-bit hash, as sorting numbers takes a tenth of the time of sorting
-    rows; a collision, which no real mesh has shown, falls back to the rows themselves.
+    Rows are compared by a 64-bit hash, because sorting numbers takes a tenth of the time of sorting
+    rows. In the case of a collision, which no real mesh has shown, the rows themselves are
+    compared.
     """
-    rows = np.ascontiguousarray(points) + np.float32(0)  # -0.0 and 0.0 are one place
+    rows = np.ascontiguousarray(points) + np.float32(0)  # -0.0 and 0.0 are equal
     bits = rows.view(np.uint32).astype(np.uint64)
     key = np.zeros(len(rows), dtype=np.uint64)
     for column in bits.T:
@@ -179,13 +180,13 @@ def unique_rows(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 def _has_area(points: Floats, triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which triangles have three corners in three places that are not on a line."""
+    """Which triangles have three different corners that are not on a line."""
     a, b, c = (points[triangles[:, i]].astype(np.float64) for i in range(3))
     ab, ac = b - a, c - a
     doubled = np.linalg.norm(np.cross(ab, ac), axis=1)
     longest = np.maximum(np.einsum("ij,ij->i", ab, ab), np.einsum("ij,ij->i", ac, ac))
-    # Relative to the edges, as a mesh in millimetres is scaled only later; single precision
-    # resolves an angle no finer than this.
+    # Relative to the edges, because a mesh in millimetres is scaled later; single precision does
+    # not resolve smaller angles.
     return np.asarray((longest > 0) & (doubled > 1e-7 * longest))
 
 
@@ -199,7 +200,7 @@ def _per_vertex(values: NDArray[Any] | None, count: int, width: int) -> Floats |
 
 
 def _frozen(submesh: Submesh) -> Submesh:
-    """Cached arrays are shared between robots: nobody may write to them."""
+    """Makes cached arrays read-only, because several robots share them."""
     for array in (submesh.vertices, submesh.faces, submesh.normals, submesh.uv):
         if array is not None:
             array.flags.writeable = False

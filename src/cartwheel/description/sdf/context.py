@@ -1,4 +1,4 @@
-"""What all readers of one SDF document share: its version, its files, its diagnostics."""
+"""Shared state of the readers of an SDF document: version, files, diagnostics."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 Version = tuple[int, int]
 OLDEST: Version = (1, 0)
 MODERN: Version = (1, 3)
-"""What is older is converted; see `oldest`."""
+"""Older versions are converted; see `oldest`."""
 NEWEST: Version = (1, 12)
 _NOTATIONS = ("euler_rpy", "quat_xyzw")
 MAX_INCLUDES = 16
-"""Deeper includes are a model that includes itself by a detour."""
+"""Maximum depth of includes: deeper ones are a model that includes itself indirectly."""
 
 
 @dataclass(slots=True)
 class Context:
-    """Shared by the readers of one document; included documents share its diagnostics."""
+    """Shared state of the readers; included documents share its diagnostics."""
 
     packages: Packages
     version: Version
     diagnostics: list[Diagnostic] = field(default_factory=list)
     including: tuple[Path, ...] = ()
-    """The files whose ``<include>`` led here, outermost first."""
+    """The chain of included files, outermost first."""
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic."""
@@ -45,7 +45,7 @@ class Context:
 
 
 def not_simulated(message: str, node: Node) -> Diagnostic:
-    """The warning for an element that is valid, but not simulated."""
+    """The warning for a valid element that is not simulated."""
     return codes.NOT_SIMULATED.diagnostic(
         message, origin=node.origin, severity="warning", values={"tag": node.tag}
     )
@@ -55,7 +55,7 @@ def read_version(root: Node) -> Version:
     """The version of an ``<sdf>`` root.
 
     Raises:
-        DescriptionError: It is missing, malformed or too old.
+        DescriptionError: The version is missing, malformed or too old.
     """
     text = root.get("version") or ""
     match = re.fullmatch(r"\s*(\d+)\.(\d+)\s*", text)
@@ -77,7 +77,7 @@ def read_version(root: Node) -> Version:
 
 
 def read_pose(node: Node | None) -> Pose:
-    """A ``<pose>``: ``x y z roll pitch yaw``, in degrees or as a quaternion where it says so."""
+    """A ``<pose>``: ``x y z roll pitch yaw``, in degrees or as a quaternion if specified."""
     if node is None:
         return Pose()
     notation = (node.get("rotation_format") or "euler_rpy").strip()
@@ -105,7 +105,7 @@ def read_pose(node: Node | None) -> Pose:
     if len(words) == 6:
         values = node.vector(6)
     else:
-        # Gazebo Classic reads what is there.
+        # Gazebo Classic reads the values that are present.
         values = (*node.vector(len(words)), 0.0, 0.0, 0.0, 0.0, 0.0)[:6]
         incomplete = codes.VALUE_IGNORED.diagnostic(
             f"the pose has {len(words)} of 6 numbers, so 0 is used for the others",
@@ -120,7 +120,7 @@ def read_pose(node: Node | None) -> Pose:
 
 
 def reference_of(pose: Node | None) -> str:
-    """The frame that a ``<pose>`` is relative to: 1.7's ``relative_to``, before that ``frame``."""
+    """The frame that a ``<pose>`` is relative to: ``relative_to`` since 1.7, ``frame`` before."""
     if pose is None:
         return ""
     return (pose.get("relative_to") or pose.get("frame") or "").strip()
@@ -138,7 +138,7 @@ def read_rgba(node: Node) -> Rgba:
 
 
 def require_name(node: Node) -> str:
-    """The name of an element, which must neither be empty nor one that SDF keeps for itself."""
+    """The name of an element, which must be neither empty nor reserved in SDF."""
     name = node.require("name").strip()
     if name.startswith("__") and name.endswith("__"):
         raise node.fail(
@@ -151,7 +151,7 @@ def require_name(node: Node) -> str:
 
 
 def positive(node: Node, what: str) -> float:
-    """The text as a number above zero that a length can be."""
+    """The text as a positive number within the limits for lengths."""
     value = node.number()
     if value <= 0:
         raise node.fail(f"{what} must be above 0 (got {node.text})")
@@ -161,7 +161,7 @@ def positive(node: Node, what: str) -> float:
 
 
 def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
-    """Refuses a name that occurs twice; the hint names the first place."""
+    """Rejects duplicate names; the hint contains the location of the first."""
     seen: dict[str, Origin] = {}
     for name, origin in names:
         if name in seen:

@@ -1,7 +1,8 @@
-"""The frames of a model or world: who is placed relative to whom, resolved to poses.
+"""Resolves the frames in a model or world to poses.
 
-SDF lets links, joints, frames and nested models state their pose relative to any other of
-them; here each name is followed to the model's own frame, and to the link that carries it.
+In SDF, the poses of links, joints, frames and nested models can be relative to any other of them.
+This module resolves each name to a pose in the model's frame, and to the link that it is attached
+to.
 """
 
 from __future__ import annotations
@@ -23,16 +24,16 @@ class _Frame:
     relative_to: str
     """Empty for the scope's own frame."""
     attached_to: str
-    """The frame it moves with; empty for itself, as a link does."""
+    """The frame that it moves with; empty for itself, as for a link."""
     origin: Origin
 
 
 class Frames:
-    """The named frames of one scope.
+    """The named frames in one scope.
 
     Args:
-        kind: What the scope is, "model" or "world", for errors.
-        name: Its name.
+        kind: Type of the scope, "model" or "world", for errors.
+        name: Name of the scope.
     """
 
     def __init__(self, kind: str, name: str) -> None:
@@ -54,10 +55,10 @@ class Frames:
         attached_to: str = "",
         origin: Origin,
     ) -> None:
-        """A link, joint or frame.
+        """Adds a link, joint or frame.
 
         Raises:
-            DescriptionError: another frame has the name.
+            DescriptionError: The name is already in use.
         """
         if name in self._frames:
             first = self._frames[name]
@@ -73,31 +74,31 @@ class Frames:
     def add_scope(
         self, name: str, frames: Frames, pose: Pose, relative_to: str, origin: Origin
     ) -> None:
-        """A nested model, placed in this scope."""
+        """Adds a nested model."""
         self.add("model", name, pose, relative_to=relative_to, origin=origin)
         self._scopes[name] = frames
 
     def pose(self, name: str, origin: Origin) -> Pose:
-        """The frame within this scope.
+        """The pose of a frame in this scope.
 
         Args:
             name: A frame, ``nested::frame``, or empty for the scope itself.
-            origin: Who asks, for the error.
+            origin: Origin of the reference, for the error.
 
         Raises:
-            DescriptionError: there is no such frame, or it is relative to itself.
+            DescriptionError: The frame does not exist, or is relative to itself.
         """
         return self._pose(name, origin, [])
 
     def placed(self, pose: Pose, relative_to: str, origin: Origin) -> Pose:
-        """A pose stated relative to a frame, within this scope."""
+        """Converts a pose relative to a frame to a pose in this scope."""
         return self.pose(relative_to, origin) @ pose if relative_to else pose
 
     def link_of(self, name: str, origin: Origin) -> str:
-        """The link that carries a frame, with ``nested::`` before it where it is nested.
+        """The link that a frame is attached to, with ``nested::`` as a prefix if it is nested.
 
         Raises:
-            DescriptionError: there is no such frame, or it is attached to itself.
+            DescriptionError: The frame does not exist, or is attached to itself.
         """
         seen: list[str] = []
         while True:
@@ -129,7 +130,7 @@ class Frames:
             name = frame.attached_to
 
     def stays(self, name: str) -> bool:
-        """Whether a frame of a world is attached to nothing but the world."""
+        """Whether a frame in a world is attached only to the world."""
         seen: set[str] = set()
         while name not in ("", WORLD, self.name):
             frame = self._frames.get(name)
@@ -140,19 +141,19 @@ class Frames:
         return True
 
     def has(self, name: str) -> bool:
-        """Whether a name may be asked for; ``nested::__model__`` is a nested model's frame."""
+        """Whether a name can be resolved; ``nested::__model__`` is a nested model's frame."""
         outer, inner = self._split(name)
         if inner is not None:
             return self._scopes[outer].has(inner)
         return name in self._frames or name == MODEL
 
     def kind_of(self, name: str) -> str | None:
-        """What a name of this scope stands for: link, joint, frame or model."""
+        """The type of a name in this scope: link, joint, frame or model."""
         frame = self._frames.get(name)
         return frame.kind if frame is not None else None
 
     def names(self) -> list[str]:
-        """All names that may be asked for."""
+        """All names that can be resolved."""
         nested = [f"{k}::{n}" for k, scope in self._scopes.items() for n in scope.names()]
         return [*self._frames, *nested]
 
@@ -160,7 +161,7 @@ class Frames:
         if name in ("", MODEL) or (name == WORLD and self.kind == WORLD):
             return Pose()
         if name == self.name and name not in self._frames:
-            return Pose()  # the scope by its own name, which Gazebo puts up with
+            return Pose()  # the scope's own name, which Gazebo accepts
         outer, inner = self._split(name)
         if inner is not None:
             scope = self._scopes[outer]
@@ -182,7 +183,7 @@ class Frames:
         return result
 
     def _split(self, name: str) -> tuple[str, str | None]:
-        """A scoped name as nested model and the name in it; names with ``::`` may be plain too."""
+        """A scoped name as nested model and inner name; plain names may also contain ``::``."""
         if name in self._frames or "::" not in name:
             return name, None
         parts = name.split("::")

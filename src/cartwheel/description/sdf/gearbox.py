@@ -1,4 +1,4 @@
-"""SDF's gearbox joints: two hinges of one reference link whose turning is geared together."""
+"""SDF's gearbox joints: two hinges on one reference link with coupled rotations."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ from cartwheel.geometry import Quat, rotate
 def mesh_gears(
     nodes: list[tuple[Node, str]], joints: list[Joint], ctx: Context, frames: Frames
 ) -> list[Joint]:
-    """The joints, with those that gearboxes drive following the others.
+    """The joints with mimics for gearboxes.
 
-    A gearbox holds theta2 = -ratio theta1, where theta1 turns the parent and theta2 the child
-    against the reference body, each about the gearbox's own axis. Both hang on it by a hinge;
-    the second hinge comes to mimic the first. Source: SDF, ``<gearbox_ratio>``.
+    A gearbox constrains theta2 = -ratio theta1, where theta1 rotates the parent and theta2 the
+    child relative to the reference body, each about the gearbox's axis. Both are connected to the
+    reference body by a hinge, and the second hinge mimics the first. Source: SDF,
+    ``<gearbox_ratio>``.
 
     Args:
-        nodes: The gearbox joints, and what their frames are called.
-        joints: All others of the model.
-        ctx: The document's; takes a warning for each gearbox without effect.
-        frames: The model's.
+        nodes: The gearbox joints, with the names of their frames.
+        joints: All other joints in the model.
+        ctx: Shared state; receives a warning for each gearbox without effect.
+        frames: The model's frames.
     """
     for node, frame in nodes:
         for ignored in ("axis", "axis2", "physics", "pose", "sensor"):
@@ -78,7 +79,7 @@ def mesh_gears(
 
 
 def _hinge(joints: list[Joint], link: str, reference: str) -> tuple[Joint, float] | None:
-    """The hinge between a link and the reference, and 1 where it turns the link, else -1."""
+    """The hinge between a link and the reference, and 1 if it rotates the link, otherwise -1."""
     for joint in joints:
         if joint.type in ("revolute", "continuous"):
             if (joint.parent, joint.child) == (reference, link):
@@ -89,7 +90,7 @@ def _hinge(joints: list[Joint], link: str, reference: str) -> tuple[Joint, float
 
 
 def _along(node: Node, tag: str, joint: Joint, frames: Frames, orientation: Quat) -> float:
-    """Whether a hinge turns in the sense of the gearbox's axis: 1 or -1."""
+    """The sign of a hinge relative to the gearbox's axis: 1 or -1."""
     stated = node.find(f"{tag}/xyz") or node.find("axis/xyz")
     own = rotate(orientation, stated.vec3() if stated is not None else (0.0, 0.0, 1.0))
     child = frames.pose(joint.child, node.origin)

@@ -1,4 +1,4 @@
-"""SDF elements that have no effect here and lose nothing: a note, not a warning."""
+"""SDF elements without effect here that need a note instead of a warning."""
 
 _ENGINE = "it configures a solver that Cartwheel does not use"
 _OTHER_ENGINE = "it is for a different physics engine"
@@ -101,4 +101,4 @@ HARMLESS: dict[tuple[str, str], str] = {
         )
     },
 }
-"""By an element's tag and its child's, or its attribute's name after an ``@``."""
+"""By an element's tag and its child's tag, or its attribute's name after an ``@``."""

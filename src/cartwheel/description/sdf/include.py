@@ -1,4 +1,4 @@
-"""SDF's ``<include>``: finds the model's file, and what the includer changes about it."""
+"""SDF's ``<include>``: finds the model's file, and applies the includer's changes."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from cartwheel.errors import DescriptionError, Origin
 
 @dataclass(frozen=True, slots=True)
 class Included:
-    """The included element and what its includer says of it."""
+    """The included element and the includer's changes."""
 
     node: Node
     """A ``<model>``, a ``<light>``, or the ``<robot>`` of a URDF."""
     root: Node
-    """Of the included file."""
+    """Root of the included file."""
     ctx: Context
     origin: Origin
     """The ``<include>``."""
@@ -37,15 +37,15 @@ class Included:
 
 
 class NotThereError(DescriptionError):
-    """What an ``<include>`` names is not on this machine, or is nothing that is simulated."""
+    """The target of an ``<include>`` is missing on this machine, or is not supported."""
 
 
 def open_include(node: Node, ctx: Context) -> Included:
-    """Reads the file that an ``<include>`` names.
+    """Reads the file of an ``<include>``.
 
     Raises:
-        NotThereError: it is missing, or an actor.
-        DescriptionError: it includes itself, or holds nothing to include.
+        NotThereError: The file is missing, or contains an actor.
+        DescriptionError: The file includes itself, or contains nothing to include.
     """
     uri = node.child("uri")
     if uri is None:
@@ -84,7 +84,7 @@ def open_include(node: Node, ctx: Context) -> Included:
 
 
 def _chosen(root: Node, uri: Node) -> Node:
-    """What an SDF file holds for others."""
+    """The element that an SDF file provides for includes."""
     chosen = root.child("model") or root.child("light")
     if chosen is not None:
         return chosen
@@ -121,7 +121,7 @@ def _file(uri: Node, ctx: Context) -> Path:
         except DescriptionError as error:
             plain = text.removeprefix("file://")
             try:
-                # Gazebo looks for a bare name in its model folders too.
+                # Gazebo also searches its model folders for a bare name.
                 found = ctx.packages.find_model(plain, uri.origin)
             except DescriptionError:
                 raise NotThereError(
@@ -135,7 +135,7 @@ def _file(uri: Node, ctx: Context) -> Path:
 
 
 def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
-    """What Gazebo downloaded before; else a model of the same name is what the user means."""
+    """The model downloaded by Gazebo; otherwise a local model with the same name."""
     with contextlib.suppress(DescriptionError):
         return ctx.packages.resolve(uri.text, uri.origin, what="model", folder=True)
     for spelling in dict.fromkeys((name, name.lower(), name.lower().replace(" ", "_"))):
@@ -154,14 +154,14 @@ def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
 
 
 def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
-    """The file that ``model.config`` names for the newest version that is understood."""
+    """The file that ``model.config`` lists for the newest supported version."""
     config = folder / "model.config"
     best: tuple[float, str] | None = None
     if config.is_file():
         try:
             versions = read_file(config).all("sdf")
         except DescriptionError as error:
-            # What it says is of no use but for the file's name, which has a default.
+            # Only the file's name is needed, and it has a default.
             ctx.report(loss(error, "the model.config is ignored", severity="info"))
             versions = []
         for each in versions:

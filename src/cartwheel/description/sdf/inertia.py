@@ -1,4 +1,4 @@
-"""Mass and inertia: whether a body can have them, and what follows from collisions and density."""
+"""Checks masses and inertias, and computes them from collisions and density."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ WATER = 1000.0
 
 
 def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
-    """A link's inertia, or the nearest to it that a body can have.
+    """A link's inertia, or the nearest physically possible one.
 
     Args:
-        link: Of a model that is not static.
-        rigid: Whether it is fixed to another: then its inertia is but a part of a sum.
-        ctx: Takes the diagnostics.
+        link: A link in a non-static model.
+        rigid: Whether it is fixed to another link, so that its inertia is only part of a sum.
+        ctx: Receives the diagnostics.
 
     Raises:
-        DescriptionError: The mass is not above 0, or no body has anything like this inertia.
+        DescriptionError: The mass is not positive, or the inertia is far from possible.
     """
     i = link.inertial
     if i is None:
@@ -60,7 +60,7 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         )
     diagonal, products = i.diagonal, i.products
     if rigid and not any((*diagonal, *products)):
-        return i  # a point mass: what it is fixed to has the inertia
+        return i  # a point mass: the link that it is fixed to has the inertia
     moments = principal_moments(diagonal, products)
     wrong = impossibility(moments)
     if wrong is None:
@@ -96,7 +96,7 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
 
 
 def weighing(inertial: Inertial, mass: float) -> Inertial:
-    """The same body of another density."""
+    """The same body with a different density."""
     factor = mass / inertial.mass
     return replace(
         inertial,
@@ -116,12 +116,12 @@ def inertial_of(
     """Mass, centre of mass and inertia of solid bodies; overlaps count twice, as in Gazebo.
 
     Args:
-        collisions: The link's.
-        densities: Of each, kg/m³.
+        collisions: The link's collisions.
+        densities: Density of each collision, kg/m³.
         origin: The ``<inertial>``.
 
     Returns:
-        None where no collision has a volume.
+        None if no collision has a volume.
     """
     parts: list[tuple[float, Array, Array]] = []
     for collision, density in zip(collisions, densities, strict=True):
@@ -182,7 +182,7 @@ def _solid(shape: Shape) -> tuple[float, Array, Array]:
         case Capsule(radius=r, length=h):
             cylinder, ball = math.pi * r * r * h, 4 / 3 * math.pi * r**3
             volume = cylinder + ball
-            # Each half ball about its own centroid, 3r/8 beyond the cylinder's end.
+            # Each hemisphere about its own centroid, 3r/8 beyond the cylinder's end.
             side = cylinder * (3 * r * r + h * h) / 12
             side += ball * (0.4 * r * r + h * h / 4 + 3 / 8 * h * r)
             moments = [side / volume, side / volume]
@@ -197,7 +197,7 @@ def _solid(shape: Shape) -> tuple[float, Array, Array]:
 
 
 def _mesh(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[float, Array, Array]:
-    """By the signed tetrahedra between the origin and each triangle of a closed surface."""
+    """Sums signed tetrahedra between the origin and each triangle of a closed surface."""
     corners = vertices.astype(np.float64)[faces]
     volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
     volume = float(volumes.sum())

@@ -1,4 +1,4 @@
-"""SDF's links, joints and frames that a URDF's ``<gazebo>`` puts into the model as they are."""
+"""Adds SDF links, joints and frames in a URDF's ``<gazebo>`` to the model."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from cartwheel.errors import DescriptionError, Diagnostic
 
 INSERTED = ("link", "joint", "frame")
 _VERSION: Version = (1, 7)
-"""As which Gazebo 11 reads what it makes of a URDF."""
+"""The SDF version to which Gazebo 11 converts a URDF."""
 
 
 class _RefusedError(Exception):
-    """An element that does not make sense."""
+    """An invalid element."""
 
     def __init__(self, node: Node, error: DescriptionError) -> None:
         super().__init__(error.message)
@@ -48,16 +48,16 @@ def insert(
     canonical_link: str,
     static: bool,
 ) -> tuple[list[Link], list[Joint], list[Diagnostic]]:
-    """A robot with further parts; an invalid one is left out and reported.
+    """Adds parts to a robot; invalid parts are skipped and reported.
 
     Args:
-        nodes: ``<link>``, ``<joint>`` and ``<frame>`` of SDF, in the robot's frame.
-        links: The robot's, with their poses in its frame.
-        joints: The robot's.
-        packages: Finds the files that they name.
-        name: The robot's.
+        nodes: SDF ``<link>``, ``<joint>`` and ``<frame>`` elements, in the robot's frame.
+        links: The robot's links, with poses in its frame.
+        joints: The robot's joints.
+        packages: Resolves file references.
+        name: The robot's name.
         canonical_link: The link that the robot's frame is attached to.
-        static: Whether nothing of it moves.
+        static: Whether the model is static.
 
     Returns:
         All links, all joints, and the diagnostics.
@@ -72,7 +72,7 @@ def insert(
         try:
             found, linked = _build(kept, links, joints, frames, ctx, static=static)
         except _RefusedError as failed:
-            # What refers to it is to be refused as well, so the rest is read anew.
+            # Elements that refer to it must be rejected too, so the rest is read again.
             kept.remove(failed.node)
             left_out(failed.node, failed.error, refused)
             continue
@@ -114,7 +114,7 @@ def _build(
         with _blaming(node):
             joint = read_joint(node, ctx, frames, frame)
             if joint is not None:
-                # Gazebo merges links of the URDF's own fixed joints alone.
+                # Gazebo merges links only over the URDF's own fixed joints.
                 joint = replace(joint, preserve_fixed=joint.type == "fixed")
                 new_joints.append((node, joint))
                 all_joints.append(joint)

@@ -1,4 +1,4 @@
-"""SDF's ``<joint>``: types, axes in whichever frame they are stated, limits."""
+"""SDF's ``<joint>``: types, axes in any frame, limits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TYPES: dict[str, JointType] = {
     "fixed": "fixed",
     "ball": "ball",
     "universal": "universal",
-    # Two axes at right angles in practice: a steered wheel, a cardan joint.
+    # In practice, two perpendicular axes: a steered wheel, a cardan joint.
     "revolute2": "universal",
     "screw": "screw",
 }
@@ -31,33 +31,33 @@ _UNLIMITED = 1e15
 """SDF's own default limits are ±1e16."""
 _WITHOUT_AXIS = ("fixed", "ball")
 _ALONG = 0.9
-"""Cosine from which on two axes are too near each other for a joint that turns about both."""
+"""Maximum cosine between the two axes of a joint that rotates about both."""
 
 
 class NoLinkError(DescriptionError):
-    """A joint names a link that does not exist."""
+    """A joint refers to a link that does not exist."""
 
     code = robot.JOINT_LINK_UNKNOWN
 
 
 def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> str:
-    """Adds a joint's frame; returns what it is called there.
+    """Adds a joint's frame; returns the frame's name.
 
     Args:
-        frames: Of the model or world, complete but for joints.
+        frames: Frames of the model or world, complete except for joints.
         node: The ``<joint>``.
-        ctx: The document's.
-        joints: The names of all joints: one may stand on the frame of another.
+        ctx: Shared state of the document.
+        joints: The names of all joints: a joint's pose may be relative to another joint.
 
     Raises:
-        NoLinkError: There is no such child.
-        DescriptionError: It is the world.
+        NoLinkError: The child link does not exist.
+        DescriptionError: The child is the world.
     """
     name = require_name(node)
     pose = node.child("pose")
     frame = name
     if frames.kind_of(name) not in (None, "joint"):
-        # Until 1.6 a joint could be called as its link, which many a file still does.
+        # Until 1.6, a joint could have the same name as a link, and many files use this.
         frame = joint_frame(name)
         if ctx.version >= (1, 7):
             ctx.report(
@@ -97,7 +97,7 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
 
 
 def joint_frame(name: str) -> str:
-    """What the frame of a joint is called that has the name of a link or frame."""
+    """The frame name of a joint that has the same name as a link or frame."""
     return f"__joint__{name}"
 
 
@@ -106,12 +106,12 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
 
     Args:
         node: The element.
-        ctx: The document's.
-        frames: The model's, complete.
-        frame: What the joint's own frame is called among them.
+        ctx: Shared state of the document.
+        frames: The model's frames, complete.
+        frame: Name of the joint's frame.
 
     Returns:
-        None for a gearbox, which gears other joints and is none itself.
+        None for a gearbox, which couples other joints.
     """
     name = require_name(node)
     written = node.require("type").strip()
@@ -128,7 +128,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     parent = _end(node, "parent", name, frames)
     child = _end(node, "child", name, frames)
     if child == WORLD and kind == "fixed":
-        parent, child = WORLD, parent  # it holds either way round
+        parent, child = WORLD, parent  # the constraint is the same in both directions
     if child == WORLD:
         raise node.fail(
             f'joint "{name}": the world cannot be the child',
@@ -156,7 +156,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     if axis is not None:
         first = _axis(axis, name, ctx, frames, in_model)
         if kind in _WITHOUT_AXIS:
-            # Nor does Gazebo heed it: a ball with damping there turns freely.
+            # Gazebo also ignores it: a ball joint with damping moves freely there.
             first = Axis()
             ctx.report(
                 tags.NOT_SIMULATED.diagnostic(
@@ -224,7 +224,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
 
 
 def read_joint_sensors(node: Node, joint: Joint, frames: Frames) -> list[Sensor]:
-    """The sensors of a joint: placed in its frame, carried by its child."""
+    """The sensors of a joint: placed in its frame, attached to its child link."""
     found: list[Sensor] = []
     for each in node.all("sensor"):
         stated = each.child("pose")
@@ -240,7 +240,7 @@ def read_joint_sensors(node: Node, joint: Joint, frames: Frames) -> list[Sensor]
 
 
 def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
-    """The link that a ``<parent>`` or ``<child>`` means: a frame means the link it is fixed to."""
+    """The link in a ``<parent>`` or ``<child>``; a frame is resolved to its link."""
     part = node.require_child(tag)
     name = part.text.strip()
     if not name:
@@ -280,7 +280,7 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
         )
     xyz = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
     expressed_in = (xyz_node.get("expressed_in") or "").strip() if xyz_node is not None else ""
-    # Until 1.4 axes were always in the model's frame; 1.5 and 1.6 say so where they are.
+    # Until 1.4, axes were always in the model's frame; 1.5 and 1.6 specify the frame.
     in_model_frame = node.boolean_at("use_parent_model_frame", ctx.version < (1, 5))
     if in_model_frame or expressed_in:
         frame = frames.pose(expressed_in, node.origin) if expressed_in else Pose()
@@ -335,7 +335,7 @@ def _mimic(axis: Node) -> Mimic | None:
 def _pitch(node: Node) -> float:
     """Metres along the axis per turn, positive for a right-handed screw.
 
-    The older ``<thread_pitch>`` counts radians per metre with the other sign.
+    The older ``<thread_pitch>`` is in radians per metre with the opposite sign.
     """
     metres = node.child("screw_thread_pitch")
     old = node.child("thread_pitch")

@@ -18,7 +18,7 @@ def read_light(node: Node, pose: Pose) -> Light:
 
     Args:
         node: The element.
-        pose: Its pose in the world or link, its ``<pose>`` resolved.
+        pose: Its resolved pose in the world or link.
     """
     default = Light(name="", origin=node.origin)
     kinds: dict[str, Kind] = {"directional": "directional", "point": "point", "spot": "spot"}

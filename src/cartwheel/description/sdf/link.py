@@ -1,4 +1,4 @@
-"""SDF's ``<link>``: mass, what is seen of it and what it touches with."""
+"""SDF's ``<link>``: mass, visuals and collisions."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ P = TypeVar("P", bound=Visual | Collision | Light | None)
 
 
 def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
-    """A link, with all its parts in its own frame.
+    """A link, with all parts in its own frame.
 
     Args:
         node: The element.
-        ctx: The document's.
-        frames: The model's, complete: a part may be placed relative to any of them.
+        ctx: Shared state of the document.
+        frames: The model's frames, complete: a part may be relative to any of them.
     """
     name = require_name(node)
     pose = frames.pose(name, node.origin)
@@ -67,7 +67,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     visuals = [_visual(each, ctx, place) for each in node.all("visual")]
 
     def directed(fields: dict[str, Any], part: Node) -> None:
-        """A friction direction's frame as the link that carries it."""
+        """Replaces a friction direction's frame by the link that it is attached to."""
         frame = fields.get("fdir1_frame")
         if frame is None or fields.get("fdir1") is None:
             return
@@ -112,9 +112,9 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
 
 
 def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
-    """Gives a light, visual or collision another name where one before it has its own.
+    """Renames lights, visuals or collisions with duplicate names.
 
-    Gazebo Classic takes both visuals and collisions; the first keeps the name.
+    Gazebo Classic accepts duplicate visuals and collisions; the first keeps the name.
     """
     parts = list(parts)
     found: list[P] = []
@@ -146,7 +146,7 @@ Place = Callable[[Node], Pose]
 
 
 def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision]) -> Inertial:
-    """The link's mass; SDF's default of 1 kg and 1 kg m² where it states none."""
+    """The link's mass and inertia; SDF's default of 1 kg and 1 kg m² if not stated."""
     node = link.child("inertial")
     if node is None:
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=link.origin)
@@ -158,7 +158,7 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
         ctx.report(not_simulated("<fluid_added_mass> is not simulated", water))
     tensor = node.child("inertia")
     if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
-        # What a model editor wrote for a mesh whose volume it could not tell.
+        # Written by a model editor for a mesh with unknown volume.
         tensor.mark()
         name = link.attributes.get("name", "")
         ctx.report(
@@ -188,7 +188,7 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
 
 
 def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collision]) -> Inertial:
-    """SDF 1.11: the mass follows from the density, unless it is stated too."""
+    """SDF 1.11: the mass is computed from the density, unless it is also stated."""
     default = node.number_at("density", WATER)
     stated = {
         each.attributes.get("name"): each.number_at("density", default)

@@ -1,4 +1,4 @@
-"""SDF's ``<material>``: stated colours, textures, and Gazebo's named scripts."""
+"""SDF's ``<material>``: colours, textures, and Gazebo's named scripts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cartwheel.errors import DescriptionError
 
 
 def read_material(node: Node | None, ctx: Context) -> Material:
-    """A material; one without a colour where the mesh's own are to be kept."""
+    """A material; without a colour if the mesh's colours are to be used."""
     if node is None:
         return Material()
     script = node.child("script")
@@ -34,7 +34,7 @@ def read_material(node: Node | None, ctx: Context) -> Material:
     if ambient is not None and (
         diffuse == read_rgba(ambient) or (diffuse is None and texture is None)
     ):
-        # Another one stays unread, and is reported.
+        # Other colours stay unread, and are reported.
         diffuse = _colour(node, "ambient")
     return Material(
         name=name,
@@ -52,7 +52,7 @@ def _colour(node: Node, tag: str) -> Rgba | None:
 
 
 def _albedo(node: Node, ctx: Context) -> Path | None:
-    """The colour image of a physically based material, of which the rest is not rendered."""
+    """The colour image of a physically based material; its other properties are not rendered."""
     pbr = node.child("pbr")
     if pbr is None:
         return None
@@ -67,7 +67,7 @@ def _albedo(node: Node, ctx: Context) -> Path | None:
 
 
 def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Material:
-    """What a named material looks like: Gazebo's own are known, others are in their script."""
+    """The appearance of a named material: built into Gazebo, or in a material script."""
     known = gazebo_material(name)
     if known is not None:
         return known

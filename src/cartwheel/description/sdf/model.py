@@ -1,4 +1,4 @@
-"""SDF's ``<model>``: links, joints and nested models, with every pose in the model's frame."""
+"""SDF's ``<model>``: links, joints and nested models, with all poses in the model's frame."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class NoLinksError(DescriptionError):
 
 
 def read_included(included: Included) -> Model:
-    """The model that an ``<include>`` brings in, and what its file holds that nobody reads."""
+    """The model of an ``<include>``, with warnings for unused parts of its file."""
     if included.node.tag == "robot":
-        # Imported here: the reader of URDF, which it needs, takes parts of this room.
+        # Imported here: the URDF reader imports parts of this package.
         from cartwheel.description.sdf.robot import read_robot
 
         return read_robot(included)
@@ -59,12 +59,12 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
 
     Args:
         node: The ``<model>``.
-        ctx: Of the document that holds it.
-        included: What the ``<include>`` that led here changes.
-        depth: How many models it is nested in.
+        ctx: Shared state of the containing document.
+        included: Changes by the ``<include>``.
+        depth: Nesting depth.
 
     Raises:
-        DescriptionError: whatever makes it unusable, with its place.
+        DescriptionError: The model cannot be used.
     """
     if depth > MAX_NESTING:
         raise node.fail(
@@ -115,7 +115,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         with _linked(each, ctx):
             joint_nodes.append((each, add_joint(frames, each, ctx, later)))
     for known in frames.names():
-        frames.pose(known, node.origin)  # a circle is an error even where the pose is not needed
+        frames.pose(known, node.origin)  # a cycle is an error even if the pose is not needed
     links = [read_link(each, ctx, frames) for each in link_nodes]
     joints: list[Joint] = []
     sensors: list[Sensor] = []
@@ -167,9 +167,9 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
 
 @contextmanager
 def _linked(node: Node, ctx: Context) -> Iterator[None]:
-    """Reports a joint that names a link that does not exist, and goes on without it.
+    """Reports a joint that refers to a missing link, and continues without the joint.
 
-    Gazebo Classic, too, loads the rest.
+    Gazebo Classic also loads the rest.
     """
     try:
         yield
@@ -181,7 +181,7 @@ def _add_nested(frames: Frames, inner: Model) -> None:
     if not inner.merge:
         frames.add_scope(inner.name, inner.frames, inner.pose, inner.relative_to, inner.origin)
         return
-    # Its frames become ours, all held by one that stands for the model itself.
+    # Adds its frames, all relative to a frame that represents the nested model.
     proxy = f"_merged__{inner.name}__model__"
     inner_link = inner.frames.link_of("", inner.origin) if inner.links else ""
     frames.add(
@@ -224,7 +224,7 @@ def _set_canonical(node: Node, frames: Frames, link_nodes: list[Node], nested: l
 
 
 def _flatten(model: Model, inner: Model) -> None:
-    """Takes a nested model's parts over, with ``name::`` before theirs unless it is merged."""
+    """Adds a nested model's parts, with the prefix ``name::`` unless it is merged."""
     prefix = "" if inner.merge else f"{inner.name}::"
     base = model.frames.pose(
         f"_merged__{inner.name}__model__" if inner.merge else inner.name, inner.origin
@@ -274,12 +274,12 @@ def _flatten(model: Model, inner: Model) -> None:
 
 
 def _own_collide(model: Model, inner: Model) -> bool | None:
-    """What a nested model says of its links' colliding, where that is not what the outer says."""
+    """A nested model's self-collision setting if it differs from the outer model's."""
     return inner.self_collide if inner.self_collide != model.self_collide else None
 
 
 def _hold(model: Model, inner: Model) -> None:
-    """A static model in one that moves stands where it was put: each link is fixed to the world."""
+    """A static model in a movable model stays in place: each link is fixed to the world."""
     prefix = "" if inner.merge else f"{inner.name}::"
     model.joints += [
         Joint(
@@ -294,9 +294,9 @@ def _hold(model: Model, inner: Model) -> None:
 
 
 def _renamed(element: Element, names: Collection[str], prefix: str) -> Element:
-    """A nested model's plugin with links and joints as the outer model calls them.
+    """A nested model's plugin with the outer model's link and joint names.
 
-    Frames of messages keep their names.
+    Frame ids in messages keep their names.
     """
     own = element.text in names and "frame" not in element.tag.lower()
     return replace(

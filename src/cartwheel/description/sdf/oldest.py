@@ -1,4 +1,4 @@
-"""SDF 1.0 to 1.2, written as 1.3: most of what were attributes are elements since.
+"""Converts SDF 1.0 to 1.2 to 1.3, in which most attributes became elements.
 
 Source: sdformat's ``sdf/1.2/1_0.convert`` and the descriptions of these versions.
 """
@@ -49,7 +49,7 @@ _TO_ELEMENTS: dict[str, tuple[str, ...]] = {
     "suspension": ("cfm", "erp"),
     "include": ("uri",),
 }
-"""Attributes that became elements of the same name, by their element."""
+"""Attributes that became elements with the same name, by element."""
 _TO_TEXT = {
     **dict.fromkeys(("ambient", "background", "diffuse", "specular", "emissive"), "rgba"),
     **dict.fromkeys(("shadows", "grid"), "enabled"),
@@ -60,7 +60,7 @@ _TO_TEXT = {
 }
 """Attributes that became their element's text."""
 _TAGS = {"origin": "pose", "body": "link", "geom": "geometry"}
-"""Elements with another name since."""
+"""Elements that were renamed."""
 _NAMES = {
     ("mesh", "filename"): "uri",
     ("image", "filename"): "uri",
@@ -70,13 +70,13 @@ _NAMES = {
     ("fog", "rgba"): "color",
     ("link", "damping"): "velocity_decay",
 }
-"""Attributes and elements with another name since, by the element that has them."""
+"""Attributes and elements that were renamed, by parent element."""
 _THEIR_OWN = ("plugin",)
-"""Whose content is not SDF's."""
+"""Elements whose contents are not SDF."""
 
 
 def as_modern(root: Node) -> Node:
-    """A document of SDF 1.0 to 1.2 as SDF 1.3 has it."""
+    """Converts a document from SDF 1.0 to 1.2 to SDF 1.3."""
     made = _converted(root)
     made.get("version")
     return made
@@ -104,7 +104,7 @@ def _converted(node: Node, parent: str = "") -> Node:
 
 
 def _named(script: Node) -> Node:
-    """A ``<script>`` whose text or attribute is the name of a material."""
+    """Converts a ``<script>`` whose text or attribute is the material's name."""
     if not script.text.strip():
         return script
     name = Node("name", {}, script.origin, text=script.text)

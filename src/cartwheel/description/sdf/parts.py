@@ -1,4 +1,4 @@
-"""What a ``<model>`` and SDF inserted into a URDF share: how their parts come together."""
+"""Shared by ``<model>`` and SDF in a URDF: combines links, joints, frames and sensors."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def frames_of(
     """The frames of a URDF, by the names of its links and joints.
 
     Args:
-        name: The robot's.
+        name: The robot's name.
         canonical_link: The link that its own frame is attached to.
-        links: With their poses in the robot's frame.
-        joints: One may have a link's name.
+        links: Links with poses in the robot's frame.
+        joints: Joints; a joint may have a link's name.
     """
     frames = Frames("model", name)
     frames.default_link = canonical_link
@@ -47,7 +47,7 @@ def add_frame(frames: Frames, kind: str, node: Node) -> None:
     """Adds a ``<link>`` or ``<frame>``.
 
     Raises:
-        DescriptionError: it has no name, or one that is taken.
+        DescriptionError: The name is missing or in use.
     """
     pose = node.child("pose")
     frames.add(
@@ -61,13 +61,13 @@ def add_frame(frames: Frames, kind: str, node: Node) -> None:
 
 
 def left_out(node: Node, error: DescriptionError, ctx: Context) -> None:
-    """Reports an invalid element, which is left out; the rest goes on."""
+    """Reports an invalid element, which is skipped."""
     node.mark()
     ctx.report(loss(error, f"the {node.tag} is ignored", of=node.tag))
 
 
 def attach(links: list[Link], sensors: Iterable[Sensor]) -> None:
-    """Gives the sensors of joints to the links that carry them, in place."""
+    """Adds joint sensors to the links that carry them, in place."""
     for sensor in sensors:
         index = next(i for i, link in enumerate(links) if link.name == sensor.link)
         link = links[index]
@@ -77,16 +77,17 @@ def attach(links: list[Link], sensors: Iterable[Sensor]) -> None:
 def judge(
     links: Sequence[Link], joints: Iterable[Joint], ctx: Context, *, static: bool
 ) -> list[Link]:
-    """The links with masses that bodies can have.
+    """The links with physically possible masses and inertias.
 
     Args:
-        links: Of one model.
-        joints: All of that model.
-        ctx: Takes the diagnostics.
-        static: Whether it is static: it has no use for a mass, and many a file states a wrong one.
+        links: Links of one model.
+        joints: All joints in the model.
+        ctx: Receives the diagnostics.
+        static: Whether the model is static: its masses are not needed, and many files state wrong
+            ones.
 
     Raises:
-        DescriptionError: a link that moves has an inertia that no body has.
+        DescriptionError: A movable link has an impossible inertia.
     """
     if static:
         return [
@@ -103,7 +104,7 @@ def judge(
 
 
 def check_mimic(joint: Joint, names: Collection[str]) -> None:
-    """Refuses a joint that mimics one that does not exist."""
+    """Rejects a joint that mimics a joint that does not exist."""
     if joint.mimic is not None and joint.mimic.joint not in names:
         raise DescriptionError(
             f'joint "{joint.name}" mimics "{joint.mimic.joint}", which does not exist',

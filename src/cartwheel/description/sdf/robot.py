@@ -1,4 +1,4 @@
-"""A URDF that an ``<include>`` names: Gazebo converts it, and it is a model like any other."""
+"""A URDF in an ``<include>``, which Gazebo converts to a model."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from cartwheel.description.xml_text import write_xml
 
 
 def read_robot(included: Included) -> Model:
-    """The model that a URDF describes, with what its includer changes.
+    """The model in a URDF, with the includer's changes.
 
     Raises:
-        DescriptionError: whatever makes it unusable, with its place.
+        DescriptionError: The URDF cannot be used.
     """
     root, ctx = included.root, included.ctx
     if needs_xacro(root):
-        # Imported here, as `loading` does: it takes its time.
+        # Imported here, as in `loading`, because the import is slow.
         from cartwheel.description.xacro import expand
 
         file = root.origin.file

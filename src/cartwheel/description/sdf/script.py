@@ -1,4 +1,4 @@
-"""OGRE material scripts, in which Gazebo models keep their own colours and textures."""
+"""OGRE material scripts, which contain the colours and textures of Gazebo models."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from cartwheel.description.regular import read_regular_text
 
 MAX_BYTES = 4 * 1024 * 1024
 MAX_LINES = 2000
-"""Of one material."""
+"""Maximum lines in a material."""
 
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """What of a script's material is rendered."""
+    """The rendered properties of a script's material."""
 
     diffuse: Rgba | None = None
     emissive: Rgba | None = None
     texture: Path | None = None
     texture_scale: tuple[float, float] = (1.0, 1.0)
-    """How much of a surface one copy of the texture covers."""
+    """The part of a surface covered by one copy of the texture."""
     missing: str | None = None
-    """The texture that is named but not there."""
+    """The texture in the script that does not exist."""
 
 
 def find_script(
     name: str, places: list[Path], may_read: Callable[[Path], bool] = lambda _: True
 ) -> Script | None:
-    """The material of that name in any script of the folders and files; None where none has it.
+    """The material with this name in any script in the folders and files; None if there is none.
 
     Args:
-        name: Of the material.
+        name: Material name.
         places: Folders and files.
-        may_read: Whether a texture may be read that a script names.
+        may_read: Whether a texture in a script may be read.
     """
     folders = [place for place in places if place.is_dir()]
     files = [place for place in places if place.is_file()]
@@ -58,9 +58,10 @@ def find_script(
 
 @lru_cache(maxsize=8)
 def _materials(file: Path, _changed: int) -> tuple[list[str], dict[str, int]]:
-    """A script's lines, and in which each ``material <name> { … }`` begins: the first counts.
+    """A script's lines, and the line at which each ``material <name> { … }`` begins.
 
-    It is read once for all that name it: a world may do so thousands of times.
+    The first one is used for duplicate names. Cached, because a world may refer to a script
+    thousands of times.
     """
     text = read_regular_text(file, MAX_BYTES)
     lines = text.replace("{", "\n{\n").replace("}", "\n}\n").splitlines()
@@ -93,7 +94,7 @@ def _words(line: str) -> list[str]:
 def _read(
     statements: list[list[str]], nearby: list[Path], may_read: Callable[[Path], bool]
 ) -> Script:
-    """The first pass counts: further ones add effects that are not rendered."""
+    """Reads the first pass: additional passes add effects that are not rendered."""
     diffuse = emissive = ambient = None
     texture: Path | None = None
     scale: tuple[float, float] | None = None

@@ -1,7 +1,6 @@
-"""Which elements a ``<sensor>`` may have: unknown ones are reported.
+"""The supported elements of a ``<sensor>``: unknown ones are reported.
 
-Source: SDF 1.4 to 1.12, ``sensor.sdf`` and what it includes, and what Gazebo's readers know beside
-them.
+Source: SDF 1.4 to 1.12, ``sensor.sdf`` and its includes, and additional tags that Gazebo reads.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from cartwheel.description.xml import Node
 
 
 def _tags(*names: str, **below: Any) -> dict[str, Any]:
-    """A table of elements: plain ones, and those with further ones below them."""
+    """A table of elements: plain ones, and those with children."""
     return {name: {} for name in names} | below
 
 
@@ -51,7 +50,7 @@ _CAMERA = _tags(
     clip=_CLIP,
     save=_tags("path"),
     depth_camera={"output": {}, "clip": _CLIP},
-    # Those of an image have neither bias nor precision.
+    # Image noise has neither bias nor precision.
     noise=_tags("type", "mean", "stddev"),
     distortion=_tags("k1", "k2", "k3", "p1", "p2", "center"),
     lens=None,
@@ -66,7 +65,7 @@ _IMU = _tags(
     orientation_reference_frame=_tags("localization", "custom_rpy", "grav_dir_x"),
     angular_velocity=_BY_AXIS,
     linear_acceleration=_BY_AXIS,
-    # As SDF 1.4 wrote it.
+    # The form of SDF 1.4.
     noise={"type": {}, "rate": _NOISE, "accel": _NOISE},
 )
 _SENSOR = _tags(
@@ -83,7 +82,7 @@ _SENSOR = _tags(
     camera=_CAMERA,
     ray=_RAYS,
     lidar=_RAYS,
-    # Of a ray sensor, as some write it.
+    # Used by some files for ray sensors.
     noise=_NOISE,
     contact=_tags("collision", "topic"),
     imu=_IMU,
@@ -94,7 +93,7 @@ _SENSOR = _tags(
     logical_camera=_tags("near", "far", "horizontal_fov", "aspect_ratio"),
     air_pressure={"reference_altitude": {}, "pressure": _NOISY},
     force_torque=_tags("frame", "measure_direction", force=_BY_AXIS, torque=_BY_AXIS),
-    # Of sensors that publish nothing, which is reported for the whole sensor.
+    # For unsupported sensors, which are reported as a whole.
     **dict.fromkeys(
         (
             "air_speed",
@@ -105,9 +104,9 @@ _SENSOR = _tags(
         )
     ),
 )
-"""What is below each; None is anything."""
+"""The children of each element; None for any."""
 _MANY = ("camera", "collision", "plugin")
-"""Of which there may be several."""
+"""Elements that may be repeated."""
 _ATTRIBUTES = (
     "name",
     "type",
@@ -121,7 +120,7 @@ _ATTRIBUTES = (
 
 
 def mark_known(sensor: Node) -> None:
-    """Counts what is known of a sensor as read; the rest is left to `unread`."""
+    """Marks the known elements of a sensor as read; `unread` reports the rest."""
     _mark(sensor, _SENSOR)
 
 

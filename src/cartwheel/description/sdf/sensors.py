@@ -1,4 +1,4 @@
-"""SDF's ``<sensor>`` and ``<plugin>``, wherever they stand: in SDF or in a URDF's tags."""
+"""SDF's ``<sensor>`` and ``<plugin>``, in SDF or in a URDF's tags."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from cartwheel.description.xml import Node, copied, to_element
 from cartwheel.geometry import Pose
 
 MOST_PIXELS = 7680 * 4320
-"""Of one camera's image: 8K. With colours and depths it takes 230 MB while it is drawn."""
+"""Maximum pixels of a camera image: 8K. Colour and depth take 230 MB while rendering."""
 MOST_BENT = 1e6
-"""Of a coefficient of distortion; those of real lenses are below 100."""
+"""Maximum distortion coefficient; real lenses have less than 100."""
 NARROWEST = 1e-6
-"""rad, of a camera's view."""
+"""Minimum field of view of a camera, rad."""
 _LOUDEST = 1e6
-"""Of the noise of pixels, whose full brightness is 1."""
+"""Maximum pixel noise, relative to full brightness."""
 NEAREST = 1e-9
-"""m; OpenGL's numbers hold no nearer plane."""
+"""m; minimum distance of the near plane for OpenGL's precision."""
 
 
 def read_plugin(node: Node) -> PluginTag:
-    """A plugin with its parameters as written: what they mean is its own to say."""
+    """A plugin with its parameters as written, which the plugin interprets."""
     filename = node.require("filename").strip()
     name = (node.get("name") or "").strip() or filename
     return PluginTag(name=name, filename=filename, element=to_element(node), origin=node.origin)
 
 
 def read_plugins(owner: Node) -> list[PluginTag]:
-    """The plugins that an element names; ``__default__`` is SDF's word for none."""
+    """The plugins of an element; ``__default__`` in SDF means none."""
     nodes = [node.mark() for node in owner.all("plugin")]
     return [read_plugin(node) for node in nodes if node.get("filename") != "__default__"]
 
@@ -43,11 +43,11 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
     Args:
         node: The element.
         link: The link that carries it.
-        pose: Its pose in the link, where that is known already; else its ``<pose>`` counts.
-        name: Its name where the element states none.
+        pose: Its pose in the link if it is already known; otherwise its ``<pose>`` is used.
+        name: Default name.
 
     Raises:
-        DescriptionError: a parameter that no sensor can have.
+        DescriptionError: A parameter is invalid.
     """
     kind = node.require("type").strip()
     title = (node.get("name") or "").strip() or name or kind
@@ -79,7 +79,7 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
 
 
 def read_camera(node: Node) -> CameraIntrinsics:
-    """One lens; SDF's defaults where it says nothing."""
+    """The intrinsics of a camera, with SDF's defaults."""
     default = CameraIntrinsics()
     image, clip = node.child("image"), node.child("clip")
     width = image.integer_at("width", default.width) if image is not None else default.width
@@ -135,7 +135,7 @@ def _bounded(node: Node, path: str, most: float) -> float:
 
 
 def _noise(node: Node | None) -> tuple[float, float]:
-    """Mean and standard deviation of a pixel's noise, of its full brightness."""
+    """Mean and standard deviation of the pixel noise, relative to full brightness."""
     if node is None:
         return 0.0, 0.0
     kind = (node.text_at("type") or node.get("type") or "gaussian").strip()

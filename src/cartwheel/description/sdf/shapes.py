@@ -35,10 +35,10 @@ _FLAT = 1e-3
 
 
 def read_shape(owner: Node, ctx: Context) -> Shape | None:
-    """The shape of a visual or collision; None where it is empty or its file cannot be used.
+    """The shape of a visual or collision; None if it is empty or its file cannot be used.
 
-    Such a file costs the one shape, not the whole world around it: it is reported as an error,
-    at which others may stop.
+    An unusable file only affects this shape, not the whole world. It is reported as an error, so
+    that strict callers can stop.
     """
     geometry = owner.child("geometry")
     if geometry is None:
@@ -92,11 +92,11 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
 
 
 class _UnusableFileError(DescriptionError):
-    """A file of a shape that is missing or cannot be read."""
+    """A shape's file that is missing or cannot be read."""
 
     @classmethod
     def of(cls, error: CartwheelError, origin: Origin) -> _UnusableFileError:
-        """The error of a file, at the element that names it."""
+        """The error for a file, with the element's origin."""
         return cls(
             error.message,
             code=error.code,
@@ -139,7 +139,7 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
         return (1.0, 1.0, 1.0)
     x, y, z = node.vec3()
     if shape.tag == "box" and min(x, y, z) == 0 < max(x, y, z):
-        # As Gazebo's building editor writes the wall above a door that reaches the ceiling.
+        # Gazebo's building editor writes this for the wall above a door that reaches the ceiling.
         ctx.report(
             tags.VALUE_IGNORED.diagnostic(
                 f"a side of the box has length 0 (size {node.text}), so {_FLAT * 1e3:g} mm is used",
@@ -175,7 +175,7 @@ def _plane(node: Node) -> Plane:
 
 
 def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
-    """One outline, or several of which the inner ones are holes."""
+    """One outline, or several with holes inside the outer ones."""
     outlines = []
     for node in nodes:
         points = [point.vector(2) for point in node.all("point")]

@@ -1,4 +1,4 @@
-"""SDF's ``<state>``: where things had come to when Gazebo saved the world."""
+"""SDF's ``<state>``: the positions at the time when Gazebo saved the world."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from cartwheel.errors import Diagnostic, Severity
 from cartwheel.geometry import Pose, quat_from_axis_angle
 
 _NEAR = 1e-3
-"""Metres and radians by which a saved link may differ: Gazebo writes six digits."""
+"""Tolerance for a saved link, m and rad: Gazebo writes six digits."""
 
 
 def apply_state(
     node: Node, models: list[RobotDescription], lights: list[Light], ctx: Context
 ) -> tuple[list[RobotDescription], list[Light]]:
-    """Models and lights as the state puts them.
+    """Models and lights with the saved state.
 
-    Poses of models and lights are taken over, those of links that no joint holds, and positions
-    of joints that follow from the poses of their links. The rest is reported.
+    The poses of models, lights and links without joints are used, and joint positions that follow
+    from their links' poses. The rest is reported.
     """
     node.get("world_name")
     deletions = node.child("deletions")
@@ -102,16 +102,16 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
 
 
 def _saved_parts(saved: Node, tag: str, prefix: str = "") -> dict[str, Node]:
-    """The links or joints of a saved model, those of nested models by their scoped names."""
+    """The links or joints of a saved model; those of nested models by scoped names."""
     found = {prefix + (each.get("name") or ""): each for each in saved.all(tag)}
     for inner in saved.all("model"):
-        inner.child("pose")  # its links say where it is
+        inner.child("pose")  # the poses of its links are used instead
         found |= _saved_parts(inner, tag, f"{prefix}{inner.get('name') or ''}::")
     return found
 
 
 def _angle(joint: Node) -> float | None:
-    """Where a saved joint stood, rad or m; None where it has no axis or several."""
+    """The saved position of a joint, rad or m; None without an axis or with several."""
     axes = joint.all("angle")
     for each in axes:
         each.get("axis")
@@ -127,7 +127,7 @@ def _angle(joint: Node) -> float | None:
 
 
 def _warn_motion(link: Node, ctx: Context) -> None:
-    """Warns of a velocity that is not restored: models start at rest."""
+    """Warns about a velocity, which is not restored: models start at rest."""
     velocity = link.child("velocity")
     if velocity is not None and any(abs(value) > _NEAR for value in velocity.vector(6)):
         name = link.attributes.get("name", "")
@@ -146,7 +146,7 @@ def _ignored(
 def _positions(
     model: RobotDescription, places: Mapping[str, Pose]
 ) -> tuple[dict[str, float], list[str]]:
-    """Where joints stand by their links' poses in the model, and joints that this does not tell."""
+    """Joint positions computed from link poses in the model, and the joints without a result."""
     built = {WORLD: Pose(), **{link.name: link.pose for link in model.links}}
     places = {WORLD: Pose(), **places}
     found: dict[str, float] = {}
@@ -158,7 +158,7 @@ def _positions(
         now = places[joint.parent].inverse() @ places[joint.child]
         if _near(before, now):
             continue
-        # What the joint did, in its own frame.
+        # The joint's motion in its own frame.
         motion = (before @ joint.pose).inverse() @ now @ joint.pose
         axis = np.array(joint.axis.xyz)
         if joint.type == "prismatic":

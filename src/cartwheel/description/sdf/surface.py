@@ -1,4 +1,4 @@
-"""SDF's ``<surface>``: how a collision touches."""
+"""SDF's ``<surface>``: contact properties of a collision."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _BITS = 0xFFFFFFFF
 
 
 def read_surface(node: Node, ctx: Context) -> dict[str, Any]:
-    """The fields of `Surface` that a ``<surface>`` states: friction and contact as ODE has them.
+    """The fields of `Surface` in a ``<surface>``: friction and contact as in ODE.
 
     Raises:
-        DescriptionError: a value that makes no sense.
+        DescriptionError: A value is invalid.
     """
     fields: dict[str, Any] = {}
     for path, name in _NUMBERS.items():
@@ -51,7 +51,7 @@ def read_surface(node: Node, ctx: Context) -> dict[str, Any]:
     direction = node.find("friction/ode/fdir1")
     if direction is not None:
         vector = direction.vec3()
-        # 0 0 0 is what Gazebo writes where no direction is asked for.
+        # Gazebo writes 0 0 0 for no direction.
         fields["fdir1"] = vector if any(vector) else None
         for prefix in ("gz", "ignition"):
             stated = (direction.get(f"{prefix}:expressed_in") or "").strip()
@@ -62,7 +62,7 @@ def read_surface(node: Node, ctx: Context) -> dict[str, Any]:
 
 
 def not_negative(node: Node | None, ctx: Context) -> float | None:
-    """A coefficient; -1, which some files write for "the default", is as if not stated."""
+    """A coefficient; -1, which some files write for "the default", is ignored."""
     if node is None:
         return None
     value = node.number(infinite=True)
@@ -79,7 +79,7 @@ def not_negative(node: Node | None, ctx: Context) -> float | None:
 
 
 def _patch(node: Node) -> dict[str, Any]:
-    """The size of the area on which a surface touches, which decides what a turn meets."""
+    """The size of the contact area, which determines torsional friction."""
     torsional = node.find("friction/torsional")
     if torsional is None:
         return {}

@@ -1,4 +1,4 @@
-"""Models that were read and stand nowhere yet."""
+"""Models that have been read but not placed in the world."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ class Model:
     static: bool
     self_collide: bool
     pose: Pose
-    """Relative to `relative_to`, the placement frame already taken into account."""
+    """Relative to `relative_to`, with the placement frame already applied."""
     relative_to: str
     origin: Origin
     merge: bool = False
     nested: list[Model] = field(default_factory=list)
     transmissions: tuple[Element, ...] = ()
-    """Of a URDF, as what follows."""
+    """For a URDF, like the following fields."""
     ros2_control: tuple[Element, ...] = ()
     text: str = ""
 
     def describe(self, pose: Pose, ctx: Context, text: str = "") -> RobotDescription:
-        """The model as one robot, placed in the world.
+        """The model as a robot description, placed in the world.
 
         Raises:
-            DescriptionError: a link that moves has an inertia that no body has.
+            DescriptionError: A movable link has an impossible inertia.
         """
         self.links = judge(self.links, self.joints, ctx, static=self.static)
         return RobotDescription(
@@ -61,7 +61,7 @@ class Model:
 
 
 def name_apart(models: Iterable[Model], ctx: Context) -> None:
-    """Gives models another name where one before them has their own, as Gazebo Classic does."""
+    """Renames models with duplicate names, as Gazebo Classic does."""
     models = list(models)
     taken = {model.name for model in models}
     numbers: dict[str, Iterator[int]] = {}

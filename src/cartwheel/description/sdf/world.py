@@ -34,7 +34,7 @@ from cartwheel.geometry import Pose, Vec3
 _NOT_SIMULATED = ("actor", "population", "road")
 
 SHORTEST_STEP, LONGEST_STEP = 1e-6, 1.0
-"""s, of the physics."""
+"""Limits of the physics time step, s."""
 
 
 def read_world(node: Node, ctx: Context) -> WorldDescription:
@@ -42,10 +42,10 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
 
     Args:
         node: The ``<world>``.
-        ctx: The document's.
+        ctx: Shared state of the document.
 
     Raises:
-        DescriptionError: whatever makes it unusable, with its place.
+        DescriptionError: The world cannot be used.
     """
     default = WorldDescription(name="")
     name = (node.get("name") or "").strip() or "default"
@@ -86,7 +86,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             if each.children and not _still(each):
                 ctx.report(not_simulated(f"<{tag}> is not simulated", each))
     for each in node.all("gui"):
-        each.mark()  # of Gazebo's window, and of nothing in the world
+        each.mark()  # only affects Gazebo's window
     physics = _default_physics(node, ctx)
     field = node.child("magnetic_field")
     scene = node.child("scene")
@@ -110,7 +110,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
 
 
 def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, Included | None]]]:
-    """Models, and lights with the pose that an ``<include>`` gives them."""
+    """Models, and lights with the pose from an ``<include>``."""
     models: list[Model] = []
     lights: list[tuple[Node, Included | None]] = []
     for each in node.children:
@@ -123,7 +123,8 @@ def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, I
             try:
                 included = open_include(each, ctx)
             except NotThereError as missing:
-                # It costs the one model, not the whole world; an error that others may stop at.
+                # It only affects this model, not the whole world; it is an error, so that strict
+                # callers can stop.
                 each.mark()
                 ctx.report(loss(missing, "the model is ignored", of="include"))
                 continue
@@ -133,15 +134,15 @@ def _contents(node: Node, ctx: Context) -> tuple[list[Model], list[tuple[Node, I
                 with _tolerant(ctx, included.name or included.node.attributes.get("name", "")):
                     models.append(read_included(included))
     for tag in ("model", "light", "include"):
-        node.all(tag)  # counts them as read
+        node.all(tag)  # marks them as read
     return models, lights
 
 
 @contextlib.contextmanager
 def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[None]:
-    """Leaves a model out that has no links, or lacks what could not be found.
+    """Skips a model that has no links or refers to missing files.
 
-    Its file may be in order, and the rest of the world is worth having.
+    The model's file may be correct, and the rest of the world is still useful.
     """
     try:
         yield
@@ -152,7 +153,7 @@ def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[Non
         if node is not None:
             node.mark()
         if lacking and isinstance(error, NoLinksError):
-            return  # all its parts were reported as left out
+            return  # all its parts were reported as skipped
         what = "it" if isinstance(error, NoLinksError) else f'the model "{name}"'
         ctx.report(
             loss(
@@ -165,7 +166,7 @@ def _tolerant(ctx: Context, name: str, node: Node | None = None) -> Iterator[Non
 
 
 def _places(node: Node, frames: Frames, ctx: Context) -> Iterator[tuple[str, Pose]]:
-    """The frames that never move; one without a pose is reported."""
+    """The fixed frames; a frame without a pose is reported."""
     for each in node.all("frame"):
         name = require_name(each)
         if not frames.stays(name):
@@ -214,7 +215,7 @@ def _default_physics(node: Node, ctx: Context) -> Node | None:
 
 
 def _gravity(node: Node, physics: Node | None, default: Vec3) -> Vec3:
-    """In the world since 1.6, in the physics before."""
+    """Gravity in the world (since 1.6) or in the physics element (before)."""
     own = node.child("gravity")
     older = physics.child("gravity") if physics is not None else None
     if own is not None:
@@ -258,5 +259,5 @@ def _scene_colour(
 
 
 def _still(node: Node) -> bool:
-    """Whether a wind of speed zero is meant, as Gazebo writes into every saved world."""
+    """Whether the wind has zero speed, as Gazebo writes in every saved world."""
     return all(not any(c in "123456789" for c in child.text) for child in node.children)

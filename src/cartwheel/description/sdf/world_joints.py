@@ -1,4 +1,4 @@
-"""SDF's ``<joint>`` in a ``<world>``: models that hang on the world or on each other."""
+"""SDF's ``<joint>`` in a ``<world>``: connects models to the world or to each other."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError
 
 _BETWEEN = ("fixed", "revolute", "continuous", "ball")
-"""Types that hold two models together."""
+"""Joint types that can connect two models."""
 
 
 def join_models(
     node: Node, models: Sequence[RobotDescription], frames: Frames, ctx: Context
 ) -> tuple[list[RobotDescription], tuple[Joint, ...]]:
-    """The models with the joints by which they hang on the world, and joints between models.
+    """The models with their joints to the world, and joints between models.
 
     Args:
         node: The ``<world>``.
-        models: Those that stand in it.
-        frames: The world's, complete but for joints.
-        ctx: Takes the diagnostics.
+        models: The models in the world.
+        frames: The world's frames, complete except for joints.
+        ctx: Receives the diagnostics.
 
     Raises:
-        DescriptionError: a joint that makes no sense, with its place.
+        DescriptionError: A joint is invalid.
     """
     found = {model.name: model for model in models}
     between: list[Joint] = []
@@ -76,7 +76,7 @@ def join_models(
 
 
 def _read(node: Node, frames: Frames, later: list[str], ctx: Context) -> Joint | None:
-    """A joint; None where it joins something that was left out, which is reported."""
+    """A joint; None if it connects something that was skipped, which is reported."""
     try:
         frame = add_joint(frames, node, ctx, later)
         joint = read_joint(node, ctx, frames, frame)
@@ -95,7 +95,7 @@ def _read(node: Node, frames: Frames, later: list[str], ctx: Context) -> Joint |
 
 
 def _owner(scoped: str, models: dict[str, RobotDescription]) -> tuple[RobotDescription | None, str]:
-    """The model of a link's scoped name, and what it calls the link."""
+    """The model of a link's scoped name, and the link's name in the model."""
     for name, model in models.items():
         link = scoped.removeprefix(f"{name}::")
         if link != scoped and model.link(link) is not None:

@@ -1,7 +1,7 @@
-"""The names by which Gazebo's users know a URDF's collisions.
+"""The names of a URDF's collisions in Gazebo.
 
-Gazebo merges links over fixed joints and renames the collisions of those it merges, in ways
-that changed with its versions. A contact sensor may use any of the spellings.
+Gazebo merges links over fixed joints and renames their collisions, in ways that depend on the
+version. A contact sensor may use any of these spellings.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ _LUMP = "_fixed_joint_lump__"
 
 
 def name_collisions(links: Sequence[Link], tree: Tree, preserved: Iterable[str]) -> list[Link]:
-    """The links with all the spellings of their collisions among the aliases.
+    """The links with all spellings of their collisions' names as aliases.
 
     Args:
-        links: Of the whole robot.
-        tree: Theirs.
-        preserved: The fixed joints over which Gazebo is told not to merge.
+        links: All links of the robot.
+        tree: Their tree.
+        preserved: The fixed joints that Gazebo is configured not to merge.
     """
     kept = frozenset(preserved)
     by_name = {link.name: link for link in links}
-    # Gazebo numbers the collisions of all that it merges into one link in one sequence. A
-    # link's own number is never the larger, so it takes no name from a collision further on.
+    # Gazebo numbers the collisions of all merged links in one sequence. A link's own number is
+    # never larger, so it cannot take the name of a later collision.
     counts: dict[str, int] = {}
     named: dict[str, Link] = {}
     taken = {each.name for link in links for each in link.collisions}
@@ -72,7 +72,7 @@ def _lumped(
 
 
 def check_contact_sensors(links: Sequence[Link]) -> Iterable[Diagnostic]:
-    """A warning for each contact sensor that asks for a collision that does not exist."""
+    """A warning for each contact sensor that refers to a collision that does not exist."""
     known = {
         name
         for link in links

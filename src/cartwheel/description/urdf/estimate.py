@@ -1,7 +1,7 @@
-"""A mass for what moves and states none: without one no law of motion holds for it.
+"""Estimates masses for movable parts without one, which the physics requires.
 
-Published robots leave ``<inertial>`` out where only rviz is to show them. Gazebo drops such
-links with their joints; here they weigh what their geometry does at SDF's default density.
+Published robots omit ``<inertial>`` if they are only for rviz. Gazebo drops such links with their
+joints; here, their mass is computed from their geometry at SDF's default density.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 
 SPECK = 1e-3
-"""kg of a part without any geometry."""
+"""Mass of a part without geometry, kg."""
 _SPECK_MOMENT = 1e-6
-"""kg m² of the same: a ball of 5 cm."""
+"""Moment of inertia of such a part, kg m²: a ball of 5 cm."""
 _FLATTEST = 1e-3
-"""m: a box around a flat mesh is no thinner."""
+"""Minimum thickness of the box around a flat mesh, m."""
 
 
 def with_masses(
     links: Sequence[Link], tree: Tree, ctx: UrdfContext, *, static: bool
 ) -> tuple[Link, ...]:
-    """The links, those of rigid parts that move without any mass with an estimated one.
+    """The links; movable rigid parts without any mass get an estimated one.
 
-    An estimate's origin is the link's own.
+    An estimate has the link's origin.
     """
     if static:
         return tuple(links)
@@ -57,7 +57,7 @@ def with_masses(
 
 
 def inertial_text(inertial: Inertial) -> str:
-    """An ``<inertial>`` as it is written in a URDF."""
+    """An ``<inertial>`` as URDF text."""
     i = inertial
     xyz = " ".join(f"{round(value, 6) + 0.0:g}" for value in i.pose.position)
     largest = max(i.diagonal)
@@ -106,13 +106,13 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
 
 
 def _turns(link: Link) -> bool:
-    """Whether it has a moment of inertia of its own."""
+    """Whether it has a nonzero moment of inertia."""
     i = link.inertial
     return i is not None and any(i.diagonal)
 
 
 def _of_shapes(link: Link) -> Inertial | None:
-    """A solid of a link's collisions, or else of its visuals; None where it has no extent."""
+    """Inertia of a solid of a link's collisions, or of its visuals; None without extent."""
     for parts in (link.collisions, link.visuals):
         solids = [solid for part in parts if (solid := _solid(part)) is not None]
         found = inertial_of(solids, [WATER] * len(solids), link.origin)
@@ -122,13 +122,13 @@ def _of_shapes(link: Link) -> Inertial | None:
 
 
 def _solid(part: Collision | Visual) -> Collision | None:
-    """A shape with a volume: a mesh that is not closed counts as the box around it."""
+    """A shape with a volume: an open mesh is replaced by its bounding box."""
     shape, pose = part.shape, part.pose
     if isinstance(shape, Mesh):
         try:
             vertices, _ = convex_hull_input(load_mesh(shape))
         except MeshError:
-            return None  # reported where the mesh is read to be shown
+            return None  # reported when the mesh is read for display
         low, high = vertices.min(axis=0).astype(float), vertices.max(axis=0).astype(float)
         if not _is_solid(shape, low, high):
             x, y, z = np.maximum(high - low, _FLATTEST).tolist()
@@ -138,7 +138,7 @@ def _solid(part: Collision | Visual) -> Collision | None:
 
 
 def _is_solid(mesh: Mesh, low: np.ndarray, high: np.ndarray) -> bool:
-    """Whether the volume that a mesh's triangles enclose can be one."""
+    """Whether the volume enclosed by a mesh's triangles is plausible."""
     place = Origin(file=str(mesh.path))
     found = inertial_of([Collision(name="", shape=mesh, origin=place)], [1.0], place)
     if found is None or found.mass > float(np.prod(high - low)) * 1.001:

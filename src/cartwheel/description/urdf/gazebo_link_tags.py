@@ -1,4 +1,4 @@
-"""What ``<gazebo reference="link">`` says: surface, colour, sensors, gravity, damping."""
+"""``<gazebo reference="link">``: surface, colour, sensors, gravity, damping."""
 
 from __future__ import annotations
 
@@ -53,23 +53,23 @@ _SEEN = ("material", "visual")
 
 @dataclass(slots=True)
 class LinkTags:
-    """What all tags of one link say together; a later tag overrides an earlier one."""
+    """The combined tags of one link; later tags override earlier ones."""
 
     surface: dict[str, Any] = field(default_factory=dict)
-    """The fields of `Surface` that are stated."""
+    """The stated fields of `Surface`."""
     link: dict[str, Any] = field(default_factory=dict)
-    """The fields of `Link` that are stated."""
+    """The stated fields of `Link`."""
     visual: dict[str, Any] = field(default_factory=dict)
-    """The fields of `Visual` that are stated."""
+    """The stated fields of `Visual`."""
     material: Material | None = None
     laser_retro: float | None = None
     sensors: list[Sensor] = field(default_factory=list)
     lights: list[Light] = field(default_factory=list)
     places: dict[str, Origin] = field(default_factory=dict)
-    """Where each tag stands first."""
+    """The first location of each tag."""
 
     def apply(self, link: Link) -> Link:
-        """The link with all of it."""
+        """The link with all tags applied."""
         collisions = link.collisions
         if self.surface or self.laser_retro is not None:
             collisions = tuple(
@@ -90,7 +90,7 @@ class LinkTags:
         )
 
     def idle(self, link: Link) -> Iterator[Diagnostic]:
-        """What there is nothing on the link for."""
+        """Diagnostics for tags that do not apply to any part of the link."""
         for what, parts, acting in (
             ("collision", link.collisions, _TOUCHED),
             ("visual", link.visuals, _SEEN),
@@ -117,13 +117,13 @@ class LinkTags:
 
 
 def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> None:
-    """Adds what one ``<gazebo>`` says of a link.
+    """Adds the tags of one ``<gazebo>`` element.
 
     Args:
         node: The element.
-        link: The link it refers to.
-        tags: What the tags before it said.
-        ctx: Finds textures, and takes the diagnostics.
+        link: The referenced link.
+        tags: The combined earlier tags; extended in place.
+        ctx: Resolves textures, and receives the diagnostics.
     """
     for child in node.children:
         tags.places.setdefault(child.tag, child.origin)
@@ -146,7 +146,7 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     material = node.child("material")
     if material is not None:
         tags.material = _material(material, sdf, ctx)
-    # SDF wants a name of both, which means nothing here: they are of all of the link's.
+    # SDF requires names for both, which are ignored: the tags apply to all of the link's parts.
     for visual in node.all("visual"):
         visual.get("name")
         _read_visual(visual, tags, sdf)
@@ -201,7 +201,7 @@ def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
     try:
         return _known(read_material(node, sdf), node, ctx)
     except DescriptionError as error:
-        # Gazebo takes a name there and nothing else: a slip in the rest hurts nobody.
+        # Gazebo reads only the name, so mistakes in the rest have no effect.
         node.mark()
         ctx.report(
             loss(
@@ -216,7 +216,7 @@ def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
 
 
 def _known(material: Material, node: Node, ctx: UrdfContext) -> Material | None:
-    """The material with the colour that its name stands for, where it states none itself."""
+    """The material with the colour of its name, unless it states a colour."""
     if material.diffuse is not None or material.texture is not None or not material.name:
         return material if material.diffuse or material.texture else None
     found = gazebo_material(material.name)
@@ -257,12 +257,12 @@ def _read_collision(node: Node, tags: LinkTags, sdf: Context) -> None:
 
 
 def warn_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
-    """Warns of elements that have no effect.
+    """Warns about elements without effect.
 
     Args:
-        node: In which they are.
-        reasons: Why, by tag.
-        ctx: Takes the warnings.
+        node: The parent element.
+        reasons: The reason, by tag.
+        ctx: Receives the warnings.
     """
     for tag, reason in reasons.items():
         for child in node.all(tag):

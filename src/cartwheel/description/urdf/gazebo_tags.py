@@ -1,4 +1,4 @@
-"""The ``<gazebo>`` tags of a URDF: of links, of joints, and of the robot as a whole.
+"""The ``<gazebo>`` tags in a URDF, for links, joints and the whole robot.
 
 Every element has an effect, or a diagnostic with the reason.
 """
@@ -30,7 +30,7 @@ JOINT_TAGS = (
     "sensor", "physics",
 )  # fmt: skip
 _OF_JOINTS = "force_torque"
-"""The type of the sensors that joints have."""
+"""The type of joint sensors."""
 _WITH_PARTS = ("sensor", "plugin", "light", "visual", "collision")
 ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide", *INSERTED)
 
@@ -46,29 +46,29 @@ _ROBOT_IDLE = {
 
 @dataclass(slots=True)
 class GazeboTags:
-    """All ``<gazebo>`` tags of a robot, by what they refer to."""
+    """All ``<gazebo>`` tags of a robot, by reference."""
 
     links: dict[str, LinkTags] = field(default_factory=dict)
     joints: dict[str, dict[str, Any]] = field(default_factory=dict)
-    """The fields of `Joint` and, under ``axis``, of `Axis` that they state."""
+    """The stated fields of `Joint` and, under ``axis``, of `Axis`."""
     robot_plugins: list[PluginTag] = field(default_factory=list)
     inserted: list[Node] = field(default_factory=list)
-    """Links, joints and frames of SDF that go into the model."""
+    """SDF links, joints and frames to add to the model."""
     static: bool = False
     self_collide: bool = False
 
     @property
     def plugins(self) -> tuple[PluginTag, ...]:
-        """Those of the robot, in the file's order."""
+        """Plugins of the robot, in file order."""
         return tuple(self.robot_plugins)
 
     def apply_to_link(self, link: Link) -> Link:
-        """The link with what the tags say of it."""
+        """The link with its tags applied."""
         tags = self.links.get(link.name)
         return tags.apply(link) if tags is not None else link
 
     def apply_to_joint(self, joint: Joint) -> Joint:
-        """The joint with what the tags say of it."""
+        """The joint with its tags applied."""
         fields = dict(self.joints.get(joint.name, {}))
         axis = fields.pop("axis", None)
         if axis:
@@ -83,12 +83,12 @@ def read_gazebo_tags(
 
     Args:
         robot: The root.
-        links: The names of its links.
-        joints: Its joints by name.
-        ctx: Takes the diagnostics.
+        links: Link names.
+        joints: Joints by name.
+        ctx: Receives the diagnostics.
 
     Raises:
-        DescriptionError: a reference to what does not exist, or a value that makes no sense.
+        DescriptionError: A reference does not exist, or a value is invalid.
     """
     tags = GazeboTags()
     for node in robot.all("gazebo"):
@@ -98,7 +98,7 @@ def read_gazebo_tags(
             _read_robot_tags(node, tags, ctx)
             continue
         if reference not in links and reference not in joints:
-            # Gazebo ignores it silently, and robots are published with such tags.
+            # Gazebo ignores it silently, and published robots contain such tags.
             names = sorted({*links, *joints})
             ctx.report(
                 robot_codes.REFERENCE_UNKNOWN.diagnostic(
@@ -111,14 +111,14 @@ def read_gazebo_tags(
                     values={"name": reference, "meant": meant(reference, names)},
                 )
             )
-            # Reported as a whole, not part by part.
+            # Reported as a whole, not by part.
             node.children.clear()
             continue
         if reference in links:
             of_link = tags.links.setdefault(reference, LinkTags())
             read_link_tags(node, reference, of_link, ctx)
             if reference in joints:
-                # Of the two only a joint measures what it bears.
+                # If both a link and a joint exist, only the joint measures forces.
                 of_link.sensors = [one for one in of_link.sensors if one.type != _OF_JOINTS]
         if reference in joints:
             of_both = reference in links
@@ -130,9 +130,9 @@ def read_gazebo_tags(
 
 
 def _settle(node: Node, ctx: UrdfContext) -> None:
-    """Brings the two spellings ``<mu1 value="1"/>`` and ``<mu1>1</mu1>`` to the second.
+    """Converts ``<mu1 value="1"/>`` to ``<mu1>1</mu1>``.
 
-    Tags such as ``<mu1></mu1>``, which a macro's empty parameter leaves, are taken out.
+    Empty tags such as ``<mu1></mu1>``, which result from empty macro parameters, are removed.
     """
     for child in list(node.children):
         if child.text or child.children or child.tag in INSERTED:
@@ -218,7 +218,8 @@ def _read_joint_tags(
     ):
         found = node.find(tag)
         if found is not None:
-            # Two tags keep a fixed joint; one that says no takes nothing from the other.
+            # Either of two tags preserves a fixed joint; a false value does not cancel the other
+            # tag.
             fields[name] = found.boolean() or fields.get(name, False)
     for fudge in node.all("fudgeFactor"):
         fudge.mark()

@@ -1,4 +1,4 @@
-"""What published URDFs say that no reader of URDF ever acted on: worth a note, not a warning."""
+"""Elements in published URDFs that no URDF reader uses: they need a note, not a warning."""
 
 _NOBODY = "no URDF parser supports it"
 _SAFETY = "it belongs to the PR2's safety controller"
@@ -42,4 +42,4 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("safety_controller", "@safety_length_max"): _SAFETY,
     ("visual", "verbose"): _OLD,
 }
-"""By an element's tag and its child's, or its attribute's name after an ``@``."""
+"""By an element's tag and its child's tag, or its attribute's name after an ``@``."""

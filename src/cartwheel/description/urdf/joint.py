@@ -25,11 +25,11 @@ _WITHOUT_AXIS = ("fixed", "floating")
 
 
 def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Joint, Pose]:
-    """A joint, and its frame in its parent link, which is the child's at zero.
+    """A joint, and its frame in its parent link, which is the child's frame at zero.
 
     Raises:
-        DescriptionError: a link that does not exist, an axis of length zero, limits the wrong
-            way round, an unknown type.
+        DescriptionError: A link does not exist, the axis has length zero, the limits are reversed,
+            or the type is unknown.
     """
     name = node.require("name").strip()
     written = node.require("type").strip()
@@ -64,7 +64,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
         if part is None:
             continue
         part.mark()
-        if unused != "axis":  # which URDF allows
+        if unused != "axis":  # allowed in URDF
             ctx.report(
                 tags.TAG_IGNORED.diagnostic(
                     f'joint "{name}" is {kind}, so its <{unused}> has no effect',
@@ -172,7 +172,7 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
 
 
 def _bound(limits: Node, attribute: str, joint: str, ctx: UrdfContext) -> float | None:
-    """The largest effort or velocity; a negative one means no limit, as in SDF."""
+    """The maximum effort or velocity; negative values mean no limit, as in SDF."""
     value = limits.optional_number_of(attribute, infinite=True)
     if value is None or value >= 0:
         return value
@@ -188,7 +188,7 @@ def _bound(limits: Node, attribute: str, joint: str, ctx: UrdfContext) -> float 
 
 
 def _finite(value: float | None) -> float | None:
-    """A limit, None where it is so large that it is none."""
+    """A limit; None if it is so large that it has no effect."""
     return value if value is not None and abs(value) < 1e15 else None
 
 
@@ -225,7 +225,7 @@ def _soft(node: Node) -> SoftLimits:
 
 
 def check_mimics(joints: Iterable[Joint]) -> None:
-    """Refuses mimics of joints that do not exist, and those that mimic each other in a ring."""
+    """Rejects mimics of missing joints, and cycles of joints that mimic each other."""
     by_name = {joint.name: joint for joint in joints}
     for joint in by_name.values():
         if joint.mimic is None:

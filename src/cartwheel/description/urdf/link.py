@@ -1,4 +1,4 @@
-"""URDF's ``<link>``: mass, what is seen of it and what it touches with."""
+"""URDF's ``<link>``: mass, visuals and collisions."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 @dataclass(kw_only=True, slots=True)
 class UrdfContext:
-    """What the readers of one URDF share."""
+    """Shared state of the readers of one URDF."""
 
     packages: Packages
     materials: dict[str, Material] = field(default_factory=dict)
-    """Those defined for the whole robot."""
+    """Materials defined for the whole robot."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
     def report(self, diagnostic: Diagnostic) -> None:
@@ -47,16 +47,16 @@ class UrdfContext:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ReadLink:
-    """A link whose mass is not judged yet: that takes the tree."""
+    """A link whose mass has not been checked yet, because this requires the tree."""
 
     link: Link
-    """Without inertial, and without pose."""
+    """Without inertial and pose."""
     inertial: Inertial | None
     inertial_origin: Origin | None
 
 
 def read_origin(node: Node) -> Pose:
-    """The ``<origin xyz rpy>`` of an element, identity where there is none."""
+    """The ``<origin xyz rpy>`` of an element; identity if missing."""
     origin = node.child("origin")
     if origin is None:
         return Pose()
@@ -65,7 +65,7 @@ def read_origin(node: Node) -> Pose:
 
 
 def read_materials(robot: Node, ctx: UrdfContext) -> None:
-    """The materials that the whole robot may name, wherever they are defined."""
+    """Reads the materials available to the whole robot, wherever they are defined."""
     for node in robot.all("material"):
         _define(node, ctx)
     for link in robot.children:
@@ -93,10 +93,10 @@ def _define(node: Node, ctx: UrdfContext) -> None:
 
 
 def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
-    """A link, its parts named as Gazebo names them.
+    """A link, with its parts named as in Gazebo.
 
     Raises:
-        DescriptionError: An impossible size, or a value that is not a number.
+        DescriptionError: A size is impossible, or a value is not a number.
     """
     name = node.require("name").strip()
     visuals: list[Visual] = []
@@ -174,7 +174,7 @@ def _material(node: Node | None, ctx: UrdfContext) -> Material:
 
 
 def _stated(node: Node, name: str, ctx: UrdfContext) -> Material | None:
-    """What a ``<material>`` says itself; None where it is but a name."""
+    """The properties in a ``<material>``; None if it contains only a name."""
     colour, texture = node.child("color"), node.child("texture")
     if colour is None and texture is None:
         return None
@@ -189,7 +189,7 @@ def _stated(node: Node, name: str, ctx: UrdfContext) -> Material | None:
 
 
 def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
-    """Of a material; None where it is none, which leaves a robot without it. Source: urdfdom."""
+    """A material's colour; None if it is invalid and therefore ignored. Source: urdfdom."""
     text = node.require("rgba")
     values = text.split()
     try:
@@ -225,7 +225,7 @@ def _share(value: float) -> float:
 
 
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:
-    """The shape of a visual or collision; None where it is left out."""
+    """The shape of a visual or collision; None if it is skipped."""
     geometry = owner.child("geometry")
     if geometry is None:
         raise owner.fail(
@@ -261,7 +261,7 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
     if node.tag == "box":
         size = node.vec3_of("size")
         if min(size) < 0:
-            # Gazebo Classic draws it, inside out, as large as it is without the sign.
+            # Gazebo Classic draws it inside out, with the absolute size.
             ctx.report(
                 tags.VALUE_IGNORED.diagnostic(
                     f'a box of link "{link}" has the negative size {_listed(size)}, so the sign is '
@@ -294,7 +294,7 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
                 f'a {node.tag} of link "{link}" has the size {_listed(sizes)}, so the {kind} is '
                 "ignored",
                 origin=node.origin,
-                # With 0 alone it is the old way to write a link that is only a frame.
+                # All zeros are the old way to write a link that is only a frame.
                 severity="warning" if any(sizes) else "info",
                 values={"link": link, "stated": sizes, "left_out": kind},
             )
@@ -315,7 +315,7 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
         mesh = Mesh(uri=uri, path=path, scale=scale)
         load_mesh(mesh, origin=node.origin)
     except DescriptionError as error:
-        # As in Gazebo, and as in a world: it costs the one shape.
+        # As in Gazebo, and as in a world, this only affects the one shape.
         rest = " and does not collide" if kind == "collision" else ""
         ctx.report(
             loss(
@@ -343,19 +343,19 @@ def _inertial(node: Node) -> Inertial:
 
 
 def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfContext) -> Inertial:
-    """A link's inertia, or the nearest to it that a body can have.
+    """A link's inertia, or the nearest physically possible one.
 
-    Many a published arm has a link with one, and Gazebo computes with whatever is written; an
-    engine that conserves energy cannot.
+    Many published arms contain a link with an impossible inertia. Gazebo uses whatever is stated;
+    an energy-conserving engine cannot.
 
     Args:
-        inertial: With a mass above 0.
-        link: Its link's name.
-        rigid: Whether the link is fixed to another: then its inertia is but a part of a sum.
-        ctx: Takes the diagnostics.
+        inertial: Inertial with a positive mass.
+        link: Link name.
+        rigid: Whether the link is fixed to another link, so that its inertia is only part of a sum.
+        ctx: Receives the diagnostics.
 
     Raises:
-        DescriptionError: No principal moment is above 0.
+        DescriptionError: No principal moment is positive.
     """
     i = inertial
     diagonal, products = i.diagonal, i.products
@@ -374,7 +374,7 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
                     values={"link": link},
                 )
             )
-        return inertial  # a part that turns without any inertia is given one as a whole
+        return inertial  # a rotating part without any inertia gets one as a whole
     if moments[2] <= 0:
         raise DescriptionError(
             f'link "{link}": {message}',

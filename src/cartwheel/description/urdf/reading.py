@@ -1,7 +1,7 @@
-"""Expanded URDF into a `RobotDescription`.
+"""Reads expanded URDF into a `RobotDescription`.
 
-A URDF says it in three places: links and joints, the ``<gazebo>`` tags that refer to them, and
-the tree that the joints make. This file puts them together; each has a file of its own.
+The information is in three places: links and joints, the ``<gazebo>`` tags that refer to them, and
+the tree of joints. This module combines them; each has its own module.
 """
 
 from __future__ import annotations
@@ -40,16 +40,16 @@ def read_urdf(
     text: str = "",
     diagnostics: Iterable[Diagnostic] = (),
 ) -> RobotDescription:
-    """What a ``<robot>`` describes.
+    """Reads a ``<robot>``.
 
     Args:
         root: Its root, with all xacro expanded.
-        packages: Finds the meshes and textures that it names.
-        text: The expanded XML, kept with the robot.
-        diagnostics: Those of the expansion.
+        packages: Resolves meshes and textures.
+        text: The expanded XML, stored in the description.
+        diagnostics: Diagnostics of the expansion.
 
     Raises:
-        DescriptionError: it is no robot; names the place and the likely fix.
+        DescriptionError: The element is not a valid robot.
     """
     if root.tag != "robot":
         raise root.fail(
@@ -147,7 +147,7 @@ def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
 
 
 def _warn_unprefixed(root: Node, ctx: UrdfContext) -> None:
-    """Warns of xacro's elements in the spelling without a prefix, which ROS gave up long ago."""
+    """Warns about xacro elements without a prefix, which ROS no longer supports."""
     for tag in ("include", "property", "macro", "arg", "if", "unless"):
         for node in root.all(tag):
             node.mark()
@@ -162,7 +162,7 @@ def _warn_unprefixed(root: Node, ctx: UrdfContext) -> None:
 
 
 def distinct(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Each once for each line: a macro that is called ten times repeats its diagnostics."""
+    """Removes duplicates on each line: a macro that is called ten times repeats its diagnostics."""
     unique: dict[tuple[object, ...], Diagnostic] = {}
     for each in diagnostics:
         unique.setdefault(each.identity, each)
@@ -177,7 +177,7 @@ def _complete(part: ReadLink, tree: Tree, pose: Pose, tags: GazeboTags, ctx: Urd
 
 
 def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
-    """The link's mass, None where it has none or, at a place where that does no harm, no more."""
+    """The link's inertia; None if it has none, or an unusable one that does no harm there."""
     inertial, name = part.inertial, part.link.name
     if inertial is None:
         return None
@@ -198,7 +198,7 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
 
 
 def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link]:
-    """The links but for the one that stands for the world."""
+    """The links without the one that represents the world."""
     if tree.root != WORLD:
         return links
     kept = [link for link in links if link.name != WORLD]
@@ -222,7 +222,7 @@ def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link
 
 
 def _warn_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
-    """Warns of a robot made for rviz alone, which nothing holds."""
+    """Warns about a robot for rviz only, without collisions."""
     seen = next((link for link in links if link.visuals), None)
     if seen is not None and not any(link.collisions for link in links):
         ctx.report(

@@ -1,4 +1,4 @@
-"""The tree that a URDF's joints make of its links: its checks, its poses, its rigid parts."""
+"""The tree of a URDF's links and joints: checks, poses, rigid parts."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Pose
 
 WORLD = "world"
-"""The link of that name stands for the world where it is the root, as in Gazebo."""
+"""A root link with this name represents the world, as in Gazebo."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """Which joint holds each link."""
+    """The tree of links and joints."""
 
     root: str
     inbound: dict[str, Joint]
-    """By the child link."""
+    """Parent joint by child link."""
     children: dict[str, tuple[Joint, ...]]
-    """By the parent link, in the file's order."""
+    """Child joints by parent link, in file order."""
     order: tuple[str, ...]
     """All links, parents before children."""
 
     def poses(self, frames: dict[str, Pose]) -> dict[str, Pose]:
-        """Each link in the root's frame at zero positions.
+        """Pose of each link in the root's frame at zero positions.
 
         Args:
             frames: The joints' frames in their parent links, by name.
@@ -39,17 +39,17 @@ class Tree:
         return poses
 
     def rigid_root(self, link: str) -> str:
-        """The link that this one is fixed to, by fixed joints only; itself where it moves."""
+        """The root of the link's group of fixed joints; the link itself if it can move."""
         while link in self.inbound and self.inbound[link].type == "fixed":
             link = self.inbound[link].parent
         return link
 
     def lump_root(self, link: str, preserved: Iterable[str]) -> str:
-        """The link into which Gazebo merges this one, itself where it keeps it.
+        """The link into which Gazebo merges this link, or the link itself.
 
         Args:
             link: A link.
-            preserved: The fixed joints over which Gazebo is told not to merge.
+            preserved: The fixed joints that Gazebo is configured not to merge.
         """
         kept = set(preserved)
         while link in self.inbound:
@@ -61,10 +61,10 @@ class Tree:
 
 
 def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> Tree:
-    """Checks that the joints make one tree of the links.
+    """Checks that the joints connect the links to one tree.
 
     Raises:
-        DescriptionError: a link with two parents, a cycle, or more than one root.
+        DescriptionError: A link has two parents, there is a cycle, or more than one root.
     """
     inbound: dict[str, Joint] = {}
     children: dict[str, list[Joint]] = {name: [] for name, _ in links}
