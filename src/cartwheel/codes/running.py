@@ -23,7 +23,7 @@ PLUGIN_LEFT_OUT = Code(
     "CW508",
     "plugin-left-out",
     "error",
-    "a plugin cannot be used, and the rest of the model works without it",
+    "a plugin cannot be used; the rest of the model is still simulated",
 )
 PLUGIN_FAILED = Code(
     "CW509", "plugin-failed", "error", "a plugin raised an exception and is disabled"

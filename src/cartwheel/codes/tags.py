@@ -96,7 +96,7 @@ FRAMES_CIRCULAR = Code(
     "CW316",
     "frames-circular",
     "error",
-    "frames that are relative or attached to each other in a cycle",
+    "frames whose poses or attachments refer to each other in a cycle",
 )
 DEFAULT_USED = Code(
     "CW317",
@@ -108,7 +108,7 @@ ELEMENT_LEFT_OUT = Code(
     "CW318",
     "element-left-out",
     "warning",
-    "an element that is ignored because something that it requires is missing",
+    "an element that is ignored because it depends on a missing or conflicting element",
 )
 MODEL_EMPTY = Code(
     "CW319",

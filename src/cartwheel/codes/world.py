@@ -64,7 +64,7 @@ OPENGL_FORKED = Code(
     "CW622",
     "opengl-forked",
     "error",
-    "cameras do not work in a process that was forked after an image",
+    "cameras cannot render in a process that was forked after an image was rendered",
 )
 CALLBACK_FAILED = Code(
     "CW623", "callback-failed", "error", "a callback or command raised an exception"

@@ -347,7 +347,7 @@ def unread(
         values = {"tag": child.tag, "parent": node.tag}
         if reason is None and child.tag in node._asked_children:
             yield codes.TAG_REPEATED.diagnostic(
-                f"<{child.tag}> is repeated in <{node.tag}>: only the first one is used",
+                f"<{child.tag}> is repeated in <{node.tag}>, so only the first is used",
                 origin=child.origin,
                 values=values,
             )

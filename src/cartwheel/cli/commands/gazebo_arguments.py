@@ -185,7 +185,7 @@ def _server_notes(program: str, given: argparse.Namespace) -> list[str]:
             "debug: gdb is not used; informational messages are shown instead, as with --verbose"
         )
     if program == "perf":
-        notes.append("perf: valgrind is not used; this is an ordinary run")
+        notes.append("perf: valgrind is not used; the simulation runs normally")
     if given.physics != "ode":
         notes.append(
             f"-e {given.physics} is ignored: the engine is always MuJoCo, with the parameters for "

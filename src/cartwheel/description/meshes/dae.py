@@ -106,7 +106,7 @@ class _Scene:
     def _node(self, node: ET.Element, outer: Array, depth: int) -> Iterator[Submesh]:
         self.instances += 1
         if depth > MAX_DEPTH or self.instances > MAX_INSTANCES:
-            raise ValueError("its nodes contain each other in a cycle")
+            raise ValueError("the nodes contain each other in a cycle")
         transform = outer @ self._transform(node)
         name = node.get("name") or node.get("id") or ""
         for child in node:

@@ -195,8 +195,8 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
             if suspension.children:
                 ctx.report(
                     tags.NOT_SIMULATED.diagnostic(
-                        f'joint "{name}": <suspension> has no effect because it is rigid in '
-                        "Cartwheel",
+                        f'joint "{name}": <suspension> has no effect because suspensions are rigid '
+                        "in Cartwheel",
                         origin=suspension.origin,
                         severity="warning",
                         values={"joint": name, "tag": "suspension"},

@@ -205,7 +205,7 @@ def _default_physics(node: Node, ctx: Context) -> Node | None:
             each.mark()
             ctx.report(
                 tags.TAG_REPEATED.diagnostic(
-                    "<physics> is repeated: only one of them is used",
+                    "<physics> is repeated, so only the default or first <physics> is used",
                     origin=each.origin,
                     severity="info",
                     values={"tag": "physics", "parent": "world"},
