@@ -59,8 +59,9 @@ def test_a_sample_of_the_seeded_faults_is_found(tmp_path: Path):
     figures = {figure["name"]: figure for figure in measure(tmp_path, "check")["figures"]}
     assert all(set(figure) == FIELDS for figure in figures.values())
     assert figures["recall, documents of the tests"]["value"] == 100
-    assert figures["recall, mutations"]["value"] >= 80, figures
-    assert figures["precision, mutations"]["value"] >= 80, figures
+    for kind in ("URDF", "SDF", "xacro"):
+        assert figures[f"recall, mutations of {kind}"]["value"] >= 80, figures
+        assert figures[f"precision, mutations of {kind}"]["value"] >= 80, figures
     assert figures["harmless edits with a finding"]["value"] == 0, figures
     assert figures["shipped"]["value"] == 0, figures
 

@@ -458,7 +458,7 @@ def test_a_trajectory_that_cannot_be_followed_is_refused(make):
     for names, positions, model, what in (
         (["trun"], [0.1], "arm", "no movable joint"),
         (["turn"], [0.1, 0.2], "arm", "2 positions for 1 joints"),
-        (["turn"], [0.1], "leg", 'not "leg"'),
+        (["turn"], [0.1], "leg", '"leg"'),
     ):
         answer = ask(names, positions, model)
         assert not answer.success

@@ -107,7 +107,7 @@ def test_a_model_of_the_database_is_included_by_its_name(spawn, gazebo):
     done = spawn("-sdf -database traffic_cone -model m", status=1)
     assert "<uri>model://traffic_cone</uri>" in taking.next()[1]["xml"]
     assert "GAZEBO_MODEL_PATH" in done.stderr
-    assert "is not downloaded" in done.stderr
+    assert "nothing is downloaded" in done.stderr
 
 
 def test_it_waits_for_another_model(spawn, gazebo):

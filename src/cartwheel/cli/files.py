@@ -32,7 +32,10 @@ def view(
     port: arguments.Port = 8080,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """View the joints, frames and inertia of a robot description, without physics."""
+    """View a robot description without physics.
+
+    The browser shows its joints, frames and inertia.
+    """
     from cartwheel.cli.commands import view as work
 
     file, values = arguments.split(words)
