@@ -21,7 +21,7 @@ class ForceParameters:
     frame: Literal["world", "link"] = tag(
         "force_frame",
         default="world",
-        doc="Frame of the commanded wrench (ROS 2).",
+        doc="Frame of the commanded wrench. Read only by the ROS 2 plugin.",
     )
 
 

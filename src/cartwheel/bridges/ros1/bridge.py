@@ -236,7 +236,7 @@ class Ros1Bridge:
         self._lost = False
         self._warn(
             ROS_MASTER_BACK.diagnostic(
-                "a ROS master responds again; topics and services have been registered",
+                "the ROS master is reachable again; topics and services have been registered",
                 values={"uri": self.master_uri, "losses": self._losses},
             )
         )

@@ -23,7 +23,7 @@ def read_stl(data: bytes) -> list[Submesh]:
     """
     corners = _read_ascii(data) if _is_ascii(data) else _read_binary(data)
     if not np.isfinite(corners).all():
-        raise ValueError("a vertex is not a finite number")
+        raise ValueError("a vertex coordinate is not finite")
     first, inverse = unique_rows(corners)
     submesh = build_submesh("", corners[first], inverse.reshape(-1, 3))
     return [submesh] if submesh else []

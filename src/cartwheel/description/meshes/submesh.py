@@ -103,7 +103,7 @@ def build_submesh(
     points = np.ascontiguousarray(vertices, dtype=np.float32).reshape(-1, 3)
     triangles = np.ascontiguousarray(faces, dtype=np.int64).reshape(-1, 3)
     if not np.isfinite(points).all():
-        raise ValueError("a vertex is not a finite number")
+        raise ValueError("a vertex coordinate is not finite")
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
         raise ValueError("a face refers to a vertex that does not exist")
     proper = _has_area(points, triangles)
