@@ -319,7 +319,7 @@ def _duration(value: bytes, order: str) -> float:
 def _text(value: bytes, order: str) -> str:
     (length,) = struct.unpack_from(f"{order}I", value)
     if length > min(_LONGEST_NAME, len(value) - 4):
-        raise MalformedError("a string extends past the end of its message or exceeds the maximum name length")
+        raise MalformedError("a string extends past its message or exceeds the maximum length")
     return value[4 : 4 + max(0, length - 1)].decode()
 
 
