@@ -269,7 +269,7 @@ UNUSABLE = [
     ('<!DOCTYPE a [<!ENTITY b "c">]><COLLADA/>', "entities"),
     (document(unit="0"), "unit"),
     (document(unit="x"), "could not convert"),
-    (document(positions="0 0 0 1 0 0 0 nan 0"), "not a finite number"),
+    (document(positions="0 0 0 1 0 0 0 nan 0"), "not finite"),
     (document(positions="0 0 0 1 0 0"), "refers to entry 2"),
     (document(nodes='<node><instance_geometry url="#none"/></node>'), '"#none"'),
     (document(nodes='<node id="a"><instance_node url="#a"/></node>'), "in a cycle"),
