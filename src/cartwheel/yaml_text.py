@@ -68,7 +68,7 @@ def loader() -> type[yaml.SafeLoader]:
             event: Any = self.peek_event()  # type: ignore[no-untyped-call]
             if self._depth >= MAX_DEPTH:
                 raise yaml.composer.ComposerError(
-                    None, None, f"nested more than {MAX_DEPTH} deep", event.start_mark
+                    None, None, f"nested more than {MAX_DEPTH} levels deep", event.start_mark
                 )
             before = self._values
             mark: Any = event.start_mark

@@ -135,7 +135,7 @@ OpenBrowser = Annotated[
     bool | None,
     typer.Option(
         "--open/--no-open",
-        help="Open the web interface in a browser. Default: only on a desktop.",
+        help="Open the web interface in a browser. Default: open if a desktop session is running.",
         rich_help_panel=help.PAGE,
     ),
 ]

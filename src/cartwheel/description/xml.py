@@ -179,7 +179,7 @@ def run_expat(text: str | bytes, file: str, handler: Handler) -> None:
         line = parser.CurrentLineNumber
         if len(still_open) >= MAX_DEPTH:
             raise DescriptionError(
-                f"elements are nested more than {MAX_DEPTH} deep",
+                f"elements are nested more than {MAX_DEPTH} levels deep",
                 code=codes.XML_MALFORMED,
                 origin=Origin(file=file, line=line),
             )

@@ -209,7 +209,7 @@ class DiffDrive(WheelDrive):
                 f"{config.pairs} right joints (got {len(lefts)} left, {len(rights)} right)",
                 code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
-                hint="<num_wheel_pairs> is the number of pairs.",
+                hint="Set <num_wheel_pairs> to the number of pairs of left and right wheels.",
                 values={"left": len(lefts), "right": len(rights)},
             )
         separations, diameters = config.wheel_separation, config.wheel_diameter

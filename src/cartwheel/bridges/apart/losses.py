@@ -93,7 +93,7 @@ class Losses:
             self._still = False
             self._warn(
                 BRIDGE_RECOVERED.diagnostic(
-                    f"the bridge process reads again; {_counted(lost)} were dropped",
+                    f"the bridge process has caught up; {_counted(lost)} were dropped",
                     values={"dropped": _counted(lost)},
                 )
             )

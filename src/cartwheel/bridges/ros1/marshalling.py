@@ -33,7 +33,7 @@ def read_values(body: bytes) -> tuple[tuple[Any, ...], str | None]:
         nonlocal depth
         depth += 1
         if depth > DEPTH:
-            raise MalformedError(f"elements are nested more than {DEPTH} deep")
+            raise MalformedError(f"elements are nested more than {DEPTH} levels deep")
         made.start(tag, attributes)
 
     def end(tag: str) -> None:

@@ -79,7 +79,7 @@ class Evaluator:
         if isinstance(found, _Lambda):
             if self._calls >= MAX_CALLS:
                 raise ExpressionError(
-                    f"lambda calls are nested more than {MAX_CALLS} deep",
+                    f"lambda calls are nested more than {MAX_CALLS} levels deep",
                     values={"kind": "lambda", "most": MAX_CALLS},
                 )
             self._calls += 1
@@ -188,7 +188,7 @@ def _compiled(text: str) -> _Code:
 def _code(node: ast.expr, depth: int) -> _Code:
     if depth > MAX_NESTING:
         raise ExpressionError(
-            f"the expression is nested more than {MAX_NESTING} deep",
+            f"the expression is nested more than {MAX_NESTING} levels deep",
             values={"kind": "nesting", "most": MAX_NESTING},
         )
     make = _NODES.get(type(node))

@@ -68,7 +68,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     """
     if depth > MAX_NESTING:
         raise node.fail(
-            f"models are nested more than {MAX_NESTING} deep", code=files.INCLUDE_RECURSIVE
+            f"models are nested more than {MAX_NESTING} levels deep", code=files.INCLUDE_RECURSIVE
         )
     name = require_name(node)
     if included is not None and included.name:
