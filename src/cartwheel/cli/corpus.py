@@ -34,7 +34,7 @@ def corpus(
     ] = 10.0,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Try every robot in a folder: load, stand, publish, drive, reach."""
+    """Test each robot in a folder: does it load, stand, publish and move?"""
     from cartwheel.cli.commands import corpus as work
 
     status = work.corpus(folders, package_path or [], json=json, standing=standing)
