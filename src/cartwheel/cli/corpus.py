@@ -34,7 +34,7 @@ def corpus(
     ] = 10.0,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Test each robot in a folder: does it load, stand, publish and move?"""
+    """Test whether each robot in a folder loads, stands and moves."""
     from cartwheel.cli.commands import corpus as work
 
     status = work.corpus(folders, package_path or [], json=json, standing=standing)
