@@ -80,6 +80,11 @@ class _Worker:
         COUNTERS.pack_into(self._counters, 0, *self._numbers)
         given = self._task.get("inputs")
         if given is not None:
+            # As in a campaign, where a seed imports what is needed before memory is limited.
+            with contextlib.suppress(*self._target.allowed):
+                self._target.run_one(self._target.seeds()[0])
+            self._limited = True
+            self._limit()
             for file in given:
                 self._one(Path(file).read_bytes())
             return

@@ -154,7 +154,7 @@ def test_a_browser_may_leave_at_any_moment(fresh, monkeypatch, caplog, kind, met
         return sum(len(tab._children) for tab in desk._tabs.values())
 
     before = controls()
-    left, gone = threading.Event(), threading.Event()
+    opened, left, gone = threading.Event(), threading.Event(), threading.Event()
     leaving = []
 
     async def disconnected(handle):
@@ -173,6 +173,8 @@ def test_a_browser_may_leave_at_any_moment(fresh, monkeypatch, caplog, kind, met
             if new and not left.is_set():
                 left.set()
                 leaving.extend(new)
+                # The page can deal with it before this test's thread has the connection.
+                assert opened.wait(60.0)
                 going.close()
                 assert gone.wait(60.0)
             return original(*arguments, **options)
@@ -180,6 +182,7 @@ def test_a_browser_may_leave_at_any_moment(fresh, monkeypatch, caplog, kind, met
         monkeypatch.setattr(kind, method, leave)
         with caplog.at_level(logging.ERROR, logger="cartwheel.viewer"):
             going = stack.enter_context(client(fresh))
+            opened.set()
             assert left.wait(60.0)
             wait_for({number})
         # A busy machine may have other loggers warn.

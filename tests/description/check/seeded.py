@@ -399,7 +399,7 @@ WITHOUT_PLACE: dict[str, Case] = {
         'lower="0" upper="0"', 'type="fixed"'),
     "swapped": ("wheels-swapped", [("<leftJoint>left", "<leftJoint>right"),
         ("<rightJoint>right", "<rightJoint>left")], "<leftJoint>", "Swap"),
-    "caster": ("caster-friction", [("<mu1>0.0</mu1>", "<mu1>1.0</mu1>")], None, "Add it"),
+    "caster": ("caster-friction", [("<mu1>0.0</mu1>", "<mu1>1.0</mu1>")], None, "Add "),
     "deep": ("wheels-off-ground", [('<box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>',
         '<box size="0.4 0.3 0.25"/>\n      </geometry>\n    </collision>')], None, "Raise the collision"),
     "overlap": ("overlapping-collisions", [("  <gazebo>\n", "  <gazebo><self_collide>true</self_collide>"),
