@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 
 
 class Budget:
@@ -12,19 +13,23 @@ class Budget:
     Args:
         most: Maximum number of events in a burst.
         rate: Long-term rate, Hz.
+        clock: Current time, ns. It may jump back, as simulation time does after a reset.
     """
 
-    def __init__(self, most: int, rate: float) -> None:
-        self._most, self._rate = most, rate
-        self._left, self._since = float(most), time.monotonic()
+    def __init__(
+        self, most: int, rate: float, clock: Callable[[], int] = time.monotonic_ns
+    ) -> None:
+        self._most, self._rate, self._clock = most, rate, clock
+        self._left, self._since_ns = float(most), clock()
         self._lock = threading.Lock()
 
     def take(self) -> bool:
         """Counts an event if the budget allows it; returns whether it does."""
         with self._lock:
-            now = time.monotonic()
-            self._left = min(self._most, self._left + (now - self._since) * self._rate)
-            self._since = now
+            now_ns = self._clock()
+            passed = max(0, now_ns - self._since_ns) / 1e9
+            self._left = min(self._most, self._left + passed * self._rate)
+            self._since_ns = now_ns
             if self._left < 1.0:
                 return False
             self._left -= 1.0

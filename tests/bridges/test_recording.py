@@ -23,6 +23,7 @@ from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from tests.coded import coded, raises
+from tests.processes import bridges_of
 
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder, writing
@@ -488,7 +489,7 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
         time.sleep(random.uniform(1.5, 3.0))
     finally:
         # Its recorder first: where the run alone is killed, that completes the file.
-        for pid in (*_children(process), process.pid):
+        for pid in (*bridges_of(process), process.pid):
             os.kill(pid, signal.SIGKILL)
         process.wait()
     times = [t for t, _ in _read_broken(name, path)["/clock"]]
@@ -513,7 +514,7 @@ def test_a_recorder_that_is_killed_early_has_the_beginning(name: str, tmp_path: 
             assert time.monotonic() < deadline and process.poll() is None
             time.sleep(0.01)
             times = _times_so_far(path)
-        (recorder,) = _children(process)
+        (recorder,) = bridges_of(process)
         os.kill(recorder, signal.SIGKILL)
         _, said = process.communicate(timeout=120)
     finally:
@@ -590,11 +591,6 @@ def _times_so_far(path: Path) -> list[int]:
         return [message.time_ns for message in recording.messages()]
     finally:
         recording.close()
-
-
-def _children(process: subprocess.Popen[Any]) -> list[int]:
-    listed = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text()
-    return [int(pid) for pid in listed.split()]
 
 
 def _holds_much(file: Path) -> bool:

@@ -1,6 +1,5 @@
 """Each wire of a run has a process of its own: what becomes of both when one of them ends."""
 
-import contextlib
 import os
 import signal
 import subprocess
@@ -12,12 +11,12 @@ from typing import Any
 
 import pytest
 from tests.cli.conftest import Program
+from tests.processes import bridges_of
 
 from cartwheel.codes.recording import RECORDING_BROKE_OFF
 from cartwheel.codes.wires import BRIDGE_ENDED
 
 _PATIENCE = 60.0
-_MARK = "cartwheel.bridges.apart.child"
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
 
@@ -27,17 +26,6 @@ def _until(condition: Callable[[], Any]) -> None:
     while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.02)
-
-
-def _children(process: subprocess.Popen[str]) -> list[int]:
-    """The processes of its bridges."""
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError, IndexError):
-            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == process.pid and _MARK in (folder / "cmdline").read_text():
-                found.append(int(folder.name))
-    return sorted(found)
 
 
 def _read_to(process: subprocess.Popen[str], start: str) -> None:
@@ -58,8 +46,8 @@ def _alive(pid: int) -> bool:
 
 def test_a_killed_run_leaves_no_process_and_a_whole_recording(program: Program) -> None:
     process = program.start("run", "--headless", "--ros2", "--record", "drive.mcap")
-    _until(lambda: len(_children(process)) == 2)
-    children = _children(process)
+    _until(lambda: len(bridges_of(process)) == 2)
+    children = bridges_of(process)
     file = program.folder / "drive.mcap"
     _until(lambda: file.exists() and file.stat().st_size > 100_000)
     process.kill()
@@ -76,8 +64,8 @@ def test_ctrl_c_ends_them_all_and_keeps_everything(program: Program) -> None:
         "run", "--headless", "--ros2", "--record", "drive.mcap", start_new_session=True
     )
     program.wait_until_up(process)
-    _until(lambda: len(_children(process)) == 2)
-    children = _children(process)
+    _until(lambda: len(bridges_of(process)) == 2)
+    children = bridges_of(process)
     file = program.folder / "drive.mcap"
     _until(lambda: file.exists() and file.stat().st_size > 100_000)
     # As a terminal does: to all of its foreground.
@@ -92,7 +80,7 @@ def test_ctrl_c_ends_them_all_and_keeps_everything(program: Program) -> None:
 def test_a_signal_to_all_of_them_keeps_everything(program: Program) -> None:
     process = program.start("run", "--headless", "--record", "drive.mcap")
     _read_to(process, "record")
-    (child,) = _children(process)
+    (child,) = bridges_of(process)
     # As systemd does.
     for pid in (child, process.pid):
         os.kill(pid, signal.SIGTERM)
@@ -104,7 +92,7 @@ def test_a_signal_to_all_of_them_keeps_everything(program: Program) -> None:
 def test_a_wire_that_dies_is_told_and_the_simulation_goes_on(program: Program) -> None:
     process = program.start("run", "--headless", "--ros2", "--for", "6")
     _read_to(process, "ros 2")
-    (child,) = _children(process)
+    (child,) = bridges_of(process)
     os.kill(child, signal.SIGKILL)
     out, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 0, error
@@ -115,7 +103,7 @@ def test_a_wire_that_dies_is_told_and_the_simulation_goes_on(program: Program) -
 def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
     process = program.start("run", "--headless", "--record", "drive.mcap")
     _read_to(process, "record")
-    (child,) = _children(process)
+    (child,) = bridges_of(process)
     os.kill(child, signal.SIGKILL)
     _, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 2
@@ -126,7 +114,7 @@ def test_a_recorder_that_dies_ends_the_run(program: Program) -> None:
 def test_a_wire_that_stands_still_does_not_hold_the_simulation(program: Program) -> None:
     process = program.start("run", "--headless", "--ros2", "--speed", "max", "--for", "60")
     _read_to(process, "ros 2")
-    (child,) = _children(process)
+    (child,) = bridges_of(process)
     os.kill(child, signal.SIGSTOP)
     out, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 0, error
@@ -161,8 +149,8 @@ def test_a_file_that_cannot_be_read_leaves_nothing_behind(program: Program) -> N
     paths = (str(program.folder), program.environment.get("PYTHONPATH", ""))
     program.environment["PYTHONPATH"] = os.pathsep.join(path for path in paths if path)
     process = program.start("run", "broken.urdf", "--headless", "--ros2", "--record", "a.mcap")
-    _until(lambda: len(_children(process)) == 2)
-    children = _children(process)
+    _until(lambda: len(bridges_of(process)) == 2)
+    children = bridges_of(process)
     (program.folder / "go on").touch()
     _, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.budget import Budget
 from cartwheel.graph.action import Action, Goal, GoalState
 from cartwheel.graph.graph import Graph, Publisher, Subscription
 from cartwheel.messages import header, message_class, recast, stamp
@@ -47,8 +48,7 @@ class ActionTopics:
         self._kind = f"{package}/msg/{name}"
         self._goal = f"{action.type}_Goal"
         self._open: list[Publisher | Subscription] = []
-        self._credit, self._credit_ns = float(_AT_ONCE), 0
-        """Changes that may be published at once, as of `_credit_ns`."""
+        self._changes = Budget(_AT_ONCE, _AT_ONCE_RATE, clock=action.time_ns)
 
         def advertise(topic: str, kind: str, rate: float | None = None) -> Publisher:
             made = graph.advertise(f"{action.name}/{topic}", kind, node=action.node, rate=rate)
@@ -101,19 +101,8 @@ class ActionTopics:
         """See `ActionListener`."""
         if goal.done and self._result.wanted:
             self._publish(self._result, "Result", goal, goal.result)
-        if self._is_at_once():
+        if self._changes.take():
             self.tell()
-
-    def _is_at_once(self) -> bool:
-        now = self._action.time_ns()
-        # Simulation time may have restarted.
-        passed = max(0, now - self._credit_ns) / 1e9
-        self._credit = min(_AT_ONCE, self._credit + passed * _AT_ONCE_RATE)
-        self._credit_ns = now
-        if self._credit < 1.0:
-            return False
-        self._credit -= 1.0
-        return True
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
         """See `ActionListener`."""

@@ -155,13 +155,13 @@ class OfferedAction:
 
     def _join(self) -> None:
         self.action.listen(self)
-        self._tell_status()
+        self._publish_status()
 
     def goal_changed(self, goal: Goal) -> None:
         """See `ActionListener`."""
         if self._submitting:
             return
-        self._have_status_told()
+        self._schedule_status()
         if goal.done:
             for reply in self._waiting.pop(goal.id, ()):
                 self._send_result(goal, reply)
@@ -247,19 +247,19 @@ class OfferedAction:
         else:
             self._respond(reply, "get_result", status=_STATES[goal.state], result=goal.result)
 
-    def _have_status_told(self) -> None:
+    def _schedule_status(self) -> None:
         """Publishes the goal states now, or together with the next changes."""
         if self._status_due:
             return
         wait = self._status_at + _STATUS_PAUSE - time.monotonic()
         if wait <= 0:
-            self._tell_status()
+            self._publish_status()
             return
         self._status_due = True
-        later = functools.partial(self._graph.post, self._tell_status)
+        later = functools.partial(self._graph.post, self._publish_status)
         self._loop.post(lambda: self._loop.after(wait, later))
 
-    def _tell_status(self) -> None:
+    def _publish_status(self) -> None:
         self._status_due = False
         self._status_at = time.monotonic()
         GoalStatus = message_class("action_msgs/msg/GoalStatus")

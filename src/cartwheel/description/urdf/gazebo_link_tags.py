@@ -10,7 +10,7 @@ from cartwheel.codes import tags as codes
 from cartwheel.description.losses import loss
 from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Light, Link, Material, Sensor, Visual
-from cartwheel.description.sdf.context import Context, read_pose
+from cartwheel.description.sdf.context import Context, not_simulated, read_pose
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.material import read_material
 from cartwheel.description.sdf.sensors import read_sensor
@@ -267,11 +267,4 @@ def warn_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:
     for tag, reason in reasons.items():
         for child in node.all(tag):
             child.mark()
-            ctx.report(
-                codes.NOT_SIMULATED.diagnostic(
-                    f"<{tag}> has no effect: {reason}",
-                    origin=child.origin,
-                    severity="warning",
-                    values={"tag": tag},
-                )
-            )
+            ctx.report(not_simulated(f"<{tag}> has no effect: {reason}", child))
