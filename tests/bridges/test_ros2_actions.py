@@ -227,7 +227,7 @@ def test_a_goal_is_followed_and_told_of(bridged: Ros2Bridged, peer: Peer) -> Non
     wait_for(lambda: {EXECUTING, SUCCEEDED} <= set(states()), "both states")
 
 
-def test_a_flood_of_changes_is_published_at_a_bounded_rate(bridged: Ros2Bridged, peer: Peer) -> None:
+def test_a_flood_of_changes_has_a_bounded_rate(bridged: Ros2Bridged, peer: Peer) -> None:
     """A message has the states of all goals, for each of which the simulation's thread is asked."""
     identity, _ = send(peer, point(1, 0.0, 0.0))
     result(peer, identity)
