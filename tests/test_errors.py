@@ -44,7 +44,7 @@ def test_a_name_of_megabytes_is_cut_and_compared_with_nothing(monkeypatch):
 
 def test_a_flood_of_warnings_is_shown_at_a_bounded_rate_and_counted(monkeypatch):
     now = [0.0]
-    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    monkeypatch.setattr("time.monotonic_ns", lambda: int(now[0] * 1e9))
     once = Once(5)
 
     def shown(name):

@@ -13,14 +13,14 @@ class Budget:
     Args:
         most: Maximum number of events in a burst.
         rate: Long-term rate, Hz.
-        clock: Current time, ns. It may jump back, as simulation time does after a reset.
+        clock: Current time, ns; by default wall time. It may jump back, as simulation time does
+            after a reset.
     """
 
-    def __init__(
-        self, most: int, rate: float, clock: Callable[[], int] = time.monotonic_ns
-    ) -> None:
-        self._most, self._rate, self._clock = most, rate, clock
-        self._left, self._since_ns = float(most), clock()
+    def __init__(self, most: int, rate: float, clock: Callable[[], int] | None = None) -> None:
+        self._most, self._rate = most, rate
+        self._clock = clock or time.monotonic_ns
+        self._left, self._since_ns = float(most), self._clock()
         self._lock = threading.Lock()
 
     def take(self) -> bool:
