@@ -16,8 +16,8 @@ from cartwheel.world.shapes import picture_error
 _SURFACE = {
     "slip1": "friction is Coulomb friction, without slip",
     "slip2": "friction is Coulomb friction, without slip",
-    "min_depth": "contacts are as stiff as the step allows",
-    "max_vel": "the speed at which contacts separate is not limited",
+    "min_depth": "penetration is corrected at any depth",
+    "max_vel": "the separation speed of penetrating bodies is not limited",
     "max_contacts": "all contacts are used",
     "surface_radius": "the contact patch does not grow with depth: set patch_radius",
     "collide_without_contact": "it has no contacts, and contact sensors do not detect it",
@@ -69,7 +69,11 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         if joint.axis.velocity is not None and joint.drivable and joint.name not in heeded:
             note("a joint's velocity limit", joint.origin, "only controllers use it")
         if joint.stop_cfm is not None or joint.stop_erp is not None:
-            note("a joint's stop_cfm or stop_erp", joint.origin, "joint limits are always stiff")
+            note(
+                "a joint's stop_cfm or stop_erp",
+                joint.origin,
+                "the stiffness of joint limits is fixed",
+            )
     for what, (origin, count, why) in found.items():
         times = f" ({count} times)" if count > 1 else ""
         yield world_codes.PHYSICS_SETTING_IGNORED.diagnostic(

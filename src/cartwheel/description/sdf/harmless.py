@@ -10,7 +10,7 @@ _TIME = "time starts at 0"
 _TERRAIN = "terrain is rendered with one colour or one texture, in full detail"
 _REST = "bodies at rest sleep automatically"
 _WIND = "wind is not simulated"
-_STOP = "joint limits are always stiff"
+_STOP = "the stiffness of joint limits is fixed"
 _MEASURED = "it is computed from the geometry because auto is true"
 _SURFACE = "only the colour image of a physically based material is rendered"
 _INERTIA = 'it is only used with <inertial auto="true">'
@@ -54,7 +54,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("ode", "bounce"): "joints do not bounce off their limits",
     ("ode", "cfm"): _ENGINE,
     ("ode", "erp"): _ENGINE,
-    ("ode", "fudge_factor"): "joints do not overshoot their limits in Cartwheel",
+    ("ode", "fudge_factor"): "it corrects an error of ODE that does not exist in MuJoCo",
     ("ode", "max_force"): "Gazebo does not read it either: joints are driven by plugins",
     ("ode", "max_vel"): "it belongs in <contact>",
     ("ode", "min_depth"): "it belongs in <contact>",

@@ -27,14 +27,14 @@ LINK_TAGS = (
 )  # fmt: skip
 
 _IDLE = {
-    "canonicalBody": "the root link is always the canonical body",
+    "canonicalBody": "the canonical body is always the root link",
     "projector": "projectors are not supported",
     "audio_source": "audio is not supported",
     "audio_sink": "audio is not supported",
     "battery": "batteries of links are not supported",
     "particle_emitter": "particle emitters are not supported",
     "enable_wind": "wind is not simulated",
-    "must_be_base_link": "the root link is always the base",
+    "must_be_base_link": "the base is always the root link",
 }
 _SURFACE = {
     "mu": "mu1",

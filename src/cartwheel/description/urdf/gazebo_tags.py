@@ -225,8 +225,8 @@ def _read_joint_tags(
         fudge.mark()
         ctx.report(
             codes.NOT_SIMULATED.diagnostic(
-                "<fudgeFactor> has no effect because joints do not overshoot their limits in "
-                "Cartwheel",
+                "<fudgeFactor> has no effect: it corrects an error of ODE that does not exist in "
+                "MuJoCo",
                 origin=fudge.origin,
                 values={"tag": "fudgeFactor"},
             )
