@@ -23,8 +23,8 @@ Sim = Annotated[
     typer.Option(
         "--sim",
         metavar="PID",
-        help="Process ID of the simulation, if several are running. Can also be set with "
-        f"{VARIABLE}.",
+        help="Process ID of the simulation to control, if several are running. Default: the "
+        f"environment variable {VARIABLE}.",
     ),
 ]
 
@@ -47,6 +47,14 @@ ModelNames = Annotated[
         "FILE [NAME:=VALUE]...",
         "Model file (xacro, URDF or SDF) or the name of a bundled model, and values for its xacro "
         "arguments.",
+    ),
+]
+CheckNames = Annotated[
+    list[str] | None,
+    _names(
+        "FILE|FOLDER [NAME:=VALUE]...",
+        "Robot description (xacro, URDF or SDF), the name of a bundled one, or a folder of "
+        "descriptions; and values for xacro arguments.",
     ),
 ]
 RunNames = Annotated[
@@ -97,15 +105,19 @@ Model = Annotated[
         rich_help_panel=help.ROBOT,
     ),
 ]
-Host = Annotated[
-    str,
-    typer.Option(
+
+
+def _host(servers: str) -> Any:
+    return typer.Option(
         metavar="ADDRESS",
-        help="Address on which the web interface and the Foxglove server listen. With 0.0.0.0, "
-        "other computers can connect with the token in the printed address.",
+        help=f"Network address of {servers}. With 0.0.0.0, other computers can connect; they need "
+        "the token in the printed address.",
         rich_help_panel=help.PAGE,
-    ),
-]
+    )
+
+
+Host = Annotated[str, _host("the web interface")]
+RunHost = Annotated[str, _host("the web interface and the Foxglove server")]
 AllowOrigin = Annotated[
     list[str] | None,
     typer.Option(

@@ -27,7 +27,7 @@ def add_to(app: typer.Typer) -> None:
 
 
 def check(
-    words: arguments.Names = None,
+    words: arguments.CheckNames = None,
     *,
     select: Annotated[
         list[str] | None,
@@ -58,7 +58,9 @@ def check(
     strict: Annotated[
         bool,
         typer.Option(
-            "--strict", help="Exit with status 1 for notes too.", rich_help_panel=help.REPORT
+            "--strict",
+            help="Also exit with status 1 if there are notes.",
+            rich_help_panel=help.REPORT,
         ),
     ] = False,
     baseline: Annotated[
@@ -109,10 +111,10 @@ def check(
         ),
     ] = None,
 ) -> None:
-    """Find mistakes in a robot description, with suggested fixes.
+    """Find mistakes in robot descriptions, with suggested fixes.
 
-    Exits with status 0 if there are no errors or warnings (with --strict: no notes either), 1 if
-    there are, and 2 if the file cannot be read or is not a robot description.
+    Exit status: 0 if there are no errors or warnings, 1 if there are, 2 if the file cannot be read
+    or is not a robot description.
     """
     from cartwheel.cli.commands import check as work
 

@@ -18,10 +18,12 @@ def explain(
     codes: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[CODE]...", show_default=False, help="Code or name, such as CW204."
+            metavar="[CODE]...",
+            show_default=False,
+            help="Code, such as CW204, or name, such as file-missing. Default: list all codes.",
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the explanation as JSON.")] = False,
 ) -> None:
     """Explain a diagnostic code, or list all codes."""
     from cartwheel.cli.commands import explain as work

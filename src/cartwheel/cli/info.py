@@ -20,7 +20,7 @@ def info(
         Path, typer.Argument(metavar="FILE", show_default=False, help=arguments.RECORDING)
     ],
     *,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the information as JSON.")] = False,
 ) -> None:
     """List the topics of a recording, with types, counts and rates."""
     from cartwheel.cli.commands import info as work

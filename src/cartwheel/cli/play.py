@@ -55,7 +55,10 @@ def play(
     open_browser: arguments.OpenBrowser = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Play a recording in the browser and publish its topics."""
+    """Play a recording in the browser.
+
+    During playback, the commands topic, pause, resume, speed and reset work as in a simulation.
+    """
     from cartwheel.cli.commands import play as work
 
     work.play(

@@ -78,7 +78,7 @@ def run(
     ] = None,
     paused: arguments.Paused = False,
     headless: arguments.Headless = False,
-    host: arguments.Host = "127.0.0.1",
+    host: arguments.RunHost = "127.0.0.1",
     port: arguments.Port = 8080,
     allow_origin: arguments.AllowOrigin = None,
     open_browser: arguments.OpenBrowser = None,
@@ -138,7 +138,7 @@ def run(
         bool,
         typer.Option(
             "--foxglove",
-            help="Let Foxglove and Lichtblick connect at the --host address.",
+            help="Start a server for Foxglove and Lichtblick at the --host address.",
             rich_help_panel=help.WIRES,
         ),
     ] = False,
@@ -177,7 +177,7 @@ def run(
         typer.Option(
             "--record-encoding",
             metavar="ros1|ros2",
-            help="Message encoding in a .mcap file.",
+            help="Message encoding in a .mcap file. Default: ros2.",
             rich_help_panel=help.RECORDING,
         ),
     ] = None,

@@ -66,14 +66,17 @@ def echo(
 def hz(
     topic: Topic,
     count: Annotated[
-        int | None, typer.Option("-n", "--count", min=1, metavar="N", help="Stop after N reports.")
+        int | None,
+        typer.Option(
+            "-n", "--count", min=1, metavar="N", help="Stop after N measurements, one per second."
+        ),
     ] = None,
     window: Annotated[
-        int, typer.Option(min=2, metavar="N", help="Average over N messages.")
+        int, typer.Option(min=2, metavar="N", help="Average over the last N messages.")
     ] = 10_000,
     sim: Sim = None,
 ) -> None:
-    """Measure the rate of a topic in simulated time."""
+    """Measure the publish rate of a topic in simulated time."""
     from cartwheel.cli.commands import rate
 
     rate.measure(sim, topic, count=count, window=window)
@@ -97,10 +100,12 @@ def pub(
     ] = None,
     rate: Annotated[
         float | None,
-        typer.Option("-r", "--rate", metavar="HZ", help="Publish repeatedly at this rate."),
+        typer.Option(
+            "-r", "--rate", metavar="HZ", help="Publish repeatedly at this rate in wall time."
+        ),
     ] = None,
     once: Annotated[
-        bool, typer.Option("-1", "--once", help="Publish once; the default without --rate.")
+        bool, typer.Option("-1", "--once", help="Publish once. This is the default without --rate.")
     ] = False,
     count: Annotated[
         int | None,

@@ -36,7 +36,7 @@ ENCODING_UNFIT = Code(
     "a message encoding that a recording's format does not support",
 )
 RECORDING_BROKE_OFF = Code(
-    "CW909", "recording-broke-off", "error", "a recording that stopped before the simulation"
+    "CW909", "recording-broke-off", "error", "a recording that ended before the simulation did"
 )
 TOPIC_PATTERN_INVALID = Code(
     "CW910", "topic-pattern-invalid", "error", "a topic pattern that is not a regular expression"

@@ -130,7 +130,8 @@ class Report:
     def recorded(self, files: Sequence[PurePath], messages: int, topics: int, size: int) -> None:
         """Prints the contents of a finished recording."""
         names = ", ".join(map(str, files))
-        say(f"recorded {messages} messages on {topics} topics, {size_text(size)}, to {names}")
+        contents = f"{messages} messages on {topics} topics"
+        say(f"recorded {contents}, {size_text(size)} before compression, to {names}")
 
     def joined_ros2(self, node: str, where: str) -> None:
         """Prints the ROS 2 node, and its domain or router."""
