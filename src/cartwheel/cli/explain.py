@@ -20,7 +20,7 @@ def explain(
         typer.Argument(
             metavar="[CODE]...",
             show_default=False,
-            help="Code, such as CW204, or name, such as file-missing. Default: list all codes.",
+            help="Code (CW204) or name (file-missing). Default: list all codes.",
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the explanation as JSON.")] = False,

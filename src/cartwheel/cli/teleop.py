@@ -20,7 +20,7 @@ def teleop(
         str | None,
         typer.Option(
             metavar="TOPIC",
-            help="Topic to publish velocity commands on. Default: the only topic with a Twist subscriber.",
+            help="Topic of the velocity commands. Default: the only topic with a Twist subscriber.",
         ),
     ] = None,
     speed: Annotated[float, typer.Option(min=0, metavar="M/S", help="Initial linear speed.")] = 0.5,
