@@ -156,10 +156,10 @@ PLUGIN_RANGE_REVERSED = Code(
     "the lower bound of a range is not below its upper bound",
 )
 WHEELS_UNPAIRED = Code(
-    "CW461", "wheels-unpaired", "error", "a drive does not have as many left wheels as right wheels"
+    "CW461", "wheels-unpaired", "error", "a drive has different numbers of left and right wheels"
 )
 PLUGIN_IDLE = Code(
-    "CW462", "plugin-idle", "warning", "the configuration of a plugin leaves it without a function"
+    "CW462", "plugin-idle", "warning", "a plugin has no effect with its configuration"
 )
 PLUGIN_MISPLACED = Code(
     "CW463", "plugin-misplaced", "warning", "a plugin is inside the wrong element"
@@ -171,7 +171,10 @@ SENSOR_INCOMPLETE = Code(
     "CW465", "sensor-incomplete", "error", "a required sensor element is missing"
 )
 SCAN_SAMPLES_INVALID = Code(
-    "CW466", "scan-samples-invalid", "error", "a scan has no rays, too many, or a fraction of one"
+    "CW466",
+    "scan-samples-invalid",
+    "error",
+    "the number of rays is zero, too large or not an integer",
 )
 SCAN_REVERSED = Code(
     "CW467", "scan-reversed", "info", "a scan runs from its larger angle to its smaller one"

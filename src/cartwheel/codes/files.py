@@ -42,7 +42,7 @@ NOT_A_DESCRIPTION = Code(
     "CW107",
     "not-a-description",
     "error",
-    "a file that describes neither a robot, a model nor a world",
+    "a file that is not a robot, model or world",
 )
 WRONG_KIND = Code(
     "CW108",
