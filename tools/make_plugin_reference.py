@@ -17,6 +17,7 @@ import inspect
 import re
 import sys
 import typing
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -37,34 +38,40 @@ INTRODUCTION = f"""\
 {_MADE}
 
 Cartwheel supports these plugins and sensors. Plugins are listed by the `filename` in their
-`<plugin>` tag. Sensors that need no plugin are listed by type. Each page describes the tags, topics
+`<plugin>` tag, and sensors that need no plugin by their type. Each page describes the tags, topics
 and services.
 
-- A tag can have several spellings. If a `<plugin>` contains several spellings of a tag, the
-  spelling that is listed first on the plugin's page is used. Tags that can be repeated use the
-  values of all spellings. Unsupported tags are reported with file and line.
+- If a tag has several spellings and a `<plugin>` contains more than one of them, the spelling that
+  is listed first on the page applies. Repeatable tags combine the values of all spellings.
+- Unsupported tags are reported with file and line.
 - `<robotNamespace>` (or `<ros><namespace>`) is prepended to every topic and service name that does
   not begin with `/`. `<ros><remapping>` renames topics and services.
-- `<alwaysOn>` is accepted and has no effect. A plugin that publishes sensor data is active whenever
-  one of its topics has subscribers. A plugin that drives joints or applies forces is always active.
-- Any folder in `filename` is ignored. The prefix `lib` and the extension `.so` are optional. The
+- A plugin that publishes sensor data is active while one of its topics has subscribers. A plugin
+  that drives joints or applies forces is always active. `<alwaysOn>` is accepted and has no effect.
+- Folders in `filename` are ignored. The prefix `lib` and the extension `.so` are optional. The
   prefix `ignition-gazebo-` is read as `gz-sim-`.
 - A plugin that is not listed here has no effect. A warning is reported when the robot is loaded.
 
-Sensors written for gz-sim (Gazebo's successor to Gazebo Classic) need no `<plugin>`. They publish
-if the world or the model contains the matching system, such as `gz-sim-sensors-system`. Without
-the system, a sensor publishes if it contains `<topic>` or `<gz_frame_id>`, or if its type exists
-only in gz-sim.
-
-Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
-points to a subclass of `cartwheel.plugins.base.Plugin`. A package that cannot be loaded affects
-only robots that use its plugins. For such a robot, a warning reports that the plugin is not
-supported. The hint of the warning states why the package could not be loaded.
-
-A plugin that raises an error while it runs is disabled. Its topics and services are removed, its
+A plugin that raises an error while it runs is disabled: its topics and services are removed, its
 motors brake and its forces become 0. The error message names the plugin, its model, and the file
 and line of its tag; `--verbose` adds the traceback. The simulation continues unless `--strict` is
 set.
+
+## Sensors of gz-sim
+
+Sensors written for gz-sim (Gazebo's successor to Gazebo Classic) need no `<plugin>`. Such a sensor
+publishes in each of these cases:
+
+- The world or the model contains the matching system, such as `gz-sim-sensors-system`.
+- The sensor contains `<topic>` or `<gz_frame_id>`.
+- The sensor's type exists only in gz-sim.
+
+## Plugins in your own package
+
+Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
+points to a subclass of `cartwheel.plugins.base.Plugin`. If a package cannot be loaded, only robots
+that use its plugins are affected: a warning reports that the plugin is not supported, and its hint
+states why the package could not be loaded.
 """
 
 _TABLE = "The table lists the topics and services of the example above"
@@ -78,7 +85,7 @@ _TOPICS_INTRODUCTION = f"""\
 
 These tables list the plugins and sensors that publish or subscribe to messages of each type, and
 the plugins that provide services of each type. The page of a plugin or sensor lists the default
-names of its topics and services. `cartwheel topic list -v` and `cartwheel service list` show the
+names of its topics and services. `cartwheel topic list -v` and `cartwheel service list` list the
 names in a running simulation. Every simulation publishes `/clock`. [ROS 1](ros1.md) and
 [ROS 2](ros2.md) list the services that Cartwheel provides independently of plugins.
 """
@@ -117,7 +124,8 @@ def reference() -> dict[str, str]:
     # Without those of packages that happen to be installed here.
     ours = [plugin for plugin in all_plugins() if plugin.__module__.startswith("cartwheel.")]
     interfaces = {plugin: _interface(plugin) for plugin in ours}
-    pages = {f"{FOLDER}/{slug(p)}.md": _page(p, interfaces[p]) for p in ours}
+    links = {title(p): f"{slug(p)}.md" for p in ours}
+    pages = {f"{FOLDER}/{slug(p)}.md": _page(p, interfaces[p], links) for p in ours}
     assert len(pages) == len(ours), "two plugins have the same page"
     pictures = {_picture_name(p): picture(title(p), interfaces[p]) for p in ours if interfaces[p]}
     tables = [
@@ -167,14 +175,15 @@ def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
     return "\n".join([f"## {heading}", "", f"| {column} | Purpose |", "|---|---|", *rows, ""])
 
 
-def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
-    lines = [f"# {title(plugin)}", "", _MADE, "", *_prose(plugin), ""]
+def _page(plugin: type[Plugin[Any]], interface: Interface, links: dict[str, str]) -> str:
+    others = {name: page for name, page in links.items() if name != title(plugin)}
+    lines = [f"# {title(plugin)}", "", _MADE, ""]
+    lines += [*(_linked(line, others) for line in _prose(plugin)), ""]
     if len(plugin.filenames) > 1:
-        others = ", ".join(f"`{name}`" for name in plugin.filenames[1:])
-        lines += [f"Other file names: {others}.", ""]
+        lines += [f"Other file names: {_listed(plugin.filenames[1:], 'and')}.", ""]
     if not plugin.filenames:
-        kinds = ", ".join(f"`{kind}`" for kind in plugin.serves)
-        lines += [f"Applies to sensors of type {kinds} without a `<plugin>`.", ""]
+        kinds = _listed(plugin.serves, "or")
+        lines += [f"Applies to sensors of type {kinds} that have no `<plugin>`.", ""]
     elif plugin.for_world:
         lines += ["Place the `<plugin>` directly inside a `<world>`.", ""]
     elif plugin.for_sensor:
@@ -182,7 +191,7 @@ def _page(plugin: type[Plugin[Any]], interface: Interface) -> str:
     else:
         lines += ["Place the `<plugin>` directly inside `<gazebo>` (URDF) or `<model>` (SDF).", ""]
     lines += ["## Example", "", "```xml", example(plugin).rstrip(), "```", ""]
-    rows = [_row(item, kind) for item, kind in fields(plugin)]
+    rows = [_linked(_row(item, kind), others) for item, kind in fields(plugin)]
     if rows:
         lines += ["## Tags", "", "| Tag | Value | Default | Meaning |"]
         lines += ["|---|---|---|---|", *rows, ""]
@@ -215,22 +224,47 @@ def _markdown(text: str) -> str:
 
 def _row(item: dataclasses.Field[Any], kind: Any) -> str:
     names = "<br>".join(f"`{name}`" for name in item.metadata["tags"])
-    value = _kind(kind)
+    value = _kind(kind, nested=item.metadata["nested"])
     if item.metadata["unit"]:
         value = f"{value}, {item.metadata['unit']}"
-    cells = [names, value, _default(item), _markdown(item.metadata["doc"])]
+    if Ellipsis in typing.get_args(kind):
+        value = f"{value}, repeatable"
+    meaning, stated = _meaning(item.metadata["doc"])
+    default = _default(item)
+    assert not (default and stated), f"two defaults of {item.metadata['tags'][0]}"
+    cells = [names, value, default or _markdown(stated), _markdown(meaning)]
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-def _kind(kind: Any) -> str:
+def _meaning(doc: str) -> tuple[str, str]:
+    """Splits the default that a description ends with from its other sentences."""
+    meaning, _, stated = doc.partition(" Default: ")
+    return meaning, stated.removesuffix(".")
+
+
+def _listed(names: Iterable[Any], conjunction: str) -> str:
+    *others, last = (f"`{name}`" for name in names)
+    return f"{', '.join(others)} {conjunction} {last}" if others else last
+
+
+def _linked(line: str, links: dict[str, str]) -> str:
+    """A line in which the names of other plugins are links to their pages."""
+    for name, page in links.items():
+        line = line.replace(f"`{name}`", f"[`{name}`]({page})")
+    return line
+
+
+def _kind(kind: Any, *, nested: bool = False) -> str:
+    if nested:
+        return "tags"
     options = typing.get_args(kind)
     if typing.get_origin(kind) is typing.Literal:
-        return " or ".join(f"`{option}`" for option in options)
+        return _listed(options, "or")
     if type(None) in options:
         return _kind(next(option for option in options if option is not type(None)))
     if typing.get_origin(kind) is tuple:
         if options[-1] is Ellipsis:
-            return "strings" if options[0] is str else "numbers"
+            return _kind(options[0])
         return f"{len(options)} numbers"
     names = {bool: "boolean", float: "number", int: "integer", str: "string"}
     return names.get(kind, getattr(kind, "__name__", str(kind)))

@@ -114,8 +114,8 @@ class AckermannParameters:
     base_frame: str = tag(
         "robot_base_frame",
         default="base_footprint",
-        doc="Link whose pose the odometry reports. Defaults to the root link if no link has this "
-        "name.",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
     )
     publish_odom: bool = tag("publish_odom", default=False, doc="Publish the odometry on `odom`.")
     publish_odom_tf: bool = tag(
@@ -330,18 +330,21 @@ class GzAckermannParameters(GzLimitedParameters):
     kingpin_width: float = tag(
         "kingpin_width", default=0.8, unit="m", doc="Distance between the steering axes."
     )
-    wheel_base: float = tag("wheel_base", default=1.0, unit="m", doc="Distance between the axles.")
+    wheel_base: float = tag(
+        "wheel_base", default=1.0, unit="m", doc="Distance between the front and rear axles."
+    )
     steering_limit: float = tag(
         "steering_limit", default=0.5, unit="rad", doc="Maximum steering angle."
     )
     wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
     steer_gain: float = tag(
-        "steer_p_gain", default=1.0, doc="No effect: a servo steers without delay."
+        "steer_p_gain", default=1.0, doc="No effect: a position servo steers the wheels."
     )
     sub_topic: str = tag(
         "sub_topic",
         default="",
-        doc="Topic of the Twist commands below `/model/<model>`. Used if `<topic>` is empty.",
+        doc="Topic of the Twist commands, relative to `/model/<model>`. Used if `<topic>` "
+        "is not set.",
     )
     steering_only: bool = tag("steering_only", default=False, doc="Not supported.")
     actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
@@ -350,8 +353,9 @@ class GzAckermannParameters(GzLimitedParameters):
 class GzAckermann(SteeredDrive):
     """Drives and steers a car from Twist commands and publishes odometry from its wheels.
 
-    ``linear.x`` is in m/s, ``angular.z`` in rad/s. The odometry is computed from the rotation of
-    the driven wheels. Original plugin: ``AckermannSteering`` in gz-sim.
+    ``linear.x`` is the speed in m/s, and ``angular.z`` the yaw rate in rad/s. The odometry is
+    computed from the rotation of the driven wheels. Original plugin: ``AckermannSteering`` in
+    gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)

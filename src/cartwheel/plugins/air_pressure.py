@@ -43,9 +43,9 @@ class AirPressureParameters:
 class AirPressure(Plugin[AirPressureParameters]):
     """Publishes the air pressure at the height of the sensor, in Pa.
 
-    ``<reference_altitude>`` is the height of the world's origin above sea level. The noise in the
-    sensor's ``<pressure><noise>`` is applied. Original sensor: ``AirPressureSensor`` in gz-sensors.
-    The pressure follows the International Standard Atmosphere.
+    The pressure follows the International Standard Atmosphere. ``<reference_altitude>`` is the
+    height of the world's origin above sea level. The noise in the sensor's ``<pressure><noise>`` is
+    applied. Original sensor: ``AirPressureSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

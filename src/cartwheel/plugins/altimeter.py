@@ -28,9 +28,10 @@ class AltimeterParameters:
 class Altimeter(Plugin[AltimeterParameters]):
     """Publishes the height of a sensor above its initial height, and its vertical velocity.
 
-    The message field ``vertical_reference`` is the height in the world at which the sensor was
-    spawned. The noise in ``<vertical_position>`` and ``<vertical_velocity>`` is applied. Original
-    sensor: ``AltimeterSensor`` in gz-sensors. The message type is that of ros_gz_bridge.
+    Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the initial
+    height, measured in the world. The noise in ``<vertical_position>`` and ``<vertical_velocity>``
+    is applied. Original sensor: ``AltimeterSensor`` in gz-sensors. The message type is the same as
+    in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -30,7 +30,7 @@ class BatteryParameters:
         "open_circuit_voltage_constant_coef",
         default=None,
         unit="V",
-        doc="Open-circuit voltage of the full battery. Defaults to `<voltage>`.",
+        doc="Open-circuit voltage of the full battery. Default: `<voltage>`.",
     )
     linear: float = tag(
         "open_circuit_voltage_linear_coef",
@@ -41,7 +41,7 @@ class BatteryParameters:
     )
     capacity: float = tag("capacity", unit="A h", doc="Charge of the full battery.")
     charge: float | None = tag(
-        "initial_charge", default=None, unit="A h", doc="Initial charge. Defaults to the capacity."
+        "initial_charge", default=None, unit="A h", doc="Initial charge. Default: the capacity."
     )
     resistance: float = tag("resistance", default=0.0, unit="Ω", doc="Internal resistance.")
     smoothing: float = tag(
@@ -59,13 +59,13 @@ class BatteryParameters:
     drain_topics: tuple[str, ...] = tag(
         "power_draining_topic",
         default=(),
-        doc="Topic on which any message starts discharging. Can be repeated. The type is Empty "
-        "unless another plugin defines the topic.",
+        doc="Topic on which any message starts discharging. The message type is Empty, "
+        "unless another plugin uses the topic with a different type.",
     )
     stop_topics: tuple[str, ...] = tag(
         "stop_power_draining_topic",
         default=(),
-        doc="Topic on which any message stops discharging. Can be repeated.",
+        doc="Topic on which any message stops discharging.",
     )
     rechargeable: bool = tag(
         "enable_recharge",
@@ -90,16 +90,23 @@ class BatteryParameters:
         default=False,
         doc="Publish a discharging current as negative, as sensor_msgs/BatteryState defines it.",
     )
-    fixed: bool = tag("fix_issue_225", default=False, doc="No effect: the fix is always applied.")
+    fixed: bool = tag(
+        "fix_issue_225",
+        default=False,
+        doc="No effect: the fix of gz-sim's issue 225 is always applied.",
+    )
 
 
 class Battery(Plugin[BatteryParameters]):
     """Simulates a battery that discharges at constant power.
 
     Discharging starts when a plugin first turns a joint of the model, for example after a drive
-    command. It also starts with a message on ``<power_draining_topic>``, or at startup with
-    ``<start_draining>``. The voltage is ``constant + linear (1 - charge / capacity) - resistance *
-    current``. Recharging stops at 90 % of the capacity. BatteryState is published at 50 Hz on
+    command. It also starts with a message on ``<power_draining_topic>``, or when the simulation
+    starts if ``<start_draining>`` is true. The voltage is ``constant + linear (1 - charge /
+    capacity) - resistance * current``, where ``constant`` and ``linear`` are the open-circuit
+    voltage coefficients.
+
+    Recharging stops at 90 % of the capacity. BatteryState is published at 50 Hz on
     ``/model/<model>/battery/<battery_name>/state``. The message field ``percentage`` is from 0 to
     1, as in ROS. An empty battery causes a warning and does not stop the robot. Original plugin:
     ``LinearBatteryPlugin`` in gz-sim.

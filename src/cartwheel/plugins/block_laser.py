@@ -23,7 +23,7 @@ class BlockLaserParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     noise: float = tag(
         "gaussianNoise",

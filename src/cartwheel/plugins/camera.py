@@ -26,8 +26,8 @@ class CameraParameters:
         "cameraName",
         "camera_name",
         default="",
-        doc="Namespace of the topics. Defaults to the sensor's name, or to no namespace if other "
-        "tags have ROS 1 spellings.",
+        doc="Namespace of the topics. Default: the sensor's name, or no namespace if other "
+        "tags have ROS 1 spellings such as `imageTopicName`.",
     )
     image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
     info_topic: str = tag(
@@ -37,7 +37,7 @@ class CameraParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -123,30 +123,30 @@ class CameraParameters:
         "P_fx",
         default=None,
         unit="px",
-        doc="fx in the projection matrix P (ROS 2). Defaults to fx in K.",
+        doc="fx in the projection matrix P (ROS 2). Default: fx in K.",
     )
     p_fy: float | None = tag(
         "P_fy",
         default=None,
         unit="px",
-        doc="fy in the projection matrix P (ROS 2). Defaults to fy in K.",
+        doc="fy in the projection matrix P (ROS 2). Default: fy in K.",
     )
     p_cx: float | None = tag(
         "P_cx",
         default=None,
         unit="px",
-        doc="cx in the projection matrix P (ROS 2). Defaults to cx in K.",
+        doc="cx in the projection matrix P (ROS 2). Default: cx in K.",
     )
     p_cy: float | None = tag(
         "P_cy",
         default=None,
         unit="px",
-        doc="cy in the projection matrix P (ROS 2). Defaults to cy in K.",
+        doc="cy in the projection matrix P (ROS 2). Default: cy in K.",
     )
     p_tx: float | None = tag(
         "Tx",
         default=None,
-        doc="Tx in the projection matrix P (ROS 2). Defaults to -fx times the baseline.",
+        doc="Tx in the projection matrix P (ROS 2). Default: -fx times the baseline.",
     )
     p_ty: float = tag("Ty", default=0.0, doc="Ty in the projection matrix P (ROS 2).")
     trigger_topic: str = tag(
@@ -272,14 +272,13 @@ class Camera(RosCamera[DepthByTypeParameters]):
     """Publishes the images of a camera sensor.
 
     The sensor looks along its x axis. Images are rendered only while one of the topics has
-    subscribers. The topics are below ``<cameraName>``. If this tag is missing, they are below the
-    sensor's name, or directly in the plugin's namespace if other tags have ROS 1 spellings. Each
-    camera of a ``multicamera`` sensor has separate topics, such as ``<cameraName>/left/image_raw``.
-    For a ``depth`` sensor, the plugin also publishes depth images and points.
+    subscribers. The topics are in the namespace ``<cameraName>``. Each camera of a ``multicamera``
+    sensor has separate topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the
+    plugin also publishes depth images and points.
 
-    ``image_raw/compressed`` contains JPEG or PNG images. ``set_camera_info`` replaces the published
-    CameraInfo; the image does not change. If the plugin tag is written for ROS 1, ``imager_rate``
-    and the compression parameters can be changed with dynamic_reconfigure.
+    ``image_raw/compressed`` contains JPEG or PNG images. The service ``set_camera_info`` replaces
+    the published CameraInfo and does not change the image. If the plugin tag is written for ROS 1,
+    ``imager_rate`` and the compression parameters can be changed with dynamic_reconfigure.
 
     The image is distorted with the sensor's ``<distortion>``, or else with the plugin's
     coefficients. ``camera_info`` contains the same coefficients.
@@ -335,9 +334,9 @@ class ProsilicaParameters(CameraParameters):
 class Prosilica(RosCamera[ProsilicaParameters]):
     """Publishes the images of a Prosilica camera in streaming mode.
 
-    Topics are the same as for ``libgazebo_ros_camera.so``. If the parameter ``trigger_mode`` is
-    ``polled``, a warning is reported. Original plugin: ``gazebo_ros_prosilica`` in the package
-    ``gazebo_plugins``.
+    Topics are the same as for ``libgazebo_ros_camera.so``. Setting the parameter ``trigger_mode``
+    to ``polled`` has no effect and causes a warning. Original plugin: ``gazebo_ros_prosilica`` in
+    the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)

@@ -60,9 +60,9 @@ class Create3BumperParameters:
 class Create3Bumper(_Hazard):
     """Publishes the pressed zone of the bumper as a HazardDetection of type BUMP.
 
-    The frame ID is one of five zones, such as ``bump_front_left``. If several zones are pressed,
-    the zone with the deepest contact is published. Original plugin: ``gazebo_ros_bumper`` in the
-    package ``irobot_create_gazebo_plugins``.
+    The frame ID is the name of one of five zones, such as ``bump_front_left``. If several zones are
+    pressed, the zone with the deepest contact is published. Original plugin: ``gazebo_ros_bumper``
+    in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
@@ -125,16 +125,16 @@ class Create3Cliff(_Hazard):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3IntensityParameters:
     frame: str = tag(
-        "frame_name", default="", doc="Frame ID of the messages. Defaults to the sensor's link."
+        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
     )
 
 
 class Create3Intensity(Plugin[Create3IntensityParameters]):
     """Publishes the intensity of reflected infrared light.
 
-    The intensity is ``3500 exp(-2 e d / max)``, where d is the distance to the nearest obstacle and
-    max is the maximum range of the ray sensor. Original plugin: ``gazebo_ros_ir_intensity_sensor``
-    in the package ``irobot_create_gazebo_plugins``.
+    The intensity is ``3500 exp(-2 e d / max)``, where e is Euler's number, d is the distance to the
+    nearest obstacle and max is the maximum range of the ray sensor. Original plugin:
+    ``gazebo_ros_ir_intensity_sensor`` in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
@@ -175,15 +175,15 @@ def _nearest(scanner: Scanner) -> float:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3ImuParameters:
     frame: str = tag(
-        "frame_name", default="", doc="Frame ID of the messages. Defaults to the sensor's link."
+        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
     )
 
 
 class Create3Imu(ImuBase):
-    """Publishes the measurements of an IMU sensor, with accelerations that exclude gravity.
+    """Publishes the measurements of an IMU sensor. Accelerations exclude gravity.
 
-    Gazebo's plugin also excludes gravity. Original plugin: ``gazebo_ros_imu`` in the package
-    ``irobot_create_gazebo_plugins``.
+    Original plugin: ``gazebo_ros_imu`` in the package ``irobot_create_gazebo_plugins``, which also
+    excludes gravity.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)

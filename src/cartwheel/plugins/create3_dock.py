@@ -137,8 +137,8 @@ class Create3DockStatusParameters(_Dock):
 class Create3DockStatus(_Docking):
     """Publishes whether the robot detects its dock and whether it is docked.
 
-    The dock is visible while its codes are received on ``ir_opcode``. Nothing is published if the
-    world has no dock. Original plugin: ``gazebo_ros_docking_status`` in the package
+    The dock counts as visible while its codes are received on ``ir_opcode``. Nothing is published
+    if the world has no dock. Original plugin: ``gazebo_ros_docking_status`` in the package
     ``irobot_create_gazebo_plugins``.
     """
 

@@ -38,8 +38,8 @@ class DetachableJointParameters:
     output_topic: str = tag(
         "output_topic",
         default="",
-        doc="Topic of the state, a String `attached` or `detached`, published when it changes. "
-        "Default: `/model/<child_model>/detachable_joint/state`.",
+        doc="Topic of the state (String): `attached` or `detached`. Published when the "
+        "state changes. Default: `/model/<child_model>/detachable_joint/state`.",
     )
     quiet: bool = tag(
         "suppress_child_warning", default=False, doc="Do not warn if the child does not exist."

@@ -72,8 +72,8 @@ class DiffDriveParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_footprint",
-        doc="Link whose pose the odometry reports. Defaults to the root link if no link has this "
-        "name.",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -99,15 +99,15 @@ class DiffDriveParameters:
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish the odometry. Defaults to false if the tag is written for ROS 2, otherwise "
-        "to true.",
+        doc="Publish the odometry. Default: `true`, or `false` if the plugin tag is written "
+        "for ROS 2.",
     )
     publish_odom_tf: bool | None = tag(
         "publishOdomTF",
         "publish_odom_tf",
         default=None,
-        doc="Publish the transform of the odometry. Defaults to false if the tag is written for "
-        "ROS 2, otherwise to true.",
+        doc="Publish the transform of the odometry. Default: `true`, or `false` if the "
+        "plugin tag is written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
@@ -139,10 +139,12 @@ class DiffDriveParameters:
 class DiffDrive(WheelDrive):
     """Drives pairs of wheels from Twist commands and publishes odometry.
 
-    Each wheel is a velocity servo with the maximum torque ``<wheelTorque>``. A command stays in
-    effect until the next command. If the model is part of a world file, the topics of a ROS 1 tag
-    without ``<robotNamespace>`` are below the model's name. A tag is written for ROS 2 if it
-    contains ``<ros>``, ``<left_joint>`` or ``<right_joint>``. Original plugin:
+    A velocity servo with the maximum torque ``<wheelTorque>`` turns each wheel. A command stays in
+    effect until the next command.
+
+    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` is written for ROS
+    2, any other tag for ROS 1. If the model is part of a world file and a tag for ROS 1 has no
+    ``<robotNamespace>``, the topics are in the namespace of the model's name. Original plugin:
     ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
     """
 

@@ -14,7 +14,9 @@ from cartwheel.plugins.parameters import tag
 class F3DParameters:
     body: str = tag("bodyName", doc="Link on which the wrench is measured.")
     topic: str = tag(
-        "topicName", default="f3d", doc="Topic of the WrenchStamped messages. Required in Gazebo."
+        "topicName",
+        default="f3d",
+        doc="Topic of the WrenchStamped messages. In Gazebo, this tag is required.",
     )
     frame: str = tag(
         "frameName",
@@ -24,9 +26,11 @@ class F3DParameters:
 
 
 class F3D(Plugin[F3DParameters]):
-    """Publishes the force and torque of contacts, attached objects and wrenches on a link.
+    """Publishes the force and torque that contacts, attached objects and wrenches exert on a link.
 
-    Objects are attached by plugins such as grippers. Wrenches are applied by plugins or services.
+    Objects can be attached by plugins such as grippers, and wrenches applied by plugins or
+    services.
+
     The torque is about the link's centre of mass. Both vectors are in the world frame. Gravity and
     joint reaction forces are not included. A message is published at every step. Original plugin:
     ``gazebo_ros_f3d`` in the package ``gazebo_plugins``.

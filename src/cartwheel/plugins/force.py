@@ -21,7 +21,7 @@ class ForceParameters:
     frame: Literal["world", "link"] = tag(
         "force_frame",
         default="world",
-        doc="Frame of the commanded wrench. Read only by the ROS 2 plugin.",
+        doc="Frame of the commanded wrench. Gazebo's ROS 1 plugin does not have this tag.",
     )
 
 

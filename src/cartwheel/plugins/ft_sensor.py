@@ -67,7 +67,7 @@ class FtSensorParameters:
         "jointName",
         "joint_name",
         default="",
-        doc="Joint on which the wrench is measured. Defaults to the sensor's joint.",
+        doc="Joint on which the wrench is measured. Default: the sensor's joint.",
     )
     body: str = tag(
         "body_name",
@@ -88,7 +88,7 @@ class FtSensorParameters:
         "gaussianNoise",
         "gaussian_noise",
         default=0.0,
-        unit="N, N m",
+        unit="N and N m",
         doc="Standard deviation of the noise.",
     )
     update_rate: float = tag(
@@ -210,7 +210,7 @@ class GzForceTorqueParameters:
         doc="Topic of the WrenchStamped messages. Default: "
         "`/world/<world>/model/<model>/joint/<joint>/sensor/<sensor>/forcetorque`.",
     )
-    frame: str = frame_tag("Frame ID of the messages. Defaults to the selected link; see above.")
+    frame: str = frame_tag("Frame ID of the messages. Default: the selected link.")
 
 
 class GzForceTorque(_JointWrench):
@@ -220,7 +220,7 @@ class GzForceTorque(_JointWrench):
     ``<measure_direction>`` selects the sign: ``child_to_parent`` (default) or ``parent_to_child``.
     ``<force>`` and ``<torque>`` can contain noise for each axis.
 
-    The default frame ID is the child or parent link. For ``sensor`` it is the child link, or the
+    The default frame ID is the selected link. With ``sensor``, it is the child link, or the
     sensor's name if the sensor is rotated relative to its link. Original sensor:
     ``ForceTorqueSensor`` in gz-sensors.
     """

@@ -35,7 +35,7 @@ class _Receiver(Plugin[Any]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorGpsParameters:
-    body: str = tag("bodyName", default="", doc="Link of the receiver. Defaults to the root link.")
+    body: str = tag("bodyName", default="", doc="Link of the receiver. Default: the root link.")
     topic: str = tag("topicName", default="fix", doc="Topic of the NavSatFix messages.")
     velocity_topic: str = tag(
         "velocityTopicName",
@@ -55,29 +55,30 @@ class HectorGpsParameters:
         "referenceLatitude",
         default=None,
         unit="degrees",
-        doc="Latitude of the world's origin. Defaults to 49.9, or to the world's latitude with "
-        "`<useWorldSphericalCoordinates>`.",
+        doc="Latitude of the world's origin. Default: 49.9, or the world's latitude if "
+        "`<useWorldSphericalCoordinates>` is true.",
     )
     longitude: float | None = tag(
         "referenceLongitude",
         default=None,
         unit="degrees",
-        doc="Longitude of the world's origin. Defaults to 8.9, or to the world's longitude with "
-        "`<useWorldSphericalCoordinates>`.",
+        doc="Longitude of the world's origin. Default: 8.9, or the world's longitude if "
+        "`<useWorldSphericalCoordinates>` is true.",
     )
     altitude: float | None = tag(
         "referenceAltitude",
         default=None,
         unit="m",
-        doc="Altitude of the world's origin. Defaults to 0, or to the world's altitude with "
-        "`<useWorldSphericalCoordinates>`.",
+        doc="Altitude of the world's origin. Default: 0, or the world's altitude if "
+        "`<useWorldSphericalCoordinates>` is true.",
     )
     heading: float | None = tag(
         "referenceHeading",
         default=None,
         unit="degrees",
-        doc="Heading of the world's x axis, clockwise from north. Defaults to 0 (x is north, y is "
-        "west), or to the world's heading with `<useWorldSphericalCoordinates>`.",
+        doc="Heading of the world's x axis, clockwise from north. At 0, x points north and "
+        "y west. Default: 0, or the world's heading if `<useWorldSphericalCoordinates>` "
+        "is true.",
     )
     status: int = tag("status", default=0, doc="Value of the field `status` in NavSatStatus.")
     service: int = tag("service", default=0, doc="Value of the field `service` in NavSatStatus.")
@@ -231,7 +232,7 @@ class HectorGps(_Receiver):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GpsSensorParameters:
     frame: str = tag(
-        "frame_name", default="", doc="Frame ID of the messages. Defaults to the sensor's link."
+        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
     )
 
 

@@ -31,6 +31,7 @@ class GraspFixParameters:
     arms: tuple[str, ...] = tag(
         "arm",
         default=(),
+        nested=True,
         doc="A hand: `<arm_name>`, `<palm_link>`, and a `<gripper_link>` for each finger. Repeat "
         "the tag for each hand.",
     )
@@ -38,8 +39,8 @@ class GraspFixParameters:
         "forces_angle_tolerance",
         default=120.0,
         unit="°",
-        doc="Two fingers grip an object if the angle between their forces exceeds this value. "
-        "From 90 to 180.",
+        doc="Two fingers grip an object if the angle between their forces exceeds this "
+        "value, which must be from 90 to 180.",
     )
     rate: float = tag(
         "update_rate", default=5.0, unit="Hz", doc="Rate at which contacts are checked."
@@ -48,7 +49,7 @@ class GraspFixParameters:
     threshold: int | None = tag(
         "grip_count_threshold",
         default=None,
-        doc="An object is attached when a grip counter exceeds this value. Defaults to half of "
+        doc="An object is attached when a grip counter exceeds this value. Default: half of "
         "`<max_grip_count>`.",
     )
     tolerance: float = tag(
@@ -69,16 +70,18 @@ class GraspFixParameters:
 class GraspFix(Plugin[GraspFixParameters]):
     """Attaches an object to the palm while fingers grip it from opposite sides.
 
-    The contacts are checked at ``<update_rate>``. A collision is gripped if the forces of two
-    fingers on it are at an angle above ``<forces_angle_tolerance>``, and the smaller force is at
+    Contacts are checked at ``<update_rate>``. A collision is gripped if the angle between the
+    forces of two fingers on it exceeds ``<forces_angle_tolerance>``, and the smaller force is at
     least 0.3 times the larger one. Each check adds 1 to the grip counter of a gripped collision,
-    and subtracts 1 from the counters of all others. An object whose counter exceeds
-    ``<grip_count_threshold>`` is attached to the palm by a fixed joint. It is released when its
-    counter no longer exceeds the threshold and a finger has moved by more than
-    ``<release_tolerance>``. A hand holds one object at a time.
+    and subtracts 1 from all other counters.
 
-    Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, like those of
-    the original package's republisher. Original plugin: ``gazebo_grasp_plugin`` by Jennifer
+    An object is attached to the palm by a fixed joint when a counter of one of its collisions
+    exceeds ``<grip_count_threshold>``. It is released when the counter no longer exceeds the
+    threshold and a finger has moved by more than ``<release_tolerance>``. A hand holds one object
+    at a time.
+
+    Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, as by the
+    republisher of the original package. Original plugin: ``gazebo_grasp_plugin`` by Jennifer
     Buehler.
     """
 

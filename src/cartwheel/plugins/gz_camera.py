@@ -31,7 +31,7 @@ class GzCameraParameters:
         "ignition_frame_id",
         "frame_id",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     info_topic: str = tag(
         "camera/camera_info_topic",
@@ -61,16 +61,17 @@ class GzCameraParameters:
 
 
 class GzCamera(CameraBase[GzCameraParameters]):
-    """Publishes the images of gz-sim's camera, depth_camera and rgbd_camera sensors.
+    """Publishes the images of gz-sim's ``camera``, ``depth_camera`` and ``rgbd_camera`` sensors.
 
-    A camera publishes images on ``<topic>``. An RGB-D camera publishes images on ``<topic>/image``,
-    depths on ``<topic>/depth_image`` and points on ``<topic>/points``. A depth camera publishes
-    depths on ``<topic>`` and points on ``<topic>/points``. The topic ``camera_info`` is in the same
-    namespace as the image topic. Depths are measured along the optical axis, and are inf where
-    nothing is hit. Points have x forward, y left and z up, as in gz-sim.
+    A ``camera`` publishes images on ``<topic>``. A ``depth_camera`` publishes depths on ``<topic>``
+    and points on ``<topic>/points``. An ``rgbd_camera`` publishes images on ``<topic>/image``,
+    depths on ``<topic>/depth_image`` and points on ``<topic>/points``.
+
+    Depths are measured along the optical axis, and are inf where nothing is hit. Points have x
+    forward, y left and z up, as in gz-sim.
 
     Original sensors: ``CameraSensor``, ``DepthCameraSensor`` and ``RgbdCameraSensor`` in
-    gz-sensors. The message types are those of ros_gz_bridge.
+    gz-sensors. The message types are the same as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

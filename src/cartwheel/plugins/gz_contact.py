@@ -15,8 +15,8 @@ class GzContactParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the ContactsState messages. Defaults to the topic in `<contact>`, or else "
-        "to `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/contact`.",
+        doc="Topic of the ContactsState messages. Default: the topic in `<contact>`, or "
+        "else `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/contact`.",
     )
 
 

@@ -50,26 +50,26 @@ class GzCommonLimits(GzDriveParameters):
     min_velocity: float | None = tag(
         "min_velocity",
         default=None,
-        unit="m/s, rad/s",
-        doc="Minimum commanded velocity. Default: no limit.",
+        unit="m/s or rad/s",
+        doc="Minimum linear and angular velocity. Default: no limit.",
     )
     max_velocity: float | None = tag(
         "max_velocity",
         default=None,
-        unit="m/s, rad/s",
-        doc="Maximum commanded velocity. Default: no limit.",
+        unit="m/s or rad/s",
+        doc="Maximum linear and angular velocity. Default: no limit.",
     )
     min_acceleration: float | None = tag(
         "min_acceleration",
         default=None,
-        unit="m/s², rad/s²",
-        doc="Minimum commanded acceleration. Default: no limit.",
+        unit="m/s² or rad/s²",
+        doc="Minimum linear and angular acceleration. Default: no limit.",
     )
     max_acceleration: float | None = tag(
         "max_acceleration",
         default=None,
-        unit="m/s², rad/s²",
-        doc="Maximum commanded acceleration. Default: no limit.",
+        unit="m/s² or rad/s²",
+        doc="Maximum linear and angular acceleration. Default: no limit.",
     )
     min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Not supported.")
     max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Not supported.")

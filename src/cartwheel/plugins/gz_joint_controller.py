@@ -23,23 +23,27 @@ class _Gains:
     p: float = tag("p_gain", default=1.0, doc="Proportional gain.")
     i: float = tag("i_gain", default=0.0, doc="Integral gain.")
     d: float = tag("d_gain", default=0.0, doc="Derivative gain, which damps the joint.")
-    i_max: float = tag("i_max", default=1.0, doc="Maximum of the integral term.")
-    i_min: float = tag("i_min", default=-1.0, doc="Minimum of the integral term.")
-    cmd_max: float = tag("cmd_max", default=1000.0, doc="Maximum output force, N m or N.")
-    cmd_min: float = tag("cmd_min", default=-1000.0, doc="Minimum output force, N m or N.")
+    i_max: float = tag("i_max", default=1.0, unit="N m or N", doc="Maximum of the integral term.")
+    i_min: float = tag("i_min", default=-1.0, unit="N m or N", doc="Minimum of the integral term.")
+    cmd_max: float = tag("cmd_max", default=1000.0, unit="N m or N", doc="Maximum output.")
+    cmd_min: float = tag("cmd_min", default=-1000.0, unit="N m or N", doc="Minimum output.")
     cmd_offset: float = tag(
-        "cmd_offset", default=0.0, doc="Constant force added to the output, N m or N."
+        "cmd_offset", default=0.0, unit="N m or N", doc="Constant added to the output."
     )
     actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
     topic: str = tag(
-        "topic", default="", doc="Topic of the target (Float64). For the default, see above."
+        "topic",
+        default="",
+        doc="Topic of the target (Float64). Default: `/model/<model>/joint/<joint>/cmd_pos`.",
     )
     sub_topic: str = tag(
-        "sub_topic", default="", doc="Topic below `/model/<model>`. Used if `<topic>` is empty."
+        "sub_topic",
+        default="",
+        doc="Topic relative to `/model/<model>`. Used if `<topic>` is not set.",
     )
     joints: tuple[str, ...] = tag(
         "joint_name",
-        doc="Joint to control. Repeat the tag for several joints with the same target.",
+        doc="Joint to control. Repeat the tag to move several joints to the same target.",
     )
 
 
@@ -47,27 +51,34 @@ class _Gains:
 class JointPositionParameters(_Gains):
     i: float = tag("i_gain", default=0.1, doc="Integral gain.")
     d: float = tag("d_gain", default=0.01, doc="Derivative gain, which damps the joint.")
-    index: float = tag("joint_index", default=0.0, doc="Axis of the joint. Must be 0.")
+    index: float = tag(
+        "joint_index", default=0.0, doc="Axis of the joint. Only 0, the first axis, is supported."
+    )
     velocity: bool = tag(
         "use_velocity_commands",
         default=False,
-        doc="Move to the target with a velocity of at most `<cmd_max>`, regardless of the load, "
-        "instead of using the PID controller.",
+        doc="Move to the target with a velocity of at most `<cmd_max>`, regardless of the "
+        "load. The PID gains then have no effect.",
     )
     initial: float = tag(
-        "initial_position", default=0.0, most=FARTHEST, doc="Initial target, rad or m."
+        "initial_position", default=0.0, unit="rad or m", most=FARTHEST, doc="Initial target."
     )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointVelocityParameters(_Gains):
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the target (Float64). Default: `/model/<model>/joint/<joint>/cmd_vel`.",
+    )
     force: bool = tag(
         "use_force_commands",
         default=False,
         doc="Control the velocity with the PID controller instead of a velocity servo.",
     )
     initial: float = tag(
-        "initial_velocity", default=0.0, most=FARTHEST, doc="Initial target, rad/s or m/s."
+        "initial_velocity", default=0.0, unit="rad/s or m/s", most=FARTHEST, doc="Initial target."
     )
 
 
@@ -173,9 +184,8 @@ class _JointController(Plugin[Any]):
 class JointPositionController(_JointController):
     """Moves a joint to the last commanded position and holds it there.
 
-    Until the first command, the target is ``<initial_position>``. The default topic (Float64) is
-    ``/model/<model>/joint/<joint>/cmd_pos``. Original plugin: ``JointPositionController`` in
-    gz-sim.
+    Until the first command, the target is ``<initial_position>``. Original plugin:
+    ``JointPositionController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-position-controller-system",)
@@ -214,8 +224,8 @@ class JointPositionController(_JointController):
 class JointController(_JointController):
     """Holds a joint at the last commanded velocity.
 
-    Until the first command, the target is ``<initial_velocity>``. The default topic (Float64) is
-    ``/model/<model>/joint/<joint>/cmd_vel``. Original plugin: ``JointController`` in gz-sim.
+    Until the first command, the target is ``<initial_velocity>``. Original plugin:
+    ``JointController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)

@@ -105,13 +105,13 @@ class _Target:
 
 
 class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
-    """Drives joints to the points of a trajectory in turn, each at its specified time.
+    """Drives joints to the points of a trajectory, one after the other.
 
     Each point is the target until its ``time_from_start`` has passed. Points are not interpolated,
     so smooth motion needs closely spaced points. The force on a joint is the sum of the position
     controller's output, the velocity controller's output and the point's effort. Gains default to
-    0. The topic ``<topic>_progress`` (Float32) contains the number of the current point divided by
-    the total number of points. Original plugin: ``JointTrajectoryController`` in gz-sim.
+    0. The progress, published on ``<topic>_progress`` (Float32), is the number of the current point
+    divided by the total number of points. Original plugin: ``JointTrajectoryController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)

@@ -30,26 +30,29 @@ class GzLidarParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the LaserScan. The points are on `<topic>/points`. Default: "
-        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
+        doc="Topic of the LaserScan. The PointCloud2 is published on `<topic>/points`. "
+        "Default: `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
     )
     frame: str = tag(
         "gz_frame_id",
         "ignition_frame_id",
         "frame_id",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
 
 
 class GzLidar(Plugin[GzLidarParameters]):
     """Publishes the middle row of a lidar as a LaserScan, and all rows as a PointCloud2.
 
-    The cloud is organised and starts with the lowest row; points that hit nothing are infinite.
+    The cloud is organised: it has one row of points for each row of rays, starting with the lowest.
+    A ray that hits nothing has a point with infinite coordinates.
+
     ``gpu_lidar`` and ``gpu_ray`` sensors measure the visual geometry; ``lidar`` and ``ray`` sensors
     measure the collision geometry.
 
-    Original sensor: ``GpuLidarSensor`` in gz-sensors. The message types are those of ros_gz_bridge.
+    Original sensor: ``GpuLidarSensor`` in gz-sensors. The message types are the same as in
+    ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

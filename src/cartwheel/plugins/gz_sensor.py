@@ -55,7 +55,7 @@ _NEW_TYPES = {
 _NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
 
 
-def frame_tag(doc: str = "Frame ID of the messages. Defaults to the sensor's link.") -> Any:
+def frame_tag(doc: str = "Frame ID of the messages. Default: the sensor's link.") -> Any:
     """Returns the field for the frame ID of gz-sim's sensors."""
     return tag(
         "gz_frame_id",

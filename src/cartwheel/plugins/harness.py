@@ -26,14 +26,15 @@ class HarnessParameters:
     joints: tuple[str, ...] = tag(
         "joint",
         default=(),
-        doc="Prismatic joint with the parent `world` and a `<child>` in this model, written as in "
-        "a model. Can be repeated.",
+        nested=True,
+        doc="Prismatic joint with the parent `world` and a `<child>` in this model, written "
+        "as an SDF `<joint>`.",
     )
     winch: str = tag(
         "winch",
         default="",
-        doc="The winch. Its `<joint>` is the joint that the winch moves; its `<pid>` has no "
-        "effect.",
+        nested=True,
+        doc="The winch, which moves the joint named in `<joint>`. `<pid>` has no effect.",
     )
     detach: str = tag(
         "detach", default="", doc="Joint that is detached by a message on the topic `detach`."
@@ -73,8 +74,8 @@ class Harness(Plugin[HarnessParameters]):
 
     The winch follows ``/<model>/harness/velocity`` (Float32) in m/s. A message on
     ``/<model>/harness/detach`` detaches the joint in ``<detach>``. The message is a Bool with the
-    value true, or an Empty if the tag contains ``<ros>``. With ``<ros>``, the topics are relative
-    to the namespace.
+    value true. If the plugin tag contains ``<ros>``, the message is an Empty, and the topics are in
+    the plugin's namespace.
 
     A rope pulls but does not push. While the robot stands on the ground, the rope is slack and
     exerts no force. While the rope is taut, it holds the link rigidly, as the prismatic joint

@@ -17,7 +17,7 @@ _EXPONENT = 5.263157
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorBaroParameters:
-    body: str = tag("bodyName", default="", doc="Link of the barometer. Defaults to the root link.")
+    body: str = tag("bodyName", default="", doc="Link of the barometer. Default: the root link.")
     topic: str = tag(
         "topicName",
         default="pressure_height",
@@ -28,7 +28,7 @@ class HectorBaroParameters:
         default="altimeter",
         doc="Topic of the Altimeter messages. Not published if empty.",
     )
-    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
     update_rate: float = tag(
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )

@@ -27,7 +27,7 @@ _HOUR = 1 / 3600.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorImuParameters:
-    body: str = tag("bodyName", default="", doc="Link of the IMU. Defaults to the root link.")
+    body: str = tag("bodyName", default="", doc="Link of the IMU. Default: the root link.")
     topic: str = tag("topicName", default="imu", doc="Topic of the Imu messages.")
     bias_topic: str | None = tag(
         "biasTopicName",
@@ -40,7 +40,7 @@ class HectorImuParameters:
         doc="Service (Empty) that removes the drift of the angular velocity. Default: "
         "`<topic>/calibrate`.",
     )
-    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
     update_rate: float = tag(
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )
@@ -148,9 +148,8 @@ class HectorImu(Plugin[HectorImuParameters]):
     """Publishes angular velocity, acceleration and orientation of a link, with noise and drift.
 
     The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
-    drift and noise. The acceleration error also tilts the orientation. The same seed produces the
-    same errors, whether or not the topic has subscribers. Original plugin: ``gazebo_ros_imu`` in
-    the package ``hector_gazebo_plugins``. See also REP 145.
+    drift and noise. The acceleration error also tilts the orientation. Original plugin:
+    ``gazebo_ros_imu`` in the package ``hector_gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -31,11 +31,11 @@ class ImuParameters:
         default="imu_service",
         doc="Service of type Empty. Calls succeed and have no effect.",
     )
-    frame: str = tag("frameName", default="", doc="Frame ID of the messages. Defaults to the link.")
+    frame: str = tag("frameName", default="", doc="Frame ID of the messages. Default: the link.")
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
-        unit="rad/s, m/s²",
+        unit="rad/s and m/s²",
         doc="Standard deviation of the noise on angular velocity and acceleration.",
     )
     rpy_offset: tuple[float, float, float] = tag(
@@ -173,12 +173,12 @@ class ImuSensorParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
-        unit="rad/s, m/s²",
+        unit="rad/s and m/s²",
         doc="Standard deviation of the noise on angular velocity and acceleration.",
     )
     rpy_offset: tuple[float, float, float] = tag(
@@ -215,8 +215,8 @@ class ImuSensor(ImuBase):
     """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
     With ``<ros>`` (ROS 2), the default topic is ``~/out``, which a ``<remapping>`` can rename.
-    Without ``<ros>`` (ROS 1), if the model is part of a world file and ``<robotNamespace>`` is not
-    set, the topic is below the model's name.
+    Without ``<ros>`` (ROS 1), the topic is in the namespace ``<robotNamespace>``. If this tag is
+    missing and the model is part of a world file, the namespace is the model's name.
 
     The orientation is relative to the world, or to the sensor's ``<orientation_reference_frame>``.
     If ``<enable_orientation>`` is false, the orientation is not measured and the first element of

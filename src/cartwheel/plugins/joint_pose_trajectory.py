@@ -37,12 +37,14 @@ class JointPoseTrajectoryParameters:
 class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
     """Sets joint positions to the points of a trajectory, without simulating forces.
 
-    Each point is applied when its ``time_from_start`` has passed since the start. The start is the
-    header stamp or the time of arrival, whichever is later. In Gazebo, each time is measured from
-    the previous point instead. The root link is not moved, so ``header.frame_id`` must be empty,
-    the root link, ``world`` or ``map``. Trajectories with a different frame, and service requests
-    with ``set_model_pose``, are rejected. Original plugin: ``gazebo_ros_joint_pose_trajectory`` in
-    the package ``gazebo_plugins``.
+    The trajectory starts at its header stamp or on arrival, whichever is later. Each point is
+    applied after its ``time_from_start``. In Gazebo, each time is measured from the previous point
+    instead.
+
+    The root link is not moved, so ``header.frame_id`` must be empty, the root link, ``world`` or
+    ``map``. Trajectories with a different frame, and service requests with ``set_model_pose``, are
+    rejected. Original plugin: ``gazebo_ros_joint_pose_trajectory`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

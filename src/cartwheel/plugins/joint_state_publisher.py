@@ -39,8 +39,7 @@ class JointStatePublisherParameters:
         "jointName",
         "joint_name",
         default=(),
-        doc="Joints to publish, separated by commas or in repeated tags. Defaults to all movable "
-        "joints.",
+        doc="Joints to publish, separated by commas. Default: all movable joints.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -54,10 +53,11 @@ class JointStatePublisherParameters:
 class JointStatePublisher(Plugin[JointStatePublisherParameters]):
     """Publishes positions and velocities of joints on ``joint_states``.
 
-    If the model is part of a world file, or if ``<robotNamespace>`` is empty, the topic is
-    ``/<model>/joint_states``, as in Gazebo Classic. A tag that is written for ROS 2 (it contains
-    ``<ros>``, ``<joint_name>`` or ``<update_rate>``) publishes on ``/joint_states``. Original
-    plugin: ``gazebo_ros_joint_state_publisher`` in the package ``gazebo_plugins``.
+    The topic is in the plugin's namespace. As in Gazebo Classic, the namespace is the model's name
+    if ``<robotNamespace>`` is empty, or if it is missing and the model is part of a world file. A
+    plugin tag for ROS 2, which contains ``<ros>``, ``<joint_name>`` or ``<update_rate>``, publishes
+    on ``/joint_states`` by default. Original plugin: ``gazebo_ros_joint_state_publisher`` in the
+    package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
@@ -95,7 +95,7 @@ class GzJointStatePublisherParameters:
     names: tuple[str, ...] = tag(
         "joint_name",
         default=(),
-        doc="Joint to publish. Repeat the tag for each joint. Defaults to all movable joints.",
+        doc="Joint to publish. Repeat the tag for each joint. Default: all movable joints.",
     )
     update_rate: float = tag(
         "update_rate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."

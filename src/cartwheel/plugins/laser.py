@@ -20,7 +20,7 @@ class LaserParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -35,9 +35,8 @@ class Laser(Plugin[LaserParameters]):
     """Publishes the ranges of a ray sensor as a LaserScan.
 
     As in Gazebo, a ``ray`` sensor measures the collision geometry, and a ``gpu_ray`` sensor
-    measures the visual geometry. All rays are measured at the time in the header stamp, so
-    ``time_increment`` and ``scan_time`` are 0. If the sensor has several rows, only the middle row
-    is published.
+    measures the visual geometry. All rays are measured simultaneously, so ``time_increment`` and
+    ``scan_time`` are 0. If the sensor has several rows, only the middle row is published.
 
     Original plugins: ``gazebo_ros_laser`` and ``gazebo_ros_gpu_laser`` in the package
     ``gazebo_plugins``.

@@ -44,8 +44,8 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
 
     The sensor looks along its x axis. A model is in view if the origin of its frame is in view.
     Models do not occlude each other. The message field ``pose`` is the pose of the sensor in the
-    world. Original sensor: ``LogicalCameraSensor`` in gz-sensors. The message type is that of
-    ros_gz_bridge.
+    world. Original sensor: ``LogicalCameraSensor`` in gz-sensors. The message type is the same as
+    in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

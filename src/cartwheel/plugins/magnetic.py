@@ -24,14 +24,14 @@ class HectorMagneticParameters:
     body: str = tag(
         "bodyName",
         default="",
-        doc="Link that carries the magnetometer. Defaults to the root link.",
+        doc="Link that carries the magnetometer. Default: the root link.",
     )
     topic: str = tag(
         "topicName",
         default="magnetic",
         doc="Topic of the Vector3Stamped or MagneticField messages.",
     )
-    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Defaults to the link.")
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
     update_rate: float = tag(
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )
@@ -47,8 +47,8 @@ class HectorMagneticParameters:
         "referenceHeading",
         default=None,
         unit="degrees",
-        doc="Heading of the world's x axis, clockwise from north. Defaults to 0, or to the "
-        "world's heading with `<useWorldSphericalCoordinates>`.",
+        doc="Heading of the world's x axis, clockwise from north. Default: 0, or the "
+        "world's heading if `<useWorldSphericalCoordinates>` is true.",
     )
     declination: float = tag(
         "declination",

@@ -59,9 +59,11 @@ class MecanumDrive(Plugin[MecanumParameters]):
     """Drives four mecanum wheels from Twist commands and publishes odometry.
 
     If the wheel collisions model rollers (``<fdir1 gz:expressed_in="...">`` with different ``<mu>``
-    and ``<mu2>``), friction moves the robot. Otherwise a servo pushes the robot, as with
-    `libgazebo_ros_planar_move.so`, and the wheels turn at the corresponding speeds. The odometry is
-    computed from the rotation of the wheels. Original plugin: ``MecanumDrive`` in gz-sim.
+    and ``<mu2>``), friction moves the robot. Otherwise, a servo pushes the robot, as with
+    ``libgazebo_ros_planar_move.so``, and the wheels turn at the corresponding speeds.
+
+    The odometry is computed from the rotation of the wheels. Original plugin: ``MecanumDrive`` in
+    gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)

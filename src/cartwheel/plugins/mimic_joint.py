@@ -22,14 +22,14 @@ class MimicJointParameters:
         "multiplier",
         default=1.0,
         most=MOST_RATIO,
-        doc="Factor in: position of `<mimicJoint>` = multiplier * position of `<joint>` + offset.",
+        doc="The position of `<mimicJoint>` is multiplier * position of `<joint>` + offset.",
     )
     offset: float = tag(
         "offset",
         default=0.0,
         unit="rad or m",
         most=FARTHEST,
-        doc="Offset added to the position of `<mimicJoint>`.",
+        doc="Offset of the position of `<mimicJoint>`.",
     )
     max_effort: float = tag(
         "maxEffort",

@@ -55,14 +55,15 @@ class _Motor:
         "rotorDragCoefficient",
         default=1e-4,
         unit="N s²/(m rad)",
-        doc="Drag at a velocity perpendicular to the axis: force / (rotor speed * velocity).",
+        doc="Drag force divided by the propeller's speed and by the airspeed perpendicular "
+        "to its axis.",
     )
     rolling: float = tag(
         "rollingMomentCoefficient",
         default=1e-6,
         unit="N s²/rad",
-        doc="Rolling moment at a velocity perpendicular to the axis: torque / (rotor speed * "
-        "velocity).",
+        doc="Rolling moment divided by the propeller's speed and by the airspeed "
+        "perpendicular to its axis.",
     )
     slowdown: float = tag(
         "rotorVelocitySlowdownSim",
@@ -161,7 +162,7 @@ class _MotorModel(Plugin[Any]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsMotorParameters(_Motor):
     number: int = tag(
-        "motorNumber", default=0, doc="Index of the motor in the speeds of a command, from 0."
+        "motorNumber", default=0, doc="Index of the motor's speed in the commands, from 0."
     )
     topic: str = tag(
         "commandSubTopic",
@@ -223,12 +224,12 @@ class RotorsMotorModel(_MotorModel):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Px4MotorParameters(_Motor):
     number: int = tag(
-        "motorNumber", default=0, doc="Index of the motor in the speeds of a command, from 0."
+        "motorNumber", default=0, doc="Index of the motor's speed in the commands, from 0."
     )
     topic: str = tag(
         "commandSubTopic",
         default="/gazebo/command/motor_speed",
-        doc="Topic of the Actuators commands, with speeds in rad/s. It is below the model's name.",
+        doc="Topic of the Actuators commands, with speeds in rad/s. The model's name is prepended.",
     )
     fastest: float = tag(
         "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
@@ -278,13 +279,13 @@ class GzMotorParameters(_Motor):
     number: int = tag(
         "actuator_number",
         "motorNumber",
-        doc="Index of the motor in the speeds of a command, from 0.",
+        doc="Index of the motor's speed in the commands, from 0.",
     )
     topic: str = tag(
         "commandSubTopic",
         default="",
-        doc="Topic of the Actuators commands, with speeds in rad/s. It is below "
-        "`<robotNamespace>`, or else below the model's name.",
+        doc="Topic of the Actuators commands, with speeds in rad/s. Its namespace is "
+        "`<robotNamespace>`, or else the model's name.",
     )
     fastest: float = tag(
         "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."

@@ -32,8 +32,8 @@ class MultiWheelParameters:
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
-        doc="Link whose pose the odometry reports. "
-        "Defaults to the root link if no link has this name.",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
     )
     rate: float = tag(
         "updateRate",

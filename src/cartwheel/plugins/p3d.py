@@ -59,7 +59,7 @@ class P3DParameters:
         "gaussianNoise",
         "gaussian_noise",
         default=0.0,
-        unit="m/s, rad/s",
+        unit="m/s and rad/s",
         doc="Standard deviation of the noise on the twist.",
     )
     update_rate: float = tag(
@@ -158,7 +158,7 @@ class WorldOdometryParameters(P3DParameters):
         "bodyName",
         "body_name",
         default="",
-        doc="Link whose pose is published. Defaults to the link in `<frameName>`.",
+        doc="Link whose pose is published. Default: the link in `<frameName>`.",
     )
     frame: str = tag(
         "frameName",
@@ -171,7 +171,7 @@ class WorldOdometryParameters(P3DParameters):
 class WorldOdometry(P3D):
     """Publishes a link's ground-truth pose in the world, with the twist in the link frame.
 
-    All other tags and topics are the same as for ``libgazebo_ros_p3d.so``. Original plugin:
+    Tags and topics are otherwise the same as for ``libgazebo_ros_p3d.so``. Original plugin:
     ``gazebo_world_odometry`` in the package ``pal_gazebo_plugins``.
     """
 

@@ -32,6 +32,7 @@ def tag(
     unit: str = "",
     most: float | None = None,
     optional: bool = False,
+    nested: bool = False,
     doc: str,
 ) -> Any:
     """Declares a dataclass field that is read from a tag.
@@ -43,9 +44,18 @@ def tag(
         unit: SI unit of the value.
         most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
         optional: Whether the plugin works without the joint that the default names.
-        doc: Description for the plugin reference, one or two sentences.
+        nested: Whether the tag contains other tags, which the plugin reads itself.
+        doc: Description for the plugin reference, one or two sentences. A last sentence
+            ``Default: ...`` describes a default that depends on something else.
     """
-    metadata = {"tags": names, "unit": unit, "doc": doc, "most": most, "optional": optional}
+    metadata = {
+        "tags": names,
+        "unit": unit,
+        "most": most,
+        "optional": optional,
+        "nested": nested,
+        "doc": doc,
+    }
     if default is dataclasses.MISSING:
         return dataclasses.field(metadata=metadata)
     return dataclasses.field(default=default, metadata=metadata)

@@ -29,8 +29,8 @@ class PlanarMoveParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_footprint",
-        doc="Link whose pose the odometry reports. "
-        "Defaults to the root link if no link has this name.",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
     )
     rate: float = tag(
         "odometryRate",

@@ -42,8 +42,7 @@ class PosePublisherParameters:
     model: bool | None = tag(
         "publish_model_pose",
         default=None,
-        doc="Publish the pose of the model in the world. "
-        "Defaults to `<publish_nested_model_pose>`.",
+        doc="Publish the pose of the model in the world. Default: `<publish_nested_model_pose>`.",
     )
     nested: bool = tag(
         "publish_nested_model_pose",
@@ -70,7 +69,7 @@ class PosePublisherParameters:
         "static_update_frequency",
         default=None,
         unit="Hz",
-        doc="Publish rate of the static poses. Defaults to `<update_frequency>`.",
+        doc="Publish rate of the static poses. Default: `<update_frequency>`.",
     )
     topic: str = tag("topic", default="", doc="Topic of the poses. Default: `/model/<model>/pose`.")
 
@@ -80,7 +79,7 @@ class PosePublisher(Plugin[PosePublisherParameters]):
 
     Each pose is relative to the parent frame. Frames are named ``<model>``, ``<model>/<link>`` and
     ``<model>/<link>/<part>``. Original plugin: ``PosePublisher`` in gz-sim. The message types are
-    those of ros_gz_bridge.
+    the same as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-pose-publisher-system",)

@@ -83,7 +83,7 @@ class RangeParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view in the messages.")
     radiation: Literal["ultrasound", "infrared"] = tag(
@@ -93,7 +93,7 @@ class RangeParameters:
         "gaussianNoise",
         default=None,
         unit="m",
-        doc="Standard deviation of the noise. Defaults to the sensor's `<noise>`.",
+        doc="Standard deviation of the noise. Default: the sensor's `<noise>`.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -134,13 +134,13 @@ class SonarParameters:
         "frameId",
         "frameName",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     noise: float | None = tag(
         "gaussianNoise",
         default=None,
         unit="m",
-        doc="Standard deviation of the noise. Defaults to the sensor's `<noise>`.",
+        doc="Standard deviation of the noise. Default: the sensor's `<noise>`.",
     )
     offset: float = tag("offset", default=0.0, unit="m", doc="Offset added to each range.")
     drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of a slow drift.")
@@ -156,7 +156,7 @@ class SonarParameters:
 
 
 class HectorSonar(_RangeBase):
-    """Publishes the smallest range of a ray sensor as an ultrasound range.
+    """Publishes the smallest range of a ray sensor as a Range message of type ultrasound.
 
     If nothing is hit, the maximum range is published. Original plugin: ``gazebo_ros_sonar`` in the
     package ``hector_gazebo_plugins``.

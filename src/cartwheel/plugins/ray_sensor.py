@@ -30,14 +30,14 @@ class RaySensorParameters:
         "topicName",
         "topic_name",
         default="",
-        doc="Topic of the messages. Defaults to `<plugin name>/out`. A `<remapping>` of `~/out` "
+        doc="Topic of the messages. Default: `<plugin name>/out`. A `<remapping>` of `~/out` "
         "takes precedence.",
     )
     frame: str = tag(
         "frame_name",
         "frameName",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     radiation: Literal["ultrasound", "infrared", "infared"] = tag(
         "radiation_type",

@@ -35,22 +35,22 @@ class RealSenseParameters:
     color_frame: str = tag(
         "colorOpticalframeName",
         default="",
-        doc="Frame ID of the colour images. Defaults to the sensor's link.",
+        doc="Frame ID of the colour images. Default: the sensor's link.",
     )
     infrared1_frame: str = tag(
         "infrared1OpticalframeName",
         default="",
-        doc="Frame ID of the first infrared images. Defaults to the sensor's link.",
+        doc="Frame ID of the first infrared images. Default: the sensor's link.",
     )
     infrared2_frame: str = tag(
         "infrared2OpticalframeName",
         default="",
-        doc="Frame ID of the second infrared images. Defaults to the sensor's link.",
+        doc="Frame ID of the second infrared images. Default: the sensor's link.",
     )
     depth_frame: str = tag(
         "depthOpticalframeName",
         default="",
-        doc="Frame ID of the depth images and points. Defaults to the sensor's link.",
+        doc="Frame ID of the depth images and points. Default: the sensor's link.",
     )
     color_rate: float = tag(
         "colorUpdateRate",

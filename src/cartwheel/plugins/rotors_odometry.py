@@ -40,7 +40,9 @@ class RotorsOdometryParameters:
     child: str = tag(
         "childFrameId", default="odometry_sensor", doc="Child frame ID of the messages."
     )
-    divisor: int = tag("measurementDivisor", default=1, doc="Publish every N steps.")
+    divisor: int = tag(
+        "measurementDivisor", default=1, doc="Number of simulation steps per message."
+    )
     delay: int = tag(
         "measurementDelay", default=0, doc="No effect: measurements are published immediately."
     )
@@ -98,7 +100,7 @@ class RotorsOdometryParameters:
 
 
 class RotorsOdometry(Plugin[RotorsOdometryParameters]):
-    """Publishes a link's pose in the world with noise, as five message types and a transform.
+    """Publishes a link's noisy pose in the world, as five message types and a transform.
 
     The twist in the Odometry messages is in the link frame. Original plugin:
     ``gazebo_odometry_plugin`` in the package ``rotors_gazebo_plugins``.

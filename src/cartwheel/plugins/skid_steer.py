@@ -41,8 +41,8 @@ class SkidSteerParameters:
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
-        doc="Link whose pose the odometry reports. "
-        "Defaults to the root link if no link has this name.",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
     )
     update_rate: float = tag(
         "updateRate",

@@ -67,7 +67,8 @@ class TricycleParameters:
         "max_wheel_torque",
         default=None,
         unit="N m",
-        doc="Maximum torque of each motor. Default: 5, or 0.15 if the tag is written for ROS 2.",
+        doc="Maximum torque of each motor. Default: 5, or 0.15 if the plugin tag is written "
+        "for ROS 2.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
@@ -81,7 +82,7 @@ class TricycleParameters:
         "max_wheel_deceleration",
         default=None,
         unit="rad/s²",
-        doc="Maximum deceleration of the driven wheel. Defaults to `<wheelAcceleration>`, and has "
+        doc="Maximum deceleration of the driven wheel. Default: `<wheelAcceleration>`, and has "
         "no effect without it.",
     )
     wheel_tolerance: float = tag(
@@ -119,8 +120,8 @@ class TricycleParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_link",
-        doc="Link whose pose the odometry reports. "
-        "Defaults to the root link if no link has this name.",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -139,8 +140,8 @@ class TricycleParameters:
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish the odometry and its transform. Default: true, or false if the tag is "
-        "written for ROS 2.",
+        doc="Publish the odometry and its transform. Default: `true`, or `false` if the "
+        "plugin tag is written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
@@ -163,10 +164,10 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 class TricycleDrive(SteeredDrive):
     """Drives a tricycle with one driven, steered wheel from Twist commands and publishes odometry.
 
-    If the model is part of a world file, the topics of a tag that is written for ROS 1 are below
-    the model's name, unless the tag contains ``<robotNamespace>``. A tag is written for ROS 2 if it
-    contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``. Original plugin:
-    ``gazebo_ros_tricycle_drive`` in the package ``gazebo_plugins``.
+    A plugin tag that contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``, is
+    written for ROS 2, any other tag for ROS 1. If the model is part of a world file and a tag for
+    ROS 1 has no ``<robotNamespace>``, the topics are in the namespace of the model's name. Original
+    plugin: ``gazebo_ros_tricycle_drive`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)

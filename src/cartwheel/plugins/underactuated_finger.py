@@ -22,9 +22,10 @@ class UnderactuatedFingerParameters:
     joints: tuple[str, ...] = tag(
         "virtualJoint",
         default=(),
-        doc="A joint of the finger, in `<name>`. Its target is the motor's angle divided by "
-        "`<scale_factor>`. `<pid_gains>` has no effect: a servo moves the joint. Repeat the "
-        "tag for each joint.",
+        nested=True,
+        doc="A joint of the finger: `<name>` and `<scale_factor>`. The joint's target is "
+        "the motor's angle divided by the scale factor. `<pid_gains>` has no effect, "
+        "because a position servo moves the joint. Repeat the tag for each joint.",
     )
 
 
@@ -36,7 +37,7 @@ class _Phalanx:
 
 
 class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
-    """Bends the joints of a finger in proportion to a motor's angle, within their limits.
+    """Bends the joints of a finger in proportion to a motor's angle, up to the joint limits.
 
     A joint that meets an obstacle exerts at most its effort limit; the other joints continue to
     bend. Original plugin: ``gazebo_underactuated_finger`` in the package ``pal_gazebo_plugins``.

@@ -16,8 +16,8 @@ class VacuumGripperParameters:
     topic: str = tag(
         "topicName",
         default="grasping",
-        doc="Topic of a Bool that is true while an object is held. The ROS 1 plugin requires this "
-        "tag.",
+        doc="Topic of a Bool that is true while an object is held. Gazebo's ROS 1 plugin "
+        "requires this tag.",
     )
     reach: float = tag(
         "max_distance",
@@ -32,9 +32,9 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
     """While switched on, holds the nearest link of a different model that is within reach.
 
     The held link keeps its pose relative to the cup, as with a fixed joint. In Gazebo, the link is
-    pulled toward the cup. The services `on` and `off` switch the gripper. If the tag contains
-    ``<link_name>`` (ROS 2), the service ``switch`` replaces them. Original plugin:
-    ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
+    pulled toward the cup. The services `on` and `off` switch the gripper. If the plugin tag
+    contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and ``off``. Original
+    plugin: ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)

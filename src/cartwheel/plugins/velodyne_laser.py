@@ -41,7 +41,7 @@ class VelodyneParameters:
         "frameName",
         "frame_name",
         default="",
-        doc="Frame ID of the messages. Defaults to the sensor's link.",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
     organize: bool = tag(
         "organize_cloud",

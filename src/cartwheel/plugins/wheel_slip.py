@@ -39,6 +39,7 @@ class WheelSlipParameters:
     wheels: tuple[str, ...] = tag(
         "wheel",
         default=(),
+        nested=True,
         doc="A wheel: attribute `link_name`, and the tags `<slip_compliance_lateral>`, "
         "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N and `<wheel_radius>` "
         "in m (default: radius of the wheel's cylinder or sphere). Repeat the tag for each "

@@ -53,9 +53,9 @@ class RosControlParameters:
 class RosControl(ControlPlugin):
     """Runs the controllers that are loaded through its controller manager's services.
 
-    The controllers in the YAML files that are passed with ``--controllers`` start automatically. If
-    neither the tag nor the spawner specifies a namespace, the controller manager uses the global
-    namespace, as with spawn_model. Original package: ``gazebo_ros_control``.
+    Controllers in YAML files that are passed with ``cartwheel run --controllers`` start
+    automatically. If neither the tag nor the spawner specifies a namespace, the controller manager
+    uses the global namespace, as with spawn_model. Original package: ``gazebo_ros_control``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)
