@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
+from cartwheel.component import Shared
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
@@ -14,7 +15,7 @@ from cartwheel.graph import Graph
 from cartwheel.graph.graph import Subscription
 from cartwheel.messages import message_class, stamp
 from cartwheel.plugins.control.files import ControllerFiles
-from cartwheel.plugins.gz_bridge import GzBridge, read_bridge
+from cartwheel.plugins.gz_bridge import read_bridge
 from cartwheel.plugins.registry import attach
 from cartwheel.plugins.world_plugins import attach_world
 from cartwheel.simulation import Simulation
@@ -53,13 +54,15 @@ class Session:
     ) -> None:
         self.allow_path = tuple(allow_path)
         self.graph = Graph()
+        self.shared = Shared(self.graph)
+        """Objects that all components of the simulation share."""
         for path in bridge:
-            GzBridge.of(self.graph).add(read_bridge(path))
+            self.shared.renaming.add(read_bridge(path))
         self.strict = strict
         self.simulation = Simulation(
             world,
-            attach=lambda part: attach(part, self.graph, lenient=lenient),
-            attach_world=lambda part: attach_world(part, self.graph),
+            attach=lambda part: attach(part, self.shared, lenient=lenient),
+            attach_world=lambda part: attach_world(part, self.shared),
             seed=seed,
         )
         self.graph.post = self.simulation.post
@@ -98,7 +101,7 @@ class Session:
             PluginError: The model has no controller manager.
         """
         before = len(self.simulation.diagnostics)
-        files = ControllerFiles.of(self.graph)
+        files = self.shared.get(ControllerFiles)
         files.paths = tuple(controllers)
         try:
             spawned = self.simulation.spawn(
@@ -127,7 +130,7 @@ class Session:
         """Reports missing topics listed in ros_gz_bridge files. Call it on the owner's thread."""
         before = len(self.simulation.diagnostics)
         names = {topic.name for topic in self.graph.topics()}
-        for fault in GzBridge.of(self.graph).faults(names):
+        for fault in self.shared.renaming.faults(names):
             self.simulation.engine.report(fault)
         self._check(before)
 
@@ -170,7 +173,7 @@ class Session:
     def close(self) -> None:
         """Stops the simulation; see `Simulation.close`."""
         self.simulation.close()
-        ControllerFiles.of(self.graph).loaded.clear()
+        self.shared.get(ControllerFiles).loaded.clear()
         self.graph.close()
         self._clock_task.forget()
 

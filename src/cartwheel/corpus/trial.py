@@ -73,7 +73,9 @@ def try_robot(
             verdict = replace(
                 verdict,
                 loaded=True,
-                controllers=tuple(each.name for each in ControllerFiles.of(world.graph).started),
+                controllers=tuple(
+                    each.name for each in world.session.shared.get(ControllerFiles).started
+                ),
                 controller_files=tuple(controllers),
             )
             for found in _moved(verdict, world, model, robot, standing):
@@ -157,11 +159,15 @@ def _moved(
     yield replace(verdict, reaches=tuple(motion.reaches(world, model, robot)))
 
 
+def _controllers(world: World) -> ControllerFiles:
+    return world.session.shared.get(ControllerFiles)
+
+
 def _listened(world: World) -> tuple[int, tuple[str, ...]]:
     """The number of topics with a stated rate, and those without messages."""
     graph = world.graph
     # Two controllers of one joint are used alternately.
-    idle = {each.node for each in ControllerFiles.of(graph).loaded if not each.running}
+    idle = {each.node for each in _controllers(world).loaded if not each.running}
     rated = {each.topic: each for each in graph.publishers() if each.rate and each.node not in idle}
     boxes = {topic: world.mailbox(topic, size=1) for topic in rated}
     slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)

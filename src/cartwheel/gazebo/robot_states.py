@@ -10,7 +10,7 @@ from cartwheel.codes.graph import FRAMES_SHARED
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.geometry import Pose
-from cartwheel.graph import Graph, Publisher, StaticTransforms, resolve_frame
+from cartwheel.graph import Graph, Publisher, resolve_frame
 from cartwheel.messages import header, message_class
 from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions, is_robot
 from cartwheel.simulation import Simulation
@@ -99,7 +99,7 @@ class RobotStates:
         )
 
     def _tell_of(self, robots: Mapping[str, RobotDescription]) -> None:
-        static = StaticTransforms.of(self._graph)
+        static = self._graph.static_transforms
         for name in list(self._told):
             if robots.get(name) is not self._told[name].description:
                 del self._told[name]

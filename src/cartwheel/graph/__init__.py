@@ -18,6 +18,7 @@ from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_frame, resolve_name
 from cartwheel.graph.parameters import Parameters, ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
+from cartwheel.graph.renaming import TopicRenaming
 from cartwheel.graph.transforms import StaticTransforms
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "StaticTransforms",
     "Subscription",
     "TopicInfo",
+    "TopicRenaming",
     "choices",
     "resolve_frame",
     "resolve_name",

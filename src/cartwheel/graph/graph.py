@@ -28,6 +28,7 @@ from cartwheel.graph.joint_inputs import JointInputs
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
+from cartwheel.graph.transforms import StaticTransforms
 from cartwheel.messages import CdrCache
 
 Callback = Callable[[Any], None]
@@ -203,8 +204,7 @@ class Graph:
         """Serialises each message once for all wires."""
         self.nodes: dict[str, str] = {}
         """ROS 2 names of those nodes that appear as separate ROS 2 nodes."""
-        self.static_transforms: Any = None
-        """Set by `StaticTransforms`."""
+        self.static_transforms = StaticTransforms(self)
         self.changed: int = 0
         """Incremented on every change of publishers, subscribers or joint inputs, for mirrors of
         the graph."""
@@ -235,7 +235,7 @@ class Graph:
                 topic.callbacks = ()
                 topic.latched = None
                 topic.failed = _fail
-            self.static_transforms = None
+            self.static_transforms.forget()
         for box in boxes:
             box.close()
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from cartwheel.graph.graph import Graph, Publisher
 from cartwheel.messages import message_class
+
+if TYPE_CHECKING:
+    from cartwheel.graph.graph import Graph, Publisher
 
 TOPIC = "/tf_static"
 
@@ -19,18 +21,10 @@ class StaticTransforms:
     """
 
     def __init__(self, graph: Graph) -> None:
-        self._graph = graph
+        self._graph: Graph | None = graph
         self._publisher: Publisher | None = None
         """None while no robot has static transforms."""
         self._by_owner: dict[object, Sequence[Any]] = {}
-
-    @classmethod
-    def of(cls, graph: Graph) -> StaticTransforms:
-        """The instance of a graph, created at first use."""
-        if graph.static_transforms is None:
-            graph.static_transforms = cls(graph)
-        found: StaticTransforms = graph.static_transforms
-        return found
 
     def put(self, owner: object, transforms: Sequence[Any]) -> None:
         """Publishes an owner's ``TransformStamped`` messages, and removes its previous ones."""
@@ -42,7 +36,14 @@ class StaticTransforms:
         if self._by_owner.pop(owner, None) is not None:
             self._publish()
 
+    def forget(self) -> None:
+        """Forgets all transforms and the graph, which is closing."""
+        self._by_owner.clear()
+        self._publisher = self._graph = None
+
     def _publish(self) -> None:
+        if self._graph is None:
+            return
         # Each frame has one parent, so it is published once even if two owners contain it.
         by_child: dict[str, Any] = {}
         for sent in self._by_owner.values():

@@ -1,46 +1,34 @@
-"""The base class of all plugins: parameters, file names, and access to the simulation."""
+"""The base class of all plugins: parameters, file names, and the names of a tag."""
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from dataclasses import dataclass
+from typing import ClassVar, Generic, TypeVar
 
-from cartwheel import errors
-from cartwheel.codes import running
+from cartwheel.component import Component, Scope, Shared
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.errors import Code, GraphError, Origin, Severity
-from cartwheel.graph import (
-    Graph,
-    JointInput,
-    Publisher,
-    Qos,
-    ReconfigureParameter,
-    ReconfigureServer,
-    resolve_frame,
-    resolve_name,
-)
-from cartwheel.graph.reconfigure import OnChange, Value
-from cartwheel.plugins.gz_bridge import GzBridge
-from cartwheel.plugins.inputs import checked_callback, checked_positions
+from cartwheel.errors import Origin
 from cartwheel.plugins.parameters import SMALLEST, invalid, read
-from cartwheel.simulation import LinkHandle, Part
+from cartwheel.simulation import Part
 from cartwheel.simulation.limits import FARTHEST
 
-
-class Closable(Protocol):
-    """A resource that a plugin holds while it is loaded."""
-
-    def close(self) -> None:
-        """Releases the resource."""
-
-
 C = TypeVar("C")
-K = TypeVar("K", bound=Closable)
 
 
-class Plugin(Generic[C]):
+@dataclass(kw_only=True, slots=True)
+class TagScope(Scope):
+    """The scope of a plugin, whose parameters are tags."""
+
+    tag: PluginTag
+
+    def place_of(self, parameter: str) -> Origin | None:
+        """Returns the file and line of a tag in the plugin, or of the plugin if it is missing."""
+        child = self.tag.element.find(parameter)
+        return child.origin if child is not None else self.tag.origin
+
+
+class Plugin(Component, Generic[C]):
     """Base class of all plugins.
 
     Plugins are created before the model is compiled, so that they can request motors. A subclass
@@ -69,35 +57,57 @@ class Plugin(Generic[C]):
     The parameters of such a plugin are read from the ``<sensor>`` itself.
     """
 
-    def __init__(self, part: Part, graph: Graph, tag: PluginTag, sensor: Sensor | None) -> None:
-        self.part = part
-        self.graph = graph
+    def __init__(self, part: Part, shared: Shared, tag: PluginTag, sensor: Sensor | None) -> None:
         self.tag = tag
         self.sensor = sensor
+        super().__init__(self._scope(part, shared, tag))
         self.config: C
         self.config, diagnostics = read(self.parameters, tag.element)
         for diagnostic in diagnostics:
             part.report(diagnostic)
-        ros = tag.element.find("ros/namespace")
-        plain = tag.element.find("robotNamespace")
-        # As in Gazebo: the tag takes precedence over the spawner's namespace.
-        self.namespace = part.namespace.rstrip("/")
-        self._frame_prefix = part.frame_prefix
-        if ros is not None:
-            self.namespace = ros.text.strip()
-        elif plain is not None:
-            self.namespace = plain.text.strip() or (part.name if self.empty_is_model else "")
-        if ros is None and self.prefixes_by_namespace and not self._frame_prefix:
-            self._frame_prefix = self.namespace
-        self._remappings = _remappings(tag)
-        self._open = contextlib.ExitStack()
-        self._crowded = False
         try:
             self.configure()
         except Exception:
             # The subclass's own close may use attributes that configure has not set.
-            Plugin.close(self)
+            Component.close(self)
             raise
+
+    def _scope(self, part: Part, shared: Shared, tag: PluginTag) -> TagScope:
+        ros = tag.element.find("ros/namespace")
+        plain = tag.element.find("robotNamespace")
+        # As in Gazebo: the tag takes precedence over the spawner's namespace.
+        namespace = part.namespace.rstrip("/")
+        frame_prefix = part.frame_prefix
+        if ros is not None:
+            namespace = ros.text.strip()
+        elif plain is not None:
+            namespace = plain.text.strip() or (part.name if self.empty_is_model else "")
+        if ros is None and self.prefixes_by_namespace and not frame_prefix:
+            frame_prefix = namespace
+        names = (part.name, tag.name)
+        name = tag.filename or tag.name
+        model = f' of model "{part.name}"' if part.name else ""
+        return TagScope(
+            part=part,
+            shared=shared,
+            node="/".join(name for name in names if name) or "world",
+            title=f'plugin "{name}"{model}' if tag.filename else f'sensor "{name}"{model}',
+            origin=tag.origin,
+            namespace=namespace,
+            frame_prefix=frame_prefix,
+            remappings=_remappings(tag),
+            owner=self,
+            tag=tag,
+        )
+
+    @property
+    def namespace(self) -> str:
+        """Namespace of the plugin's topics and services."""
+        return self.scope.namespace
+
+    @namespace.setter
+    def namespace(self, namespace: str) -> None:
+        self.scope.namespace = namespace
 
     def configure(self) -> None:
         """Acquires handles, advertises topics and schedules callbacks.
@@ -107,18 +117,6 @@ class Plugin(Generic[C]):
             UnknownNameError: A link or joint does not exist.
         """
         raise NotImplementedError
-
-    def reset(self) -> None:
-        """Restores the initial state when simulation time is reset to zero."""
-
-    def close(self) -> None:
-        """Withdraws all topics and services, when the model is deleted."""
-        self._open.close()
-
-    def keep(self, item: K) -> K:
-        """Registers an item that is closed with the plugin, and returns it."""
-        self._open.callback(item.close)
-        return item
 
     def under_model(self) -> None:
         """Uses the model's name as the namespace if neither the tag nor the spawner specifies one.
@@ -130,161 +128,9 @@ class Plugin(Generic[C]):
         if namespace is None and not self.part.namespace:
             self.namespace = self.part.name
 
-    def resolve(self, name: str) -> str:
-        """Returns a topic or service name in the plugin's namespace, after remapping."""
-        if name in self._remappings:
-            return resolve_name(self._remappings[name], self.namespace)
-        full = resolve_name(name, self.namespace)
-        for source, target in self._remappings.items():
-            if resolve_name(source, self.namespace) == full:
-                return resolve_name(target, self.namespace)
-        return full
-
     def remaps(self, name: str) -> bool:
         """Whether the tag remaps this private name (``out`` for ``~/out``)."""
-        return name in self._remappings
-
-    def frame(self, name: str) -> str:
-        """Returns a frame ID with the robot's prefix."""
-        return resolve_frame(name, self._frame_prefix)
-
-    def advertise(
-        self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
-    ) -> Publisher:
-        """Advertises a topic. The publisher is closed with the plugin."""
-        name = GzBridge.of(self.graph).published(self.resolve(topic), type_name)
-        return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
-
-    def subscribe(self, topic: str, type_name: str, callback: Callable[[Any], None]) -> None:
-        """Subscribes to a topic. The subscription is closed with the plugin.
-
-        Messages with values that cannot be executed, such as NaN, are ignored with a warning.
-        """
-        callback = checked_callback(callback, self.part, self.warn)
-        bridge = GzBridge.of(self.graph)
-        name, kind, receiver = bridge.read(self.resolve(topic), type_name, callback)
-        subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
-        subscription.on_error = lambda _, error: self.part.fail(self, error)
-        self.keep(subscription)
-
-    def serve(
-        self,
-        name: str,
-        type_name: str,
-        handler: Callable[[Any], Any],
-        *,
-        threaded: bool = False,
-    ) -> bool:
-        """Offers a service, which is withdrawn with the plugin.
-
-        If another plugin already offers the service, a warning is reported: two robots of the same
-        kind can share topics, and a service must not prevent the second one from loading.
-
-        Returns:
-            Whether the service is offered.
-        """
-        try:
-            service = self.graph.serve(
-                self.resolve(name), type_name, handler, node=self.node, threaded=threaded
-            )
-        except GraphError as error:
-            if not self._crowded:
-                # Plugins that share one name usually share several: one warning is enough.
-                self._crowded = True
-                self.warn(
-                    running.SERVICE_TAKEN,
-                    error.message,
-                    hint="Give one of the two models a namespace.",
-                    values={"name": self.resolve(name)},
-                )
-            return False
-        self._open.callback(self.graph.withdraw, service)
-        return True
-
-    def take_positions(
-        self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]
-    ) -> None:
-        """Accepts manual joint positions while the plugin is loaded; see `JointInput`."""
-        inputs = self.graph.joint_inputs
-        joint_input = JointInput(
-            model=self.part.name,
-            owner=self.tag.name or self.node,
-            joints=tuple(joints),
-            put=checked_positions(put, self.part),
-        )
-        inputs.add(joint_input)
-        self._open.callback(inputs.remove, joint_input)
-
-    def reconfigure(
-        self,
-        name: str,
-        parameters: tuple[ReconfigureParameter, ...],
-        on_change: OnChange,
-        *,
-        initial: Mapping[str, Value] | None = None,
-        preset: bool = False,
-    ) -> ReconfigureServer | None:
-        """Offers parameters that can be changed at run time, as a `ReconfigureServer`.
-
-        Returns None, with a warning, if another server already offers them or a preset value is not
-        allowed.
-        """
-        full = self.resolve(name)
-        try:
-            server = ReconfigureServer(
-                self.graph,
-                full,
-                parameters,
-                on_change,
-                node=self.node,
-                initial=initial,
-                preset=preset,
-            )
-        except GraphError as error:
-            self.warn(
-                running.RECONFIGURE_UNAVAILABLE,
-                f"{error.message}, so {full} cannot be reconfigured",
-                hint=error.hint or "",
-                values={"name": full},
-            )
-            return None
-        return self.keep(server)
-
-    def warn(
-        self,
-        code: Code,
-        message: str,
-        *,
-        at: Origin | None = None,
-        hint: str = "",
-        values: Mapping[str, errors.Value] | None = None,
-        severity: Severity = "warning",
-    ) -> None:
-        """Reports a diagnostic about this plugin.
-
-        Args:
-            code: Kind of the diagnostic. Other packages define their own: ``Code("ACME1", …)``.
-            message: One sentence.
-            at: File and line of the element in question; defaults to the plugin's tag.
-            hint: The likely fix, as a sentence.
-            values: Names and numbers in the message, for programs.
-            severity: Defaults to a warning, regardless of the code's severity.
-        """
-        self.part.report(
-            code.diagnostic(
-                message,
-                origin=at or self.tag.origin,
-                hint=hint,
-                values=values,
-                severity=severity,
-            )
-        )
-
-    def link_or_root(self, name: str) -> LinkHandle:
-        """Returns the link with this name, or the root link if no link has this name."""
-        description = self.part.description
-        known = description.link(name) is not None
-        return self.part.link(name if known else description.canonical_link)
+        return name in self.scope.remappings
 
     def check_above_zero(self, **values: float) -> None:
         """Checks that parameters, given by their tags, are positive.
@@ -327,23 +173,10 @@ class Plugin(Generic[C]):
             if value > FARTHEST:
                 raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
 
-    def place_of(self, tag: str) -> Origin | None:
-        """Returns the file and line of a tag in the plugin, or of the plugin if it is missing."""
-        child = self.tag.element.find(tag)
-        return child.origin if child is not None else self.tag.origin
-
     @property
-    def title(self) -> str:
-        """Names the plugin and its model, for messages."""
-        name = self.tag.filename or self.tag.name
-        model = f' of model "{self.part.name}"' if self.part.name else ""
-        return f'plugin "{name}"{model}' if self.tag.filename else f'sensor "{name}"{model}'
-
-    @property
-    def node(self) -> str:
-        """Names the plugin as a node, for listings."""
-        names = (self.part.name, self.tag.name)
-        return "/".join(name for name in names if name) or "world"
+    def input_name(self) -> str:
+        """Name of the plugin's input for manual joint positions."""
+        return self.tag.name or self.node
 
 
 def _remappings(tag: PluginTag) -> dict[str, str]:

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.codes import running
+from cartwheel.component import Component
 from cartwheel.errors import GraphError
 from cartwheel.graph import ReconfigureParameter, choices
 from cartwheel.messages import message_class
-from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_formats import ImageFormat, Pixels
 
 COMPRESSED = "sensor_msgs/msg/CompressedImage"
@@ -111,7 +111,7 @@ class CompressedImages:
     Source: compressed_image_transport.
 
     Args:
-        plugin: The publishing plugin.
+        owner: The publishing plugin.
         image: Topic of the image.
         form: Format of the image.
         rate: Publish rate for listings, Hz.
@@ -120,7 +120,7 @@ class CompressedImages:
 
     def __init__(
         self,
-        plugin: Plugin[Any],
+        owner: Component,
         image: str,
         form: ImageFormat,
         *,
@@ -128,15 +128,13 @@ class CompressedImages:
         adjustable: bool,
     ) -> None:
         self._format = form
-        self._publisher = plugin.advertise(
+        self._publisher = owner.advertise(
             f"{image}/compressed", COMPRESSED, rate=rate, qos="sensor"
         )
         self._message = message_class(COMPRESSED)
         self._values: Mapping[str, Any] = {p.name: p.default for p in PARAMETERS}
         if adjustable:
-            server = plugin.reconfigure(
-                f"{image}/compressed", PARAMETERS, self._change, preset=True
-            )
+            server = owner.reconfigure(f"{image}/compressed", PARAMETERS, self._change, preset=True)
             self._values = server.values if server is not None else self._values
 
     @property
@@ -175,13 +173,13 @@ class CompressedDepths:
     Source: compressed_depth_image_transport.
 
     Args:
-        plugin: The publishing plugin.
+        owner: The publishing plugin.
         image: Topic of the depth image.
         rate: Publish rate for listings, Hz.
     """
 
-    def __init__(self, plugin: Plugin[Any], image: str, *, rate: float | None) -> None:
-        self._publisher = plugin.advertise(
+    def __init__(self, owner: Component, image: str, *, rate: float | None) -> None:
+        self._publisher = owner.advertise(
             f"{image}/compressedDepth", COMPRESSED, rate=rate, qos="sensor"
         )
         self._message = message_class(COMPRESSED)

@@ -8,8 +8,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.component import Component
 from cartwheel.messages import header, message_class
-from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_compressed import CompressedDepths
 from cartwheel.plugins.camera_eye import Eye
 from cartwheel.plugins.camera_formats import Pixels
@@ -58,31 +58,31 @@ class Depths:
     """The depth topics of an `Eye`. The colour image comes from the same rendering.
 
     Args:
-        plugin: The publishing plugin.
+        owner: The publishing plugin.
         eye: The lens.
         options: Topics, limits and encoding.
         rate: Publish rate for listings, Hz.
     """
 
     def __init__(
-        self, plugin: Plugin[Any], eye: Eye, options: DepthOptions, *, rate: float | None
+        self, owner: Component, eye: Eye, options: DepthOptions, *, rate: float | None
     ) -> None:
         self._eye = eye
         self._options = options
         self._message = message_class("sensor_msgs/msg/Image")
-        self._image = plugin.advertise(
+        self._image = owner.advertise(
             options.depth, "sensor_msgs/msg/Image", rate=rate, qos="sensor"
         )
         self._points = (
-            plugin.advertise(options.points, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor")
+            owner.advertise(options.points, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor")
             if options.points
             else None
         )
         self._compressed = (
-            CompressedDepths(plugin, options.depth, rate=rate) if options.compressed else None
+            CompressedDepths(owner, options.depth, rate=rate) if options.compressed else None
         )
         self._info = (
-            plugin.advertise(options.info, INFO, rate=rate, qos="sensor") if options.info else None
+            owner.advertise(options.info, INFO, rate=rate, qos="sensor") if options.info else None
         )
         right, down = eye.lens.rays()
         self._right, self._down = right.astype(np.float32), down.astype(np.float32)

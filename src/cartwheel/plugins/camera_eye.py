@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.codes import devices
+from cartwheel.component import Component
 from cartwheel.description.model import CameraIntrinsics, Sensor
 from cartwheel.graph import Publisher, ReconfigureParameter
 from cartwheel.messages import header, message_class
-from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_compressed import (
     COMPRESSED,
     DEPTH_PARAMETERS,
@@ -54,7 +54,7 @@ class Eye:
     """Renders and publishes the images of one lens when its plugin requests it.
 
     Args:
-        plugin: The publishing plugin.
+        owner: The publishing plugin.
         sensor: The sensor of the lens.
         lens: Intrinsics from the description, with the pose of the lens in the sensor.
         bent: The lens with its distortion.
@@ -67,7 +67,7 @@ class Eye:
 
     def __init__(
         self,
-        plugin: Plugin[Any],
+        owner: Component,
         sensor: Sensor,
         lens: CameraIntrinsics,
         *,
@@ -78,40 +78,40 @@ class Eye:
         rate: float,
         on_rate: Callable[[float], None],
     ) -> None:
-        self._plugin = plugin
+        self._owner = owner
         self.lens = bent
         self.calibration = calibration
         self.frame = frame
         self._noise = (lens.noise_mean, lens.noise_stddev)
-        self._format = image_format(plugin, lens.format)
-        self._camera = plugin.part.camera(
+        self._format = image_format(owner, lens.format)
+        self._camera = owner.part.camera(
             sensor.name, sensor.link, sensor.pose @ lens.pose, bent.drawn
         )
         self._message = message_class("sensor_msgs/msg/Image")
         listed_rate = rate or None
-        self._info = plugin.advertise(topics.info, INFO, rate=listed_rate, qos="sensor")
+        self._info = owner.advertise(topics.info, INFO, rate=listed_rate, qos="sensor")
         self._image: Publisher | None = None
         self._compressed: CompressedImages | None = None
         if topics.image:
-            self._image = plugin.advertise(
+            self._image = owner.advertise(
                 topics.image, "sensor_msgs/msg/Image", rate=listed_rate, qos="sensor"
             )
-        free = not topics.set_info or plugin.serve(
+        free = not topics.set_info or owner.serve(
             joined(topics.base, "set_camera_info"), SET_INFO, calibration.set
         )
         adjustable = topics.adjustable and free
         if topics.image:
             self._compressed = CompressedImages(
-                plugin, topics.image, self._format, rate=listed_rate, adjustable=adjustable
+                owner, topics.image, self._format, rate=listed_rate, adjustable=adjustable
             )
         if adjustable:
             # Gazebo lists this topic for every camera; colour images have no depths to publish.
-            plugin.advertise(f"{topics.image}/compressedDepth", COMPRESSED, qos="sensor")
-            plugin.reconfigure(
+            owner.advertise(f"{topics.image}/compressedDepth", COMPRESSED, qos="sensor")
+            owner.reconfigure(
                 f"{topics.image}/compressedDepth", DEPTH_PARAMETERS, lambda _: None, preset=True
             )
         if adjustable and topics.base.strip("/"):
-            plugin.reconfigure(
+            owner.reconfigure(
                 topics.base,
                 (_RATE,),
                 lambda values: on_rate(float(values["imager_rate"])),
@@ -135,7 +135,7 @@ class Eye:
         Raises:
             SimulationError: OpenGL is not available, or was opened before a fork.
         """
-        return self._noisy(self.lens.image(self._plugin.part.render(self._camera)))
+        return self._noisy(self.lens.image(self._owner.part.render(self._camera)))
 
     def picture_with_depth(self) -> tuple[Pixels, NDArray[np.float32]]:
         """Renders the image and the depths along the optical axis in m; inf where nothing is hit.
@@ -143,7 +143,7 @@ class Eye:
         Raises:
             SimulationError: OpenGL is not available, or was opened before a fork.
         """
-        pixels, depths = self._plugin.part.render_with_depth(self._camera)
+        pixels, depths = self._owner.part.render_with_depth(self._camera)
         return self._noisy(self.lens.image(pixels)), self.lens.depths(depths)
 
     def publish_info(self, now: int) -> None:
@@ -177,7 +177,7 @@ class Eye:
         mean, spread = self._noise
         if spread <= 0 and mean == 0:
             return pixels
-        random = self._plugin.part.random(f"camera {self._camera.name}")
+        random = self._owner.part.random(f"camera {self._camera.name}")
         noise = random.normal(mean, max(spread, 0.0), (*pixels.shape[:2], 1)) * 255
         noisy: Pixels = np.clip(pixels + noise, 0, 255).astype(np.uint8)
         return noisy
@@ -188,14 +188,14 @@ def joined(base: str, topic: str) -> str:
     return f"{base}/{topic}" if base and not topic.startswith("/") else topic
 
 
-def image_format(plugin: Plugin[Any], name: str) -> ImageFormat:
+def image_format(owner: Component, name: str) -> ImageFormat:
     """Returns the format with this name; colour, with a warning, if it is not supported."""
     known = FORMATS.get(name.strip().upper())
     if known is not None:
         return known
     # Float formats belong to depth cameras, whose depths are always floats.
     if "FLOAT" not in name.upper():
-        plugin.warn(
+        owner.warn(
             devices.IMAGE_FORMAT_UNKNOWN,
             f'the image format "{name}" is not supported, so R8G8B8 is used',
             hint=f"Supported formats: {', '.join(FORMATS)}.",

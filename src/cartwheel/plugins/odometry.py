@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from cartwheel.plugins.odometry_frame import OdometryFrame
 from cartwheel.simulation.handles import JointHandle, LinkHandle
 
 if TYPE_CHECKING:
-    from cartwheel.plugins.base import Plugin
+    from cartwheel.component import Component
     from cartwheel.plugins.wheel_states import WheelTransforms
 
 NO_COVARIANCE = np.zeros(36)
@@ -31,7 +31,7 @@ class Odometry:
     """Publishes ``nav_msgs/Odometry`` and the transform from the odometry frame to the robot.
 
     Args:
-        plugin: Provides the namespace and the frame prefix.
+        owner: Provides the namespace and the frame prefix.
         topic: Topic of the odometry; None: not published.
         frame: Reference frame of the pose.
         base: Frame whose pose and twist are published.
@@ -45,7 +45,7 @@ class Odometry:
 
     def __init__(
         self,
-        plugin: Plugin[Any],
+        owner: Component,
         *,
         topic: str | None,
         frame: str,
@@ -57,7 +57,7 @@ class Odometry:
         pose_covariance: Array = NO_COVARIANCE,
         twist_covariance: Array = NO_COVARIANCE,
     ) -> None:
-        self._frame, self._base = plugin.frame(frame), plugin.frame(base)
+        self._frame, self._base = owner.frame(frame), owner.frame(base)
         self._wheels = wheels
         self.pose_covariance, self.twist_covariance = pose_covariance, twist_covariance
         self._Odometry = message_class("nav_msgs/msg/Odometry")
@@ -72,14 +72,14 @@ class Odometry:
         self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
         self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
         self._odometry = (
-            plugin.advertise(topic, "nav_msgs/msg/Odometry", rate=rate) if topic else None
+            owner.advertise(topic, "nav_msgs/msg/Odometry", rate=rate) if topic else None
         )
         self._tf = (
-            plugin.advertise(tf_topic, "tf2_msgs/msg/TFMessage", rate=rate)
+            owner.advertise(tf_topic, "tf2_msgs/msg/TFMessage", rate=rate)
             if transform or wheels is not None
             else None
         )
-        self._moved = OdometryFrame(plugin, base) if transform else None
+        self._moved = OdometryFrame(owner, base) if transform else None
 
     def wanted(self) -> bool:
         """Whether one of the topics has subscribers."""

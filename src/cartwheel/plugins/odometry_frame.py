@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel.description.kinematics import fixed_chain, link_poses
 from cartwheel.geometry import IDENTITY, Pose, Quat, Vec3, quat_multiply, rotate
-from cartwheel.graph import StaticTransforms
 from cartwheel.messages import header, message_class
 
 if TYPE_CHECKING:
-    from cartwheel.plugins.base import Plugin
+    from cartwheel.component import Component
 
 
 class OdometryFrame:
@@ -23,22 +22,22 @@ class OdometryFrame:
     on ``/tf_static``.
 
     Args:
-        plugin: The drive.
+        owner: The drive.
         base: The base link, or any other frame name.
     """
 
-    def __init__(self, plugin: Plugin[Any], base: str) -> None:
-        description = plugin.part.description
+    def __init__(self, owner: Component, base: str) -> None:
+        description = owner.part.description
         chain = [joint for joint in fixed_chain(description, base) if joint.parent != "world"]
-        self._graph = plugin.graph
+        self._graph = owner.graph
         self._sent: list[Any] = []
-        self.child = plugin.frame(base)
+        self.child = owner.frame(base)
         """``child_frame_id`` of the transform."""
         self._to_root: Pose | None = None
         self._turned = False
         if not chain:
             return
-        self.child = plugin.frame(chain[0].parent)
+        self.child = owner.frame(chain[0].parent)
         poses = link_poses(description, {})
         to_root = poses[base].inverse() @ poses[chain[0].parent]
         # If both frames coincide, the pose is passed on bit for bit.
@@ -48,8 +47,8 @@ class OdometryFrame:
             between = poses[joint.parent].inverse() @ poses[joint.child]
             self._sent.append(
                 message_class("geometry_msgs/msg/TransformStamped")(
-                    header=header(0, plugin.frame(joint.parent)),
-                    child_frame_id=plugin.frame(joint.child),
+                    header=header(0, owner.frame(joint.parent)),
+                    child_frame_id=owner.frame(joint.child),
                     transform=message_class("geometry_msgs/msg/Transform")(
                         translation=message_class("geometry_msgs/msg/Vector3")(*between.position),
                         rotation=message_class("geometry_msgs/msg/Quaternion")(
@@ -58,7 +57,7 @@ class OdometryFrame:
                     ),
                 )
             )
-        StaticTransforms.of(self._graph).put(self, self._sent)
+        self._graph.static_transforms.put(self, self._sent)
 
     def place(self, position: Vec3, orientation: Quat) -> tuple[Vec3, Quat]:
         """Returns the pose of `child` for a pose of the base link.
@@ -77,4 +76,4 @@ class OdometryFrame:
     def close(self) -> None:
         """Removes the static transforms."""
         if self._sent:
-            StaticTransforms.of(self._graph).remove(self)
+            self._graph.static_transforms.remove(self)

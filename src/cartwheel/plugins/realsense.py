@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from cartwheel.codes import running
+from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.camera_base import CameraBase
@@ -125,7 +126,7 @@ class _Stream(CameraBase[RealSenseParameters]):
     def __init__(
         self,
         part: Part,
-        graph: Any,
+        shared: Shared,
         tag: PluginTag,
         sensor: Sensor,
         *,
@@ -136,7 +137,7 @@ class _Stream(CameraBase[RealSenseParameters]):
     ) -> None:
         self._image_topic, self._stream_frame = topic, frame
         self._stream_rate, self._options = rate, depth
-        super().__init__(part, graph, tag, sensor)
+        super().__init__(part, shared, tag, sensor)
 
     def _asked_rate(self) -> float:
         return self._stream_rate
@@ -197,7 +198,7 @@ class RealSense(Plugin[RealSenseParameters]):
                 continue
             stream = _Stream(
                 self.part,
-                self.graph,
+                self.shared,
                 self._quiet_tag(),
                 sensor,
                 topic=joined(base, topic),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from cartwheel.codes import devices
+from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.errors import (
     CartwheelError,
@@ -12,7 +13,6 @@ from cartwheel.errors import (
     UnknownNameError,
     meant_one,
 )
-from cartwheel.graph import Graph
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.catalogue import (
     plugin_named,
@@ -33,7 +33,7 @@ _HARMLESS: _Faults = (StaticModelError,)
 """Errors after which a plugin is skipped, with a report."""
 
 
-def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour]:
+def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behaviour]:
     """Creates the plugins of a model and reports unsupported ones.
 
     If a plugin cannot be created, the model is not loaded. These plugins are skipped with a report
@@ -43,7 +43,7 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
 
     Args:
         part: The model's part of the simulation.
-        graph: Graph on which the plugins publish.
+        shared: Objects that all components of the simulation share.
         lenient: Also skip plugins that refer to an element that the model does not have.
 
     Raises:
@@ -76,14 +76,14 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
                 )
             else:
                 forgiven = _ANY if own_system else (*_HARMLESS, *more)
-                plugins += _create(part, graph, plugin, tag, sensor, forgiven=forgiven)
+                plugins += _create(part, shared, plugin, tag, sensor, forgiven=forgiven)
         alone = [
             one
             for one in sensors
             if one.name not in part.read_sensors
             and not any(plugin_named(tag.filename) for tag in one.plugins)
         ]
-        plugins += _serve(part, graph, alone, systems)
+        plugins += _serve(part, shared, alone, systems)
     except Exception:
         for created in plugins:
             created.close()
@@ -93,7 +93,7 @@ def attach(part: Part, graph: Graph, *, lenient: bool = False) -> list[Behaviour
 
 def _create(
     part: Part,
-    graph: Graph,
+    shared: Shared,
     plugin: type[Plugin[object]],
     tag: PluginTag,
     sensor: Sensor | None,
@@ -102,7 +102,7 @@ def _create(
 ) -> list[Plugin[object]]:
     """Returns a list of the plugin; empty, with a report, if it cannot be created."""
     try:
-        return [part.made(lambda: plugin(part, graph, tag, sensor))]
+        return [part.made(lambda: plugin(part, shared, tag, sensor))]
     except CartwheelError as error:
         if not isinstance(error, forgiven):
             raise
@@ -113,7 +113,7 @@ def _create(
 
 
 def _serve(
-    part: Part, graph: Graph, sensors: Iterable[Sensor], systems: Collection[str]
+    part: Part, shared: Shared, sensors: Iterable[Sensor], systems: Collection[str]
 ) -> Iterator[Plugin[object]]:
     """Creates plugins for sensors that have no ``<plugin>``."""
     for sensor in sensors:
@@ -121,7 +121,7 @@ def _serve(
         wanted = publishes(sensor, systems)
         if wanted and plugin is not None:
             tag = own_tag(sensor, tags_of(plugin.parameters))
-            yield from _create(part, graph, plugin, tag, sensor, forgiven=_ANY)
+            yield from _create(part, shared, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
             # The diagnostic about the unsupported plugin also covers the sensor.

@@ -11,7 +11,7 @@ from cartwheel.messages import header, message_class
 from cartwheel.simulation.handles import JointHandle
 
 if TYPE_CHECKING:
-    from cartwheel.plugins.base import Plugin
+    from cartwheel.component import Component
 
 _NOTHING = np.zeros(0)
 
@@ -20,17 +20,17 @@ class WheelTransforms:
     """Current transforms from joints' parent links to their child links.
 
     Args:
-        plugin: Provides the frame prefix.
+        owner: Provides the frame prefix.
         joints: The joints, in the order of the transforms.
     """
 
-    def __init__(self, plugin: Plugin[Any], joints: Sequence[JointHandle]) -> None:
-        described = {joint.name: joint for joint in plugin.part.description.joints}
+    def __init__(self, owner: Component, joints: Sequence[JointHandle]) -> None:
+        described = {joint.name: joint for joint in owner.part.description.joints}
         self._wheels = [
             (
                 handle,
-                plugin.frame(described[handle.name].parent),
-                plugin.frame(described[handle.name].child),
+                owner.frame(described[handle.name].parent),
+                owner.frame(described[handle.name].child),
             )
             for handle in joints
         ]
@@ -60,7 +60,7 @@ class JointStates:
     """Publishes ``sensor_msgs/JointState`` messages.
 
     Args:
-        plugin: Provides namespace and frame prefix.
+        owner: Provides namespace and frame prefix.
         joints: The joints, in the order of the message.
         topic: The topic.
         rate: Publish rate for listings, Hz.
@@ -71,7 +71,7 @@ class JointStates:
 
     def __init__(
         self,
-        plugin: Plugin[Any],
+        owner: Component,
         joints: Sequence[JointHandle],
         *,
         topic: str = "joint_states",
@@ -80,12 +80,12 @@ class JointStates:
         efforts: bool = False,
         frame: str = "",
     ) -> None:
-        self._joints = plugin.part.together(joints)
+        self._joints = owner.part.together(joints)
         self._names = [joint.name for joint in joints]
         self._velocities, self._efforts = velocities, efforts
-        self._frame = plugin.frame(frame) if frame else ""
+        self._frame = owner.frame(frame) if frame else ""
         self._JointState = message_class("sensor_msgs/msg/JointState")
-        self._publisher = plugin.advertise(topic, "sensor_msgs/msg/JointState", rate=rate)
+        self._publisher = owner.advertise(topic, "sensor_msgs/msg/JointState", rate=rate)
 
     def wanted(self) -> bool:
         """Whether the topic has subscribers."""

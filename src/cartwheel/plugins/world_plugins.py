@@ -5,9 +5,9 @@ from __future__ import annotations
 import functools
 
 from cartwheel.codes import devices, running
+from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag
 from cartwheel.errors import CartwheelError, Diagnostic, fault
-from cartwheel.graph import Graph
 from cartwheel.plugins.catalogue import plugin_named, short_name
 from cartwheel.plugins.gz_sensor import SYSTEMS
 from cartwheel.simulation import Part
@@ -54,14 +54,14 @@ def _title(tag: PluginTag) -> str:
     return f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
 
 
-def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
+def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
     """Creates the plugins of the world and reports those that have no effect.
 
     A plugin that cannot be created is skipped with a report.
 
     Args:
         part: The world's part of the simulation.
-        graph: Graph on which the plugins publish.
+        shared: Objects that all components of the simulation share.
     """
     behaviours: list[Behaviour] = []
     for tag in part.world.plugins:
@@ -90,7 +90,7 @@ def attach_world(part: Part, graph: Graph) -> list[Behaviour]:
             )
         else:
             try:
-                behaviours.append(part.made(functools.partial(plugin, part, graph, tag, None)))
+                behaviours.append(part.made(functools.partial(plugin, part, shared, tag, None)))
             except CartwheelError as error:
                 part.report(left_out(tag, error))
             except Exception as error:  # noqa: BLE001 - a plugin's own

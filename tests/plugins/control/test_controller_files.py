@@ -17,7 +17,7 @@ GROUP = "position_controllers/JointGroupPositionController"
 
 
 def started(world):
-    return [each.name for each in ControllerFiles.of(world.graph).started]
+    return [each.name for each in world.session.shared.get(ControllerFiles).started]
 
 
 def warnings(world):

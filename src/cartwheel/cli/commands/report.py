@@ -82,7 +82,7 @@ class Report:
                 description = placed.description
                 mass = f"{description.mass:.4g} kg"
                 self._line("robot", f"{name}, {mass}, {description.parts}")
-        started = ControllerFiles.of(session.graph).started
+        started = session.shared.get(ControllerFiles).started
         if started:
             self._line("control", ", ".join(each.name for each in started))
         elif name is not None and not ros:

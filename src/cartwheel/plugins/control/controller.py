@@ -6,11 +6,12 @@ import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
+from cartwheel.component import Component, Scope
 from cartwheel.description.model import Sensor
-from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Value
-from cartwheel.graph import Graph, JointInput, Publisher, Qos, Service, resolve_name
+from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Severity, Value
+from cartwheel.graph import JointInput, resolve_name
 from cartwheel.messages import message_class
 from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.chaining import Reference
@@ -19,8 +20,6 @@ from cartwheel.plugins.control.ros2_parameters import ParameterServices
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.ft_sensor import JointLoad
 from cartwheel.plugins.inertial_unit import InertialUnit
-from cartwheel.plugins.inputs import checked_callback, checked_positions
-from cartwheel.simulation import Part
 from cartwheel.simulation.clock import NANOSECONDS, Beat
 from cartwheel.simulation.pushing import BodyDriveHandle
 
@@ -35,13 +34,6 @@ class SensedLink:
     sensor: Sensor
     unit: InertialUnit | JointLoad
     """Measures the sensor, for all controllers."""
-
-
-class Closable(Protocol):
-    """A resource on the graph."""
-
-    def close(self) -> None:
-        """Removes the resource from the graph."""
 
 
 class Rig:
@@ -91,7 +83,41 @@ class Rig:
         self.plugin.warn(code, message, at=at, hint=hint, values=values)
 
 
-class Controller:
+@dataclass(kw_only=True, slots=True)
+class ControllerScope(Scope):
+    """The names of a controller, which are below its own name."""
+
+    name: str
+    """The controller's name."""
+    outer: Scope
+    """The scope of the controller manager's plugin."""
+    base: str
+    """Namespace of the controller manager."""
+    own: Mapping[str, str]
+    """New names of the controller's topics by their names before the remapping."""
+
+    def resolve(self, name: str) -> str:
+        """Returns a topic name after remapping; below the controller's name unless global."""
+        full = self._full(f"~/{name}")
+        for source, target in self.own.items():
+            if self._full(source) == full:
+                full = self._full(target)
+                break
+        return self.outer.resolve(full)
+
+    def published(self, name: str, type_name: str) -> str:  # noqa: ARG002
+        """Returns `resolve`: controllers' topics are ROS topics already."""
+        return self.resolve(name)
+
+    def _full(self, name: str) -> str:
+        """Resolves a name as a node does: ``~/…`` is below the controller's name."""
+        space = self.base.strip("/")
+        if name.startswith("~/"):
+            name, space = name.removeprefix("~/"), f"{space}/{self.name}"
+        return resolve_name(name, space)
+
+
+class Controller(Component):
     """Base class of all controllers, created when a controller is loaded.
 
     A subclass lists its `types`. Its `configure` reads the parameters and calls `claim` for each
@@ -106,6 +132,21 @@ class Controller:
         self.type = type_name
         self.settings = settings
         self.rig = rig
+        outer = rig.plugin.scope
+        super().__init__(
+            ControllerScope(
+                part=outer.part,
+                shared=outer.shared,
+                node=f"{outer.part.name}/{name}",
+                title=f'controller "{name}"',
+                origin=outer.origin,
+                frame_prefix=outer.frame_prefix,
+                name=name,
+                outer=outer,
+                base=rig.namespace,
+                own=rig.remappings.get(name, {}),
+            )
+        )
         self.running = False
         """Whether the controller is running, or starts at the next update."""
         self.started = False
@@ -117,7 +158,6 @@ class Controller:
         """The claimed interface of each joint."""
         self.references: list[Reference] = []
         """Reference interfaces that other controllers can command."""
-        self._open: list[Closable | Service] = []
         self._input: JointInput | None = None
         if rig.ros2:
             self.graph.nodes[self.node] = resolve_name(name, rig.namespace)
@@ -183,12 +223,7 @@ class Controller:
         """Removes all topics and services when the controller is unloaded."""
         self.graph.nodes.pop(self.node, None)
         self._leave_joints()
-        for item in self._open:
-            if isinstance(item, Service):
-                self.rig.plugin.graph.withdraw(item)
-            else:
-                item.close()
-        self._open.clear()
+        super().close()
         for each in self.references:
             self.rig.hardware.references.pop(each.full_name, None)
         self.references.clear()
@@ -225,38 +260,13 @@ class Controller:
             for kind in joint.interfaces.states
         ]
 
-    def resolve(self, name: str) -> str:
-        """Returns a topic name after remapping; below the controller's name unless global."""
-        full = self._full(f"~/{name}")
-        for source, target in self.rig.remappings.get(self.name, {}).items():
-            if self._full(source) == full:
-                full = self._full(target)
-                break
-        return self.rig.plugin.resolve(full)
-
-    def _full(self, name: str) -> str:
-        """Resolves a name as a node does: ``~/…`` is below the controller's name."""
-        space = self.rig.namespace.strip("/")
-        if name.startswith("~/"):
-            name, space = name.removeprefix("~/"), f"{space}/{self.name}"
-        return resolve_name(name, space)
-
-    def advertise(
-        self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
-    ) -> Publisher:
-        """Creates a publisher that closes with the controller; see `resolve`."""
-        publisher = self.rig.plugin.graph.advertise(
-            self.resolve(topic), type_name, node=self.node, rate=rate, qos=qos
-        )
-        self._open.append(publisher)
-        return publisher
-
     def subscribe(
         self,
         topic: str,
         type_name: str,
         callback: Callable[[Any], None],
         *,
+        unset: bool = True,
         always: bool = False,
     ) -> None:
         """Creates a subscription that closes with the controller.
@@ -265,28 +275,25 @@ class Controller:
         Messages with a number that is too large are ignored with a warning. Each controller decides
         what NaN and infinity mean.
         """
-        callback = checked_callback(callback, self.part, self.warn, unset=True)
+        checked = self.checked(callback, unset=unset)
 
         def receive(message: Any) -> None:
             if self.running and not self.started:
-                self._early.append(lambda: callback(message))
+                self._early.append(lambda: checked(message))
             elif self.running or always:
-                callback(message)
+                checked(message)
 
-        self._open.append(
-            self.rig.plugin.graph.subscribe(
-                self.resolve(topic), receive, type_name=type_name, node=self.node
-            )
-        )
+        topic = self.resolve(topic)
+        self.keep(self.graph.subscribe(topic, receive, type_name=type_name, node=self.node))
 
-    def take_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
+    def accept_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
         """Accepts manual joint positions while the controller runs; see `JointInput`."""
-        self._input = JointInput(
-            model=self.part.name,
-            owner=self.name,
-            joints=tuple(claim.joint for claim in self.claims.values()),
-            put=checked_positions(put, self.part),
-        )
+        self._input = self.joint_input([claim.joint for claim in self.claims.values()], put)
+
+    @property
+    def input_name(self) -> str:
+        """Name of the controller's input for manual joint positions."""
+        return self.name
 
     def publish_command(self, topic: str, type_name: str, **fields: object) -> None:
         """Publishes a message on one of the controller's own command topics."""
@@ -296,39 +303,38 @@ class Controller:
         if self._input is not None:
             self.graph.joint_inputs.remove(self._input)
 
-    def keep(self, closable: Closable) -> None:
-        """Closes a resource with the controller."""
-        self._open.append(closable)
-
     def _offer_parameters(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
         """Offers a parameter service, unless another robot's controller already offers it."""
         with contextlib.suppress(GraphError):
-            self._open.append(self.graph.serve(name, type_name, handler, node=self.node))
+            self._serve(name, type_name, handler)
 
-    def serve(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
-        """Offers a service that closes with the controller."""
-        self._open.append(
-            self.rig.plugin.graph.serve(self.resolve(name), type_name, handler, node=self.node)
-        )
+    def serve(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+    ) -> bool:
+        """Offers a service that is withdrawn with the controller.
 
-    def frame(self, name: str) -> str:
-        """Returns a frame ID with the robot's prefix."""
-        return self.rig.plugin.frame(name)
+        Raises:
+            GraphError: Another controller already offers the service.
+        """
+        self._serve(self.resolve(name), type_name, handler, threaded=threaded)
+        return True
 
-    @property
-    def part(self) -> Part:
-        """The robot's part of the simulation."""
-        return self.rig.plugin.part
-
-    @property
-    def graph(self) -> Graph:
-        """The graph that contains the controller's topics."""
-        return self.rig.plugin.graph
-
-    @property
-    def node(self) -> str:
-        """Node name for listings."""
-        return f"{self.rig.plugin.part.name}/{self.name}"
+    def _serve(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+    ) -> None:
+        graph = self.graph
+        service = graph.serve(name, type_name, handler, node=self.node, threaded=threaded)
+        self._open.callback(graph.withdraw, service)
 
     def warn(
         self,
@@ -338,12 +344,12 @@ class Controller:
         at: Origin | None = None,
         hint: str = "",
         values: Mapping[str, Value] | None = None,
+        severity: Severity = "warning",
     ) -> None:
-        """Reports a warning about this controller; see `Plugin.warn`."""
+        """Reports a diagnostic about this controller; see `Component.warn`."""
         values = {"controller": self.name, **(values or {})}
-        self.rig.report(
-            code, f'controller "{self.name}": {message}', at=at, hint=hint, values=values
-        )
+        message = f"{self.title}: {message}"
+        super().warn(code, message, at=at, hint=hint, values=values, severity=severity)
 
 
 class Rhythm:

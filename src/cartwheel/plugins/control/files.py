@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +12,6 @@ from cartwheel import yaml_text
 from cartwheel.codes import devices
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, PluginError
-from cartwheel.graph import Graph
 from cartwheel.plugins.control.launch_arguments import launch_arguments
 from cartwheel.plugins.control.settings import Settings, merge
 from cartwheel.plugins.control.substitution import substitute
@@ -57,14 +55,6 @@ class ControllerFiles:
         self.loaded: list[Controller] = []
         """Controllers that managers have loaded from files."""
 
-    @classmethod
-    def of(cls, graph: Graph) -> ControllerFiles:
-        """Returns the files of a graph, which are empty initially."""
-        files = _BY_GRAPH.get(graph)
-        if files is None:
-            files = _BY_GRAPH[graph] = cls()
-        return files
-
     @property
     def started(self) -> list[Controller]:
         """The loaded controllers that run. One whose joint is already commanded does not start."""
@@ -74,9 +64,6 @@ class ControllerFiles:
         """Returns the files and clears them, so that only one robot uses them."""
         paths, self.paths = self.paths, ()
         return paths
-
-
-_BY_GRAPH: weakref.WeakKeyDictionary[Graph, ControllerFiles] = weakref.WeakKeyDictionary()
 
 
 def read_parameters(path: Path) -> dict[str, Any]:

@@ -57,7 +57,7 @@ class GripperActionController(Controller):
             on_goal=self._on_goal,
             on_cancel=self._on_cancel,
         )
-        self.take_positions(lambda wanted, _: self._put(wanted))
+        self.accept_positions(lambda wanted, _: self._put(wanted))
 
     def start(self, time_ns: int) -> None:
         self._finish("abort")

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import cache, partial
-from typing import Any
 
 from cartwheel.codes import devices
+from cartwheel.component import Component
 from cartwheel.description.model import Axis, Mimic, SoftLimits
 from cartwheel.errors import PluginError, UnknownNameError
-from cartwheel.plugins.base import Plugin
 from cartwheel.plugins.control.burden import burdens
 from cartwheel.plugins.control.interfaces import JointInterfaces
 from cartwheel.plugins.control.pid import Gains, Pid
@@ -26,7 +25,7 @@ class JointHardware:
     """A joint. Commands are limited as in joint_limits_interface.
 
     Args:
-        plugin: Plugin of the controller manager.
+        owner: Plugin of the controller manager.
         interfaces: Interfaces of the joint.
         gains: An interface whose commands a PID converts to efforts, with the gains.
         limits: Parameters that override the limits in the description. If given, even empty, the
@@ -39,13 +38,13 @@ class JointHardware:
 
     def __init__(
         self,
-        plugin: Plugin[Any],
+        owner: Component,
         interfaces: JointInterfaces,
         needs: Callable[[], Mapping[str, float]],
         gains: tuple[str, Gains] | None = None,
         limits: Settings | None = None,
     ) -> None:
-        part, name, origin = plugin.part, interfaces.name, interfaces.origin
+        part, name, origin = owner.part, interfaces.name, interfaces.origin
         joint = part.description.joint(name)
         assert joint is not None
         self.name = name
@@ -68,7 +67,7 @@ class JointHardware:
         self.motor: MotorHandle | None = None
         self.servo: ServoHandle | None = None
         self.pids = {gains[0]: Pid(gains[1])} if gains is not None else {}
-        strength = self._strength(plugin, needs)
+        strength = self._strength(owner, needs)
         if interfaces.commands == ("velocity",) and not self.pids:
             self.motor = part.velocity_motor(name, max_effort=strength, origin=origin)
         elif interfaces.commands:
@@ -89,14 +88,14 @@ class JointHardware:
             leader, multiplier = interfaces.mimic
             part.mimic(name, Mimic(joint=leader, multiplier=multiplier), origin=origin)
 
-    def _strength(self, plugin: Plugin[Any], needs: Callable[[], Mapping[str, float]]) -> float:
+    def _strength(self, owner: Component, needs: Callable[[], Mapping[str, float]]) -> float:
         """Returns the maximum effort of position and velocity commands, N m or N."""
         limit, commands = self.effort_limit, self.interfaces.commands
         if "position" in commands and "position" not in self.pids and limit < math.inf:
             need = needs().get(self.name, 0.0)
             if limit < need:
                 held, unit = 2 * need, "N" if self.type == "prismatic" else "N m"
-                plugin.warn(
+                owner.warn(
                     devices.EFFORT_LIMIT_TOO_LOW,
                     f'the effort limit of joint "{self.name}", {limit:g} {unit}, is below the '
                     f"{need:.3g} {unit} that gravity requires; as in Gazebo, position commands are "
@@ -281,7 +280,7 @@ class Hardware:
     """All joints of a robot that controllers can use.
 
     Args:
-        plugin: Plugin of the controller manager.
+        owner: Plugin of the controller manager.
         joints: Interfaces of the joints.
         gains: Interface and gains of each joint whose commands a PID converts to efforts.
         limits: ROS 1's parameters ``joint_limits``; None in ROS 2, which has no soft limits.
@@ -289,17 +288,17 @@ class Hardware:
 
     def __init__(
         self,
-        plugin: Plugin[Any],
+        owner: Component,
         joints: list[JointInterfaces],
         gains: Mapping[str, tuple[str, Gains]],
         limits: Settings | None = None,
     ) -> None:
-        self._description = plugin.part.description
+        self._description = owner.part.description
         self._tags = "no <ros2_control>" if limits is None else "no <transmission>"
         needs = cache(partial(burdens, self._description))
         self._joints = {
             each.name: JointHardware(
-                plugin,
+                owner,
                 each,
                 needs,
                 gains.get(each.name),

@@ -36,7 +36,7 @@ class JointCommand(Controller):
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
         if interface == "position":
-            self.take_positions(lambda wanted, _: _put(self, wanted))
+            self.accept_positions(lambda wanted, _: _put(self, wanted))
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._command = self._joint.command
@@ -72,7 +72,7 @@ class JointPid(Controller):
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
         if self._follows == "position":
-            self.take_positions(lambda wanted, _: _put(self, wanted))
+            self.accept_positions(lambda wanted, _: _put(self, wanted))
         self._publisher = self.advertise("state", "control_msgs/msg/JointControllerState")
         self._count = 0
         self._State = message_class("control_msgs/msg/JointControllerState")
@@ -173,7 +173,7 @@ class JointGroup(Controller):
         topic = "commands" if self.rig.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
         if interface == "position" or self._pids:
-            self.take_positions(lambda wanted, _: self._put(topic, wanted))
+            self.accept_positions(lambda wanted, _: self._put(topic, wanted))
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._commands = [joint.position for joint in self._joints] if self._pids else None

@@ -87,7 +87,7 @@ class JointTrajectoryController(Controller):
         )  # fmt: skip
         topic = "joint_trajectory" if ros2 else "command"
         self.subscribe(topic, _TRAJECTORY, self._on_trajectory)
-        self.take_positions(
+        self.accept_positions(
             lambda wanted, seconds: self.publish_command(
                 topic, _TRAJECTORY, **self._way(wanted, seconds)
             )

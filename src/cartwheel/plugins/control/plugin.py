@@ -84,7 +84,7 @@ class ControlPlugin(Plugin[Any]):
         """Loads and starts controllers. One that cannot be started is reported and skipped."""
         manager = self.manager
         assert manager is not None
-        loaded = ControllerFiles.of(self.graph).loaded
+        loaded = self.shared.get(ControllerFiles).loaded
         for entry in in_order(list(entries)):
             try:
                 loaded.append(manager.load_entry(entry))

@@ -85,7 +85,7 @@ class Ros2Control(ControlPlugin):
         config: Ros2ControlParameters = self.config
         part = self.part
         self.namespace = self.namespace.strip("/")
-        own = ControllerFiles.of(self.graph).take()
+        own = self.shared.get(ControllerFiles).take()
         named = [self._path(text) for text in config.files]
         paths = [*(path for path in named if path is not None), *own]
         contents = [read_ros2(path, part.description) for path in paths]

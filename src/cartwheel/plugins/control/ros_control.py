@@ -83,7 +83,7 @@ class RosControl(ControlPlugin):
         self.namespace = self.namespace.strip("/")
         contents = [
             (str(path), for_robot(read_parameters(path), path, part.description))
-            for path in ControllerFiles.of(self.graph).take()
+            for path in self.shared.get(ControllerFiles).take()
         ]
         entries = [entry for path, content in contents for entry in self._load(path, content)]
         joints, notes = transmissions(part.description, several=not plain)

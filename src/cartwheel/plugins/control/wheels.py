@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from cartwheel.geometry import Array, matrix_from_quat
 from cartwheel.plugins.control.controller import Controller, Rhythm
 from cartwheel.plugins.control.settings import Settings
 from cartwheel.plugins.odometry import DeadReckoning, Odometry
-
-if TYPE_CHECKING:
-    from cartwheel.plugins.base import Plugin
 
 LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 """Rotation axes of wheels and of steering joints, in the robot's base frame."""
@@ -155,7 +152,7 @@ class WheelOdometry:
         frame = settings.text("odom_frame_id", "odom")
         base = settings.text("base_frame_id", "base_link")
         self._odometry = Odometry(
-            cast("Plugin[Any]", controller),
+            controller,
             topic=topic,
             frame=prefix + frame,
             base=prefix + base if prefix else base,

@@ -1,0 +1,384 @@
+"""The base class of everything that acts in a simulation: devices, plugins and controllers."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol, TypeVar
+
+from cartwheel.codes import running
+from cartwheel.errors import Code, GraphError, Origin, Severity, Value
+from cartwheel.graph import (
+    Graph,
+    JointInput,
+    Publisher,
+    Qos,
+    ReconfigureParameter,
+    ReconfigureServer,
+    TopicRenaming,
+    resolve_frame,
+    resolve_name,
+)
+from cartwheel.graph.reconfigure import OnChange
+from cartwheel.graph.reconfigure import Value as Parameter
+from cartwheel.messages.limits import unfit
+from cartwheel.simulation import LinkHandle, Part
+from cartwheel.simulation.limits import STRONGEST, number
+
+
+class Closable(Protocol):
+    """A resource that a component holds while it is loaded."""
+
+    def close(self) -> None:
+        """Releases the resource."""
+
+
+K = TypeVar("K", bound=Closable)
+T = TypeVar("T")
+
+
+class Shared:
+    """The objects that all components of one simulation share.
+
+    Args:
+        graph: The graph on which the components publish.
+        renaming: Topics that have different names and types in ROS.
+    """
+
+    def __init__(self, graph: Graph, renaming: TopicRenaming | None = None) -> None:
+        self.graph = graph
+        self.renaming = TopicRenaming() if renaming is None else renaming
+        self._objects: dict[type, Any] = {}
+
+    def get(self, kind: type[T]) -> T:
+        """Returns the simulation's only object of a class, which is created at first use."""
+        if kind not in self._objects:
+            self._objects[kind] = kind()
+        existing: T = self._objects[kind]
+        return existing
+
+
+@dataclass(kw_only=True, slots=True)
+class Scope:
+    """Where a component acts: its model, and the rules for its names.
+
+    A device has the scope of the plugin or controller that creates it.
+    """
+
+    part: Part
+    """The model's part of the simulation."""
+    shared: Shared
+    node: str
+    """Node name for listings."""
+    title: str
+    """Name of the component in messages: ``plugin "libgazebo_ros_imu.so" of model "cart"``."""
+    origin: Origin | None
+    """File and line at which the component is described."""
+    namespace: str = ""
+    frame_prefix: str = ""
+    remappings: Mapping[str, str] = field(default_factory=dict)
+    """New names of topics and services by their names before the remapping."""
+    owner: object | None = None
+    """The plugin that fails if a callback raises an exception; None: the simulation reports it."""
+
+    def resolve(self, name: str) -> str:
+        """Returns a topic or service name in the namespace, after remapping."""
+        if name in self.remappings:
+            return resolve_name(self.remappings[name], self.namespace)
+        full = resolve_name(name, self.namespace)
+        for source, target in self.remappings.items():
+            if resolve_name(source, self.namespace) == full:
+                return resolve_name(target, self.namespace)
+        return full
+
+    def published(self, name: str, type_name: str) -> str:
+        """Returns the topic on which messages for a name are published."""
+        return self.shared.renaming.published(self.resolve(name), type_name)
+
+    def subscribed(
+        self, name: str, type_name: str, callback: Callable[[Any], None]
+    ) -> tuple[str, str, Callable[[Any], None]]:
+        """Returns the topic, type and callback of a subscription to a name."""
+        return self.shared.renaming.read(self.resolve(name), type_name, callback)
+
+    def frame(self, name: str) -> str:
+        """Returns a frame ID with the robot's prefix."""
+        return resolve_frame(name, self.frame_prefix)
+
+    def place_of(self, parameter: str) -> Origin | None:  # noqa: ARG002
+        """Returns the file and line of a parameter; the component's own if it is not stated."""
+        return self.origin
+
+
+class Component:
+    """Base class of devices, plugins and controllers.
+
+    Everything that a component advertises, subscribes to, serves or keeps is closed with it.
+
+    Args:
+        scope: The component's model and names.
+    """
+
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+        self._open = contextlib.ExitStack()
+        self._crowded = False
+
+    @property
+    def part(self) -> Part:
+        """The model's part of the simulation."""
+        return self.scope.part
+
+    @property
+    def graph(self) -> Graph:
+        """The graph on which the component publishes."""
+        return self.scope.shared.graph
+
+    @property
+    def shared(self) -> Shared:
+        """The objects that all components of the simulation share."""
+        return self.scope.shared
+
+    @property
+    def node(self) -> str:
+        """Node name for listings."""
+        return self.scope.node
+
+    @property
+    def title(self) -> str:
+        """Name of the component and its model in messages."""
+        return self.scope.title
+
+    @property
+    def origin(self) -> Origin | None:
+        """File and line at which the component is described."""
+        return self.scope.origin
+
+    def reset(self) -> None:
+        """Restores the initial state when simulation time is reset to zero."""
+
+    def close(self) -> None:
+        """Withdraws all topics and services, when the model is deleted."""
+        self._open.close()
+
+    def keep(self, item: K) -> K:
+        """Registers an item that is closed with the component, and returns it."""
+        self._open.callback(item.close)
+        return item
+
+    def resolve(self, name: str) -> str:
+        """Returns a topic or service name in the component's namespace, after remapping."""
+        return self.scope.resolve(name)
+
+    def frame(self, name: str) -> str:
+        """Returns a frame ID with the robot's prefix."""
+        return self.scope.frame(name)
+
+    def advertise(
+        self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
+    ) -> Publisher:
+        """Advertises a topic. The publisher is closed with the component.
+
+        Args:
+            topic: Name, resolved in the component's scope.
+            type_name: Message type, ``pkg/msg/Name``.
+            rate: Publish rate for listings, Hz.
+            qos: Quality of service on ROS 2.
+        """
+        name = self.scope.published(topic, type_name)
+        return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
+
+    def subscribe(
+        self, topic: str, type_name: str, callback: Callable[[Any], None], *, unset: bool = False
+    ) -> None:
+        """Subscribes to a topic. The subscription is closed with the component.
+
+        Messages with numbers that cannot be simulated are ignored, with a warning for the first.
+
+        Args:
+            topic: Name, resolved in the component's scope.
+            type_name: Message type, ``pkg/msg/Name``.
+            callback: Receives each message, before the next step.
+            unset: Accept NaN and infinity, which some commands use for values that are not set.
+        """
+        checked = self.checked(callback, unset=unset)
+        name, kind, receiver = self.scope.subscribed(topic, type_name, checked)
+        subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
+        owner = self.scope.owner
+        if owner is not None:
+            subscription.on_error = lambda _, error: self.part.fail(owner, error)
+        self.keep(subscription)
+
+    def serve(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+    ) -> bool:
+        """Offers a service, which is withdrawn with the component.
+
+        If another component already offers the service, a warning is reported: two robots of the
+        same kind can share topics, and a service must not prevent the second one from loading.
+
+        Returns:
+            Whether the service is offered.
+        """
+        try:
+            service = self.graph.serve(
+                self.resolve(name), type_name, handler, node=self.node, threaded=threaded
+            )
+        except GraphError as error:
+            if not self._crowded:
+                # Components that share one name usually share several: one warning is enough.
+                self._crowded = True
+                self.warn(
+                    running.SERVICE_TAKEN,
+                    error.message,
+                    hint="Give one of the two models a namespace.",
+                    values={"name": self.resolve(name)},
+                )
+            return False
+        self._open.callback(self.graph.withdraw, service)
+        return True
+
+    def take_positions(
+        self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]
+    ) -> None:
+        """Accepts manual joint positions while the component is loaded; see `JointInput`."""
+        inputs = self.graph.joint_inputs
+        joint_input = self.joint_input(joints, put)
+        inputs.add(joint_input)
+        self._open.callback(inputs.remove, joint_input)
+
+    def joint_input(
+        self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]
+    ) -> JointInput:
+        """Creates an input for manual joint positions.
+
+        Positions that cannot be simulated raise a `CartwheelError` in the caller.
+
+        Args:
+            joints: Names of the joints.
+            put: Receives positions in rad or m by joint, and the duration of the motion in s.
+        """
+
+        def checked(wanted: Mapping[str, float], seconds: float) -> None:
+            for joint, position in wanted.items():
+                number(position, f'the position of joint "{joint}"')
+            number(seconds, "the duration in s")
+            self.part.count_command()
+            put(wanted, seconds)
+
+        return JointInput(
+            model=self.part.name, owner=self.input_name, joints=tuple(joints), put=checked
+        )
+
+    @property
+    def input_name(self) -> str:
+        """Name of the component's input for manual joint positions."""
+        return self.node
+
+    def reconfigure(
+        self,
+        name: str,
+        parameters: tuple[ReconfigureParameter, ...],
+        on_change: OnChange,
+        *,
+        initial: Mapping[str, Parameter] | None = None,
+        preset: bool = False,
+    ) -> ReconfigureServer | None:
+        """Offers parameters that can be changed at run time, as a `ReconfigureServer`.
+
+        Returns None, with a warning, if another server already offers them or a preset value is not
+        allowed.
+        """
+        full = self.resolve(name)
+        try:
+            server = ReconfigureServer(
+                self.graph,
+                full,
+                parameters,
+                on_change,
+                node=self.node,
+                initial=initial,
+                preset=preset,
+            )
+        except GraphError as error:
+            self.warn(
+                running.RECONFIGURE_UNAVAILABLE,
+                f"{error.message}, so {full} cannot be reconfigured",
+                hint=error.hint or "",
+                values={"name": full},
+            )
+            return None
+        return self.keep(server)
+
+    def warn(
+        self,
+        code: Code,
+        message: str,
+        *,
+        at: Origin | None = None,
+        hint: str = "",
+        values: Mapping[str, Value] | None = None,
+        severity: Severity = "warning",
+    ) -> None:
+        """Reports a diagnostic about this component.
+
+        Args:
+            code: Kind of the diagnostic. Other packages define their own: ``Code("ACME1", …)``.
+            message: One sentence.
+            at: File and line of the element in question; defaults to the component's own.
+            hint: The likely fix, as a sentence.
+            values: Names and numbers in the message, for programs.
+            severity: Defaults to a warning, regardless of the code's severity.
+        """
+        self.part.report(
+            code.diagnostic(
+                message,
+                origin=at or self.origin,
+                hint=hint,
+                values=values,
+                severity=severity,
+            )
+        )
+
+    def place_of(self, parameter: str) -> Origin | None:
+        """Returns the file and line of a parameter; the component's own if it is not stated."""
+        return self.scope.place_of(parameter)
+
+    def link_or_root(self, name: str) -> LinkHandle:
+        """Returns the link with this name, or the root link if no link has this name."""
+        description = self.part.description
+        known = description.link(name) is not None
+        return self.part.link(name if known else description.canonical_link)
+
+    def checked(self, callback: Callable[[Any], None], *, unset: bool) -> Callable[[Any], None]:
+        """Wraps a callback so that it only receives commands that can be simulated.
+
+        Other commands are ignored. Only the first of them causes a warning.
+
+        Args:
+            callback: Receives the valid messages.
+            unset: Accept NaN and infinity, which some commands use for values that are not set.
+        """
+        warned = False
+
+        def checked(message: Any) -> None:
+            nonlocal warned
+            reason = unfit(message, most=STRONGEST, unset=unset)
+            if not reason:
+                self.part.count_command()
+                callback(message)
+            elif not warned:
+                warned = True
+                self.warn(
+                    running.COMMAND_NOT_SIMULATED,
+                    f"a command is ignored because {reason} cannot be simulated "
+                    "(later ones on this topic are ignored without a warning)",
+                )
+
+        return checked
