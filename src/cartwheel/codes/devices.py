@@ -15,7 +15,7 @@ SENSOR_RANGE_INVALID = Code(
     "CW404", "sensor-range-invalid", "error", "a sensor has an empty range, no rays or no pixels"
 )
 IMAGE_FORMAT_UNKNOWN = Code(
-    "CW405", "image-format-unknown", "warning", "a camera has an image format that does not exist"
+    "CW405", "image-format-unknown", "warning", "the image format of a camera does not exist"
 )
 CONTACT_COLLISION_UNKNOWN = Code(
     "CW406",
@@ -36,13 +36,13 @@ LUMPED_LINK = Code(
     "CW409", "lumped-link", "info", "a plugin refers to a link that Gazebo merges into another link"
 )
 BODY_UNKNOWN = Code(
-    "CW410", "body-unknown", "error", "the body of a plugin is not a link in the robot"
+    "CW410", "body-unknown", "error", "the body of a plugin is not a link of the robot"
 )
 FRAME_UNKNOWN = Code(
     "CW411",
     "frame-unknown",
     "warning",
-    "the frame of a plugin's messages is not a link in the robot",
+    "the frame of a plugin's messages is not a link of the robot",
 )
 DUPLICATE_TOPIC = Code(
     "CW412", "duplicate-topic", "warning", "two plugins publish on the same topic"
@@ -108,7 +108,7 @@ JOINT_CLAIMED_TWICE = Code(
     "CW426", "joint-claimed-twice", "info", "two controllers in one file command the same joint"
 )
 PLUGIN_PARAMETER_UNKNOWN = Code(
-    "CW451", "plugin-parameter-unknown", "warning", "a plugin does not read this parameter"
+    "CW451", "plugin-parameter-unknown", "warning", "a plugin does not read a parameter"
 )
 PLUGIN_PARAMETER_INVALID = Code(
     "CW452",
@@ -141,13 +141,13 @@ PLUGIN_PARAMETER_IGNORED = Code(
     "CW458",
     "plugin-parameter-ignored",
     "warning",
-    "a parameter has no effect in Cartwheel, or in combination with the other parameters",
+    "a plugin parameter has no effect",
 )
 PLUGIN_PARAMETER_UNSUPPORTED = Code(
     "CW459",
     "plugin-parameter-unsupported",
     "error",
-    "a plugin does not support this value, but Gazebo does",
+    "a plugin does not support a value that Gazebo supports",
 )
 PLUGIN_RANGE_REVERSED = Code(
     "CW460",
@@ -158,9 +158,7 @@ PLUGIN_RANGE_REVERSED = Code(
 WHEELS_UNPAIRED = Code(
     "CW461", "wheels-unpaired", "error", "a drive has different numbers of left and right wheels"
 )
-PLUGIN_IDLE = Code(
-    "CW462", "plugin-idle", "warning", "a plugin has no effect with its configuration"
-)
+PLUGIN_IDLE = Code("CW462", "plugin-idle", "warning", "a plugin has nothing to act on")
 PLUGIN_MISPLACED = Code(
     "CW463", "plugin-misplaced", "warning", "a plugin is inside the wrong element"
 )
@@ -174,10 +172,10 @@ SCAN_SAMPLES_INVALID = Code(
     "CW466",
     "scan-samples-invalid",
     "error",
-    "the number of rays is zero, too large or not an integer",
+    "the number of rays of a scan is zero, too large or not an integer",
 )
 SCAN_REVERSED = Code(
-    "CW467", "scan-reversed", "info", "a scan runs from its larger angle to its smaller one"
+    "CW467", "scan-reversed", "info", "the maximum angle of a scan is below its minimum angle"
 )
 SENSOR_SETTING_IGNORED = Code(
     "CW468", "sensor-setting-ignored", "warning", "a sensor setting has no effect"
@@ -204,7 +202,7 @@ CONTROLLERS_FILE_WITHOUT_CONTROLLERS = Code(
     "CW472",
     "controllers-file-without-controllers",
     "warning",
-    "a controller file starts no controller",
+    "a controller file contains no controller",
 )
 CONTROLLERS_FILE_ARGUMENT = Code(
     "CW473",

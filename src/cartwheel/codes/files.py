@@ -6,73 +6,73 @@ FILE_MISSING = Code(
     "CW101",
     "file-missing",
     "error",
-    "a file, mesh, texture, model or package that does not exist",
+    "a file, mesh, texture, model or package does not exist",
 )
 FILE_ON_NETWORK = Code(
     "CW102",
     "file-on-network",
     "error",
-    "a file on the network that was not downloaded",
+    "a file or model is on the network and is not downloaded",
 )
 FILE_UNREADABLE = Code(
     "CW103",
     "file-unreadable",
     "error",
-    "a file that is empty, binary, too large or not a regular file",
+    "a file is empty, binary, too large or not a regular file",
 )
 FILE_NOT_ALLOWED = Code(
     "CW104",
     "file-not-allowed",
     "error",
-    "a file outside of the folders that a description may read",
+    "a file is outside the folders that a description may read",
 )
 XML_MALFORMED = Code(
     "CW105",
     "xml-malformed",
     "error",
-    "text that is not well-formed XML",
+    "a file is not well-formed XML",
 )
 XML_ENTITY = Code(
     "CW106",
     "xml-entity",
     "error",
-    "an entity that is declared in a description",
+    "a description declares an XML entity",
 )
 NOT_A_DESCRIPTION = Code(
     "CW107",
     "not-a-description",
     "error",
-    "a file that is not a robot, model or world",
+    "a file is not a robot, model or world",
 )
 WRONG_KIND = Code(
     "CW108",
     "description-kind",
     "error",
-    "a world where a robot is expected, or a robot where a world is expected",
+    "a file describes a world instead of a robot, or a robot instead of a world",
 )
 MESH_UNREADABLE = Code(
     "CW109",
     "mesh-unreadable",
     "error",
-    "a mesh file that is damaged, empty, or of an unknown format",
+    "a mesh file is damaged, empty or in an unsupported format",
 )
 PICTURE_UNREADABLE = Code(
     "CW110",
     "picture-unreadable",
     "error",
-    "a texture or heightmap that cannot be read",
+    "a texture or heightmap cannot be read",
 )
 YAML_MALFORMED = Code(
     "CW111",
     "yaml-malformed",
     "error",
-    "an invalid YAML file that xacro loads",
+    "xacro loads an invalid YAML file",
 )
 XACRO_NOT_EXPANDED = Code(
     "CW112",
     "xacro-not-expanded",
     "error",
-    "xacro in text received over the network",
+    "a description from the network contains xacro",
 )
 XACRO_NOT_INSTALLED = Code(
     "CW113",
@@ -84,80 +84,80 @@ XACRO_NAME_UNKNOWN = Code(
     "CW114",
     "xacro-name-unknown",
     "error",
-    "an unknown xacro property, macro, block, argument or command",
+    "a xacro property, macro, block, argument or command is not defined",
 )
 MACRO_CALL_INVALID = Code(
     "CW115",
     "macro-call-invalid",
     "error",
-    "a macro call whose parameters or blocks do not match the macro",
+    "a macro call does not match the parameters or blocks of the macro",
 )
 EXPRESSION_INVALID = Code(
     "CW116",
     "expression-invalid",
     "error",
-    "a xacro expression that fails or is not allowed",
+    "a xacro expression fails or is not allowed",
 )
 EXPANSION_TOO_LARGE = Code(
     "CW117",
     "expansion-too-large",
     "error",
-    "a xacro file whose expansion exceeds a limit",
+    "the expansion of a xacro file exceeds a limit",
 )
 XACRO_INVALID = Code(
     "CW118",
     "xacro-invalid",
     "error",
-    "a xacro element that cannot be expanded",
+    "a xacro element is invalid",
 )
 XACRO_MESSAGE = Code(
     "CW119",
     "xacro-message",
     "warning",
-    "a xacro warning, or a message that the description prints",
+    "xacro reports a problem, or the description prints a message",
 )
 XACRO_DEPRECATED = Code(
     "CW120",
     "xacro-deprecated",
     "info",
-    "a deprecated xacro spelling",
+    "the xacro syntax is deprecated",
 )
 XACRO_NAMESPACE = Code(
     "CW121",
     "xacro-namespace",
     "warning",
-    "the xacro namespace declaration is missing",
+    "the xacro namespace is not declared",
 )
 XACRO_PREFIX = Code(
     "CW122",
     "xacro-prefix",
     "warning",
-    "a xacro element without its prefix",
+    "a xacro element has no prefix",
 )
 ARGUMENT_UNKNOWN = Code(
     "CW123",
     "argument-unknown",
     "warning",
-    "an argument that the description does not declare",
+    "the description does not declare an argument",
 )
 INCLUDE_RECURSIVE = Code(
     "CW124",
     "include-recursive",
     "error",
-    "a model that includes itself",
+    "a model includes itself",
 )
 SDF_VERSION = Code(
     "CW125",
     "sdf-version",
     "error",
-    "an SDF version that is missing, too old or newer than supported",
+    "the SDF version is missing, invalid, too old or too new",
 )
-ARGUMENT_UNUSED = Code("CW153", "argument-unused", "warning", "a xacro argument has no effect")
+ARGUMENT_UNUSED = Code("CW153", "argument-unused", "warning", "a xacro argument is never used")
 PROPERTY_UNUSED = Code("CW154", "property-unused", "info", "a xacro property is never used")
 PROPERTY_OVERWRITTEN = Code(
     "CW155", "property-overwritten", "info", "a xacro property is overwritten before it is used"
 )
 PARAMETER_UNUSED = Code(
-    "CW156", "parameter-unused", "info", "a parameter of a xacro macro has no effect"
+    "CW156", "parameter-unused", "info", "a xacro macro never uses one of its parameters"
 )
 MACRO_UNUSED = Code("CW157", "macro-unused", "info", "a xacro macro is never called")

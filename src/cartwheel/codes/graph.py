@@ -2,80 +2,88 @@
 
 from cartwheel.errors import Code
 
-TOPIC_UNKNOWN = Code("CW701", "topic-unknown", "error", "a topic that does not exist")
+TOPIC_UNKNOWN = Code("CW701", "topic-unknown", "error", "the topic does not exist")
 TOPIC_TYPE_MISMATCH = Code(
-    "CW702", "topic-type-mismatch", "error", "a topic that is used with two types"
+    "CW702", "topic-type-mismatch", "error", "a topic is used with two types"
 )
-SERVICE_UNKNOWN = Code("CW703", "service-unknown", "error", "a service that does not exist")
+SERVICE_UNKNOWN = Code("CW703", "service-unknown", "error", "the service does not exist")
 SERVICE_TAKEN = Code(
-    "CW704", "service-name-taken", "error", "a service or action whose name is already in use"
+    "CW704", "service-name-taken", "error", "the name of a service or action is already in use"
 )
-SERVICE_TIMED_OUT = Code(
-    "CW705", "service-timed-out", "error", "a service that does not respond in time"
-)
-SERVICE_FAILED = Code("CW706", "service-failed", "warning", "a service request that failed")
-ACTION_GONE = Code("CW707", "action-gone", "error", "an action that no longer exists")
+SERVICE_TIMED_OUT = Code("CW705", "service-timed-out", "error", "a service did not respond in time")
+SERVICE_FAILED = Code("CW706", "service-failed", "warning", "a service request failed")
+ACTION_GONE = Code("CW707", "action-gone", "error", "an action no longer exists")
 GRAPH_NAME_INVALID = Code(
-    "CW708", "graph-name-invalid", "error", "a topic, service or namespace with an invalid name"
+    "CW708", "graph-name-invalid", "error", "the name of a topic, service or namespace is invalid"
 )
-GRAPH_CLOSED = Code("CW709", "graph-closed", "error", "a call to a simulation that has ended")
+GRAPH_CLOSED = Code("CW709", "graph-closed", "error", "the simulation has ended")
 MESSAGE_TYPE_UNKNOWN = Code(
-    "CW710", "message-type-unknown", "error", "a message or service type that does not exist"
+    "CW710", "message-type-unknown", "error", "a message or service type does not exist"
 )
-FIELD_UNKNOWN = Code("CW711", "field-unknown", "error", "a field that a message type does not have")
+FIELD_UNKNOWN = Code(
+    "CW711", "field-unknown", "error", "a message type does not have a field with this name"
+)
 FIELD_VALUE_INVALID = Code(
-    "CW712", "field-value-invalid", "error", "a value that a message's field cannot hold"
+    "CW712", "field-value-invalid", "error", "a value does not match its message field"
 )
 MESSAGE_NOT_ENCODABLE = Code(
-    "CW713", "message-not-encodable", "error", "a message that cannot be encoded"
+    "CW713", "message-not-encodable", "error", "a message cannot be encoded"
 )
 MESSAGE_NOT_DECODABLE = Code(
     "CW714",
     "message-not-decodable",
     "error",
-    "bytes that cannot be decoded as a message of their type",
+    "a message cannot be decoded",
 )
 MESSAGE_TEXT_INVALID = Code(
-    "CW715", "message-text-invalid", "error", "a message on the command line that is not YAML"
+    "CW715", "message-text-invalid", "error", "a message on the command line is not valid YAML"
 )
-PARAMETER_UNKNOWN = Code("CW716", "parameter-unknown", "error", "a parameter that does not exist")
+PARAMETER_UNKNOWN = Code("CW716", "parameter-unknown", "error", "a parameter does not exist")
 PARAMETER_VALUE_INVALID = Code(
-    "CW717", "parameter-value-invalid", "error", "an invalid parameter value"
+    "CW717", "parameter-value-invalid", "error", "the value of a parameter is invalid"
 )
 ENTITY_UNKNOWN = Code(
     "CW718",
     "entity-unknown",
     "error",
-    "a model, link, joint, light or frame in a service request that does not exist",
+    "a model, link, joint, light or frame in a service request does not exist",
 )
 ENTITY_AMBIGUOUS = Code(
     "CW719",
     "entity-ambiguous",
     "error",
-    "a name in a service request that is ambiguous or belongs to a different kind of entity",
+    "a name in a service request is ambiguous, or belongs to a different kind of entity",
 )
 ENTITY_NAME_TAKEN = Code(
-    "CW720", "entity-name-taken", "error", "a model or light that is spawned under a name in use"
+    "CW720", "entity-name-taken", "error", "the name of a new model or light is already in use"
 )
 ENTITY_FIXED = Code(
-    "CW721", "entity-fixed", "error", "a request to move or push something that is fixed"
+    "CW721", "entity-fixed", "error", "a request moves a link or joint that cannot move"
 )
 PROPERTY_INVALID = Code(
-    "CW722", "property-invalid", "error", "a physical property with an impossible value"
+    "CW722",
+    "property-invalid",
+    "error",
+    "a request sets a physical property to an impossible value",
 )
-SPAWN_INVALID = Code("CW723", "spawn-invalid", "error", "a spawn request without a model to spawn")
+SPAWN_INVALID = Code(
+    "CW723", "spawn-invalid", "error", "a spawn request does not contain exactly one model"
+)
 REQUEST_UNSUPPORTED = Code(
     "CW724",
     "request-unsupported",
     "error",
-    "a service request that asks for something the simulation does not support",
+    "a service request uses an unsupported feature",
 )
 REQUEST_INVALID = Code(
-    "CW725", "request-invalid", "error", "a service request with inconsistent or invalid fields"
+    "CW725",
+    "request-invalid",
+    "error",
+    "the fields of a service request are invalid or contradict each other",
 )
 FRAMES_SHARED = Code(
     "CW727",
     "frames-shared",
     "warning",
-    "a robot whose frames have the same names as another robot's frames",
+    "two robots have frames with the same names",
 )

@@ -10,7 +10,7 @@ JOINT_LINK_UNKNOWN = Code(
     "CW203",
     "joint-link-unknown",
     "error",
-    "the parent or child of a joint is not a link in the robot",
+    "the parent or child of a joint is not a link of the robot",
 )
 WHEEL_SEPARATION_MISMATCH = Code(
     "CW204",
@@ -47,7 +47,7 @@ LIMIT_REVERSED = Code(
     "CW213", "limit-reversed", "error", "the lower limit of a joint is above its upper limit"
 )
 LIMIT_ZERO = Code(
-    "CW214", "limit-zero", "warning", "the range of a joint is zero, so it cannot move"
+    "CW214", "limit-zero", "warning", "the limits of a joint are equal, so it cannot move"
 )
 LIMIT_IN_DEGREES = Code(
     "CW215", "limit-in-degrees", "warning", "the limits of a joint are probably in degrees"
@@ -100,13 +100,13 @@ WHEEL_AXIS_MISALIGNED = Code(
     "CW229",
     "wheel-axis-misaligned",
     "warning",
-    "the axis of a driven wheel points backwards or does not lie along the axle",
+    "the axis of a driven wheel points to the right, or is not parallel to the axle",
 )
 WHEEL_NOT_ROUND = Code(
     "CW230",
     "wheel-not-round",
     "warning",
-    "the collision of a driven wheel is not round around its axis",
+    "the collision shape of a driven wheel is not round",
 )
 WHEEL_BASE_MISMATCH = Code(
     "CW231",
@@ -118,29 +118,34 @@ WHEEL_DIAMETER_MISMATCH = Code(
     "CW232",
     "wheel-diameter-mismatch",
     "warning",
-    "a specified wheel diameter or radius differs from the actual size of the wheels",
+    "a specified wheel diameter or radius differs from the size of the wheel",
 )
 WHEEL_FRICTIONLESS = Code(
-    "CW233", "wheel-frictionless", "warning", "a driven wheel has no friction"
+    "CW233", "wheel-frictionless", "warning", "a driven wheel has almost no friction"
 )
-CASTER_FRICTION = Code("CW234", "caster-friction", "info", "a caster is a fixed ball with friction")
+CASTER_FRICTION = Code(
+    "CW234", "caster-friction", "info", "a caster slides, and its friction is high"
+)
 WHEEL_WITHOUT_COLLISION = Code(
     "CW235", "wheel-without-collision", "error", "a driven wheel has no <collision>"
 )
 BASE_WITHOUT_COLLISION = Code(
-    "CW236", "base-without-collision", "warning", "a body has visuals but no <collision>"
+    "CW236",
+    "base-without-collision",
+    "warning",
+    "the base of a robot has visuals but no <collision>",
 )
 WHEELS_OFF_GROUND = Code(
     "CW237",
     "wheels-off-ground",
     "warning",
-    "the body of the robot reaches lower than its driven wheels",
+    "a collision shape reaches lower than the driven wheels",
 )
 OVERLAPPING_COLLISIONS = Code(
     "CW238",
     "overlapping-collisions",
     "warning",
-    "links that can collide overlap at the zero position",
+    "two links that can collide overlap when all joints are at 0",
 )
 SHAPE_OUT_OF_SCALE = Code(
     "CW239",

@@ -2,8 +2,12 @@
 
 from cartwheel.errors import Code
 
-UNKNOWN_LINK = Code("CW501", "unknown-link", "error", "a link that the model does not have")
-UNKNOWN_SENSOR = Code("CW502", "unknown-sensor", "error", "a sensor that the robot does not have")
+UNKNOWN_LINK = Code(
+    "CW501", "unknown-link", "error", "the model does not have a link with this name"
+)
+UNKNOWN_SENSOR = Code(
+    "CW502", "unknown-sensor", "error", "the robot does not have a sensor with this name"
+)
 STATIC_MODEL_DRIVEN = Code(
     "CW503", "static-model-driven", "error", "a plugin drives a joint of a static model"
 )
@@ -11,7 +15,7 @@ MODEL_NOT_MOVABLE = Code(
     "CW504", "model-not-movable", "error", "a plugin moves a model that is fixed or has no mass"
 )
 NOT_A_WHEEL = Code(
-    "CW505", "not-a-wheel", "error", "a wheel whose radius or axle cannot be determined"
+    "CW505", "not-a-wheel", "error", "the radius or axle of a wheel cannot be determined"
 )
 JOINT_DRIVEN_TWICE = Code(
     "CW506", "joint-driven-twice", "warning", "two plugins drive the same joint or wheel"
@@ -23,17 +27,19 @@ PLUGIN_LEFT_OUT = Code(
     "CW508",
     "plugin-left-out",
     "error",
-    "a plugin cannot be used; the rest of the model is still simulated",
+    "a plugin or sensor has an error and is not loaded",
 )
 PLUGIN_FAILED = Code(
     "CW509", "plugin-failed", "error", "a plugin raised an exception and is disabled"
 )
-SERVICE_TAKEN = Code("CW510", "service-taken", "warning", "a service with this name already exists")
+SERVICE_TAKEN = Code(
+    "CW510", "service-taken", "warning", "two plugins offer a service with the same name"
+)
 RECONFIGURE_UNAVAILABLE = Code(
     "CW511",
     "reconfigure-unavailable",
     "warning",
-    "the parameters of a plugin cannot be changed while it runs",
+    "the parameters of a plugin cannot be changed with dynamic_reconfigure",
 )
 COMMAND_NOT_SIMULATED = Code(
     "CW512",
@@ -42,7 +48,7 @@ COMMAND_NOT_SIMULATED = Code(
     "a command contains a number that cannot be simulated",
 )
 COMMAND_IGNORED = Code(
-    "CW513", "command-ignored", "warning", "a command does not fit the plugin or controller"
+    "CW513", "command-ignored", "warning", "the contents of a command are invalid"
 )
 TRAJECTORY_INVALID = Code(
     "CW514", "trajectory-invalid", "warning", "a trajectory cannot be followed"
@@ -61,7 +67,7 @@ CONTROLLER_NOT_STARTED = Code(
     "CW519", "controller-not-started", "warning", "a controller cannot be started"
 )
 CONTROLLER_STATE = Code(
-    "CW520", "controller-state", "error", "a request does not fit the state of a controller"
+    "CW520", "controller-state", "error", "a request is not possible in the state of a controller"
 )
 CONTROLLER_CONFLICT = Code(
     "CW521",
@@ -73,7 +79,7 @@ CONTROLLER_TYPE_MISSING = Code(
     "CW522", "controller-type-missing", "error", "the type of a controller to load is not specified"
 )
 HARDWARE_COMPONENT = Code(
-    "CW523", "hardware-component", "error", "a request does not fit a hardware component"
+    "CW523", "hardware-component", "error", "a request is not possible for a hardware component"
 )
 WHEELS_WITHOUT_ROLLERS = Code(
     "CW524",

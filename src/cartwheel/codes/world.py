@@ -2,29 +2,33 @@
 
 from cartwheel.errors import Code
 
-UNKNOWN_MODEL = Code("CW601", "unknown-model", "error", "a model that is not in the world")
-UNKNOWN_JOINT = Code("CW602", "unknown-joint", "error", "a joint that the model does not have")
+UNKNOWN_MODEL = Code(
+    "CW601", "unknown-model", "error", "the world does not have a model with this name"
+)
+UNKNOWN_JOINT = Code(
+    "CW602", "unknown-joint", "error", "the model does not have a movable joint with this name"
+)
 NUMBER_OUT_OF_RANGE = Code(
-    "CW603", "number-out-of-range", "error", "a number that cannot be simulated"
+    "CW603", "number-out-of-range", "error", "a number is not finite or is too large"
 )
 REAL_TIME_FACTOR_INVALID = Code(
-    "CW604", "real-time-factor-invalid", "error", "a real-time factor that cannot be kept"
+    "CW604", "real-time-factor-invalid", "error", "the real-time factor is out of range"
 )
 STEP_COUNT_INVALID = Code(
-    "CW605", "step-count-invalid", "error", "an invalid number of simulation steps"
+    "CW605", "step-count-invalid", "error", "the number of simulation steps is out of range"
 )
 MODEL_NAME_INVALID = Code(
-    "CW606", "model-name-invalid", "error", "a model name that is empty or contains ::"
+    "CW606", "model-name-invalid", "error", "the name of a model is empty or contains ::"
 )
 MODEL_NAME_TAKEN = Code(
     "CW607", "model-name-taken", "error", "a model with this name is already in the world"
 )
 JOINT_DRIVEN_BY_PLUGIN = Code(
-    "CW608", "joint-driven-by-plugin", "error", "a joint that a plugin drives by effort or position"
+    "CW608", "joint-driven-by-plugin", "error", "a plugin drives the joint by effort or position"
 )
-SIMULATION_CLOSED = Code("CW609", "simulation-closed", "error", "a simulation that is closed")
+SIMULATION_CLOSED = Code("CW609", "simulation-closed", "error", "the simulation is closed")
 SIMULATION_DIVERGED = Code(
-    "CW610", "simulation-diverged", "error", "the state of the simulation is no longer finite"
+    "CW610", "simulation-diverged", "error", "positions or speeds grew without bound"
 )
 SIMULATION_RECOVERED = Code(
     "CW611",
@@ -33,9 +37,9 @@ SIMULATION_RECOVERED = Code(
     "the simulation diverged, and all models are back where they were spawned",
 )
 TOO_MANY_CONTACTS = Code(
-    "CW612", "too-many-contacts", "error", "more contacts than can be simulated"
+    "CW612", "too-many-contacts", "error", "the models have more contacts than can be simulated"
 )
-PHYSICS_WARNING = Code("CW613", "physics-warning", "warning", "a warning of the physics engine")
+PHYSICS_WARNING = Code("CW613", "physics-warning", "warning", "MuJoCo reports a warning")
 FRICTION_DIRECTION_UNSUPPORTED = Code(
     "CW614",
     "friction-direction-unsupported",
@@ -64,7 +68,7 @@ OPENGL_FORKED = Code(
     "CW622",
     "opengl-forked",
     "error",
-    "cameras cannot render in a process that was forked after an image was rendered",
+    "cameras cannot render because the process was forked after OpenGL was opened",
 )
 CALLBACK_FAILED = Code(
     "CW623", "callback-failed", "error", "a callback or command raised an exception"
