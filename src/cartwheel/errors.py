@@ -522,7 +522,7 @@ def suggestion(name: str, existing: Iterable[str]) -> str:
 
 def _suggested(close: Sequence[str], known: Sequence[str]) -> str:
     if not known:
-        return "None exist."
+        return "Valid names: none."
     if close:
         return f'Did you mean "{close[0]}"?'
     shown = ", ".join(known[:12])

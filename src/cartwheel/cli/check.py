@@ -68,7 +68,7 @@ def check(
         typer.Option(
             "--baseline",
             metavar="FILE",
-            help="Report only findings that are not in this file.",
+            help="Report only findings that are not in this baseline file.",
             rich_help_panel=help.REPORT,
         ),
     ] = None,
@@ -77,7 +77,7 @@ def check(
         typer.Option(
             "--write-baseline",
             metavar="FILE",
-            help="Write all findings to this file and exit.",
+            help="Write all findings to this baseline file and exit.",
             rich_help_panel=help.REPORT,
         ),
     ] = None,

@@ -76,7 +76,7 @@ class Resident:
         motor = motors.get(joint)
         if motor is not None and motor.mode != "velocity":
             raise WorldError(
-                f'joint "{joint}" is driven by a plugin, by effort or position',
+                f'a plugin drives joint "{joint}" by effort or position',
                 code=world_codes.JOINT_DRIVEN_BY_PLUGIN,
                 values={"joint": joint},
             )

@@ -248,7 +248,7 @@ class Simulation(Run):
         elif task.owner is not None:
             self._disable(task.owner, error)
         else:
-            name = getattr(task.after or task.before, "__qualname__", "a task of the world")
+            name = getattr(task.after or task.before, "__qualname__", "a task of the simulation")
             task.forget()
             text = f"{name} failed and is disabled"
             self._report_fault(fault(text, error, code=world_codes.CALLBACK_FAILED))

@@ -71,8 +71,8 @@
   notice.setAttribute("role", "alert");
   notice.innerHTML =
     "<b>Connection lost.</b> This page shows the last state that it received. The simulation has " +
-    "ended or cannot be reached. If it has ended, start it again. The page reconnects if the " +
-    "address is the same; otherwise open the new address.";
+    "ended or cannot be reached. If it has ended, start it again. If the new address is the same, " +
+    "this page reconnects. Otherwise, open the new address.";
   document.body.appendChild(notice);
   let beat = null;
   let drawn = performance.now();

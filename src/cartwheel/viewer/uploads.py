@@ -82,11 +82,14 @@ class Uploads:
         upload = self._by_client.get(client)
         if upload is None or upload.transfer != transfer:
             # For example a part of a rejected file: the browser sends all parts at once.
-            raise UploadError("This part does not belong to an upload.", tell=False)
+            raise UploadError("A part of an unknown or rejected upload was received.", tell=False)
         expected = min(PART_BYTES, upload.size - index * PART_BYTES)
         if index in upload.seen or length != expected:
             self.drop(client)
-            raise UploadError("A part of the file has the wrong size or was sent twice.")
+            raise UploadError(
+                "The transfer failed: a part of the file has the wrong size or was sent twice. "
+                "Upload the file again."
+            )
         upload.seen.add(index)
         upload.timer.cancel()
         if len(upload.seen) == upload.parts:
@@ -112,9 +115,9 @@ class Uploads:
         """Why a file cannot be accepted, or None."""
         if upload.size > MOST_BYTES:
             most = MOST_BYTES // 1_000_000
-            return f"The file is too large: {upload.size / 1e6:.1f} MB; the limit is {most} MB."
+            return f"The file is too large ({upload.size / 1e6:.1f} MB). The limit is {most} MB."
         if upload.parts != -(-upload.size // PART_BYTES):
-            return "The number of parts does not match the file's size."
+            return "The transfer failed: the number of parts does not match the size of the file."
         if client in self._by_client:
             return "This browser is already uploading a file."
         if len(self._by_client) >= MOST_AT_ONCE:

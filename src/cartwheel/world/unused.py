@@ -19,8 +19,8 @@ _SURFACE = {
     "min_depth": "penetration is corrected at any depth",
     "max_vel": "the separation speed of penetrating bodies is not limited",
     "max_contacts": "all contacts are used",
-    "surface_radius": "the contact patch does not grow with depth: set patch_radius",
-    "collide_without_contact": "it has no contacts, and contact sensors do not detect it",
+    "surface_radius": "the contact patch does not grow with depth; patch_radius sets its size",
+    "collide_without_contact": "the shape has no contacts, and contact sensors do not detect it",
 }
 _HELD = ("fixed", "revolute", "continuous", "ball")
 """Joint types that are constrained correctly when they close a loop."""

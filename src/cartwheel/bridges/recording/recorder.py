@@ -393,4 +393,4 @@ class Recorder:
         self._report(replace(diagnostic, message=f"recording: {diagnostic.message}"))
 
 
-_HINT = "Messages written before that can be read. Inspect the file with cartwheel info."
+_HINT = "Earlier messages can be read. Inspect the file with cartwheel info."

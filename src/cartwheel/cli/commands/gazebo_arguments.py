@@ -93,7 +93,7 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     add("-h", "--help", action="store_true", help="show this message and exit")
     add("-v", "--version", action="store_true", help="show the version and exit")
     add("--verbose", action="store_true", help="show informational messages")
-    add("-q", "--quiet", action="store_true", help="accepted; the default")
+    add("-q", "--quiet", action="store_true", help="no effect: quiet output is the default")
     add("-u", "--pause", action="store_true", help="start paused")
     add("--seed", type=_whole, metavar="N", default=0, help="random seed for sensor noise")
     add("--iters", type=_whole, metavar="N", help="stop after N steps")
@@ -102,9 +102,9 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     add("--allow-path", action="append", metavar="FOLDER", default=[], type=Path,
         help="let services read files in this folder, in addition to packages and "
              "models")  # fmt: skip
-    add("--lockstep", action="store_true", help="accepted; cameras never drop a frame")
+    add("--lockstep", action="store_true", help="no effect: cameras never drop a frame")
     add("-e", "--physics", metavar="ENGINE", default="ode",
-        help="accepted; the engine is MuJoCo, with the parameters for ode")  # fmt: skip
+        help="no effect: the engine is always MuJoCo, with the parameters for ode")  # fmt: skip
     inert = parser.add_argument_group("ignored, with a warning")
     inert.add_argument("-r", "--record", action="store_true", help=argparse.SUPPRESS)
     for name in ("encoding", "path", "period", "filter"):
@@ -159,8 +159,8 @@ def parse_client(words: Sequence[str]) -> ClientArguments:
     add("world", nargs="*", help=argparse.SUPPRESS)
     add("-h", "--help", action="store_true", help="show this message and exit")
     add("-v", "--version", action="store_true", help="show the version and exit")
-    add("--verbose", action="store_true", help="accepted")
-    add("-q", "--quiet", action="store_true", help="accepted")
+    add("--verbose", action="store_true", help="no effect")
+    add("-q", "--quiet", action="store_true", help="no effect")
     add("-g", "--gui-client-plugin", "--gui-plugin", action="append", metavar="FILE", default=[],
         help="Gazebo GUI plugins are ignored with a warning")  # fmt: skip
     given = parser.parse_args([word for word in words if ":=" not in word])
@@ -207,7 +207,7 @@ def _server_notes(program: str, given: argparse.Namespace) -> list[str]:
     if given.headless:
         notes.append(
             "--headless is ignored: this program opens no window. In a launch file, "
-            "gui:=false leaves out gzclient"
+            "gui:=false does not start gzclient"
         )
     if given.profile is not None:
         notes.append(f"-o {given.profile} is ignored: physics profiles are not supported")

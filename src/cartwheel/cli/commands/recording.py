@@ -128,8 +128,7 @@ class _Ending:
                 self.failure = RecordingError(
                     f'the recording "{self._path}" stopped because its process was ended',
                     code=RECORDING_BROKE_OFF,
-                    hint="Messages written before that can be read. Inspect the file with "
-                    "cartwheel info.",
+                    hint="Earlier messages can be read. Inspect the file with cartwheel info.",
                     values={"path": str(self._path)},
                 )
             except CartwheelError as error:

@@ -145,7 +145,7 @@ def _senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
 
 
 def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagnostic:
-    """The diagnostic for a wheel whose axis does not lie along the axle; the default axis is x."""
+    """The diagnostic for a wheel whose axis is not parallel to the axle; the default axis is x."""
     written = robot.joint_node(joint.name)
     node = nodes.child(written, "axis")
     left = across if across[1] >= 0 else -across

@@ -111,8 +111,8 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
         if mass == 0 and nodes.name_of(link) in held:
             continue  # a frame without geometry, which Gazebo merges into its parent
         yield robot_codes.MASS_NOT_POSITIVE.diagnostic(
-            message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo drops the '
-            "link and everything attached to it",
+            message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo ignores '
+            "the link and everything attached to it",
             values={"link": nodes.name_of(link), "mass": mass},
             origin=place.origin,
             instead=f'value="{nodes.short(-mass) if mass < 0 else _mass_of(subject, link)}"',
@@ -144,7 +144,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
             what, consequence = f'the root link "{root}"', "does not load the robot"
             if holder is not None:
                 what = f'the moving link "{root}"'
-                consequence = "drops the link and everything attached to it"
+                consequence = "ignores the link and everything attached to it"
             yield robot_codes.INERTIA_MISSING.diagnostic(
                 message=f"{what} has no <inertial>, so Gazebo {consequence}",
                 values={"link": root},

@@ -62,7 +62,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, _comparable(name, known), n=_SHOWN, cutoff=0.5)
     shown = ", ".join(close or names[:_LISTED])
     if not names:
-        return "None exist."
+        return "Known names: none."
     if close:
         return f"Similar names: {shown}."
     return f"Known names: {shown}{', …' if len(names) > _LISTED else ''}."

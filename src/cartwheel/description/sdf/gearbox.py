@@ -49,8 +49,8 @@ def mesh_gears(
         if ends[0] is None or ends[1] is None:
             ctx.report(
                 ELEMENT_LEFT_OUT.diagnostic(
-                    f'the gearbox joint "{name}" has no effect: a hinge must join each of its '
-                    f'links to the gearbox_reference_body "{reference}"',
+                    f'the gearbox joint "{name}" has no effect: a revolute joint must connect '
+                    f'each of its links to the gearbox_reference_body "{reference}"',
                     origin=node.origin,
                     values={"tag": "joint", "name": name},
                 )

@@ -138,7 +138,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         )
     if parent == child:
         raise node.fail(
-            f'joint "{name}" joins link "{child}" to itself',
+            f'joint "{name}" connects link "{child}" to itself',
             code=robot.KINEMATIC_LOOP,
             values={"joint": name},
         )

@@ -59,7 +59,7 @@ def join_models(
                 )
             found[child.name] = replace(child, joints=(*child.joints, own))
         elif joint.type not in _BETWEEN:
-            _leave_out(each, f"a {each.attributes['type']} joint cannot hold two models", ctx)
+            _leave_out(each, f"a {each.attributes['type']} joint cannot connect two models", ctx)
         else:
             if joint.type != "fixed" and joint.resists:
                 ctx.report(

@@ -181,11 +181,13 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
         f'"{root}" {mass:.3g} kg' for root, mass in zip(roots[:4], weights, strict=False)
     )
     more = f" and {len(roots) - 4} more" if len(roots) > 4 else ""
-    fate = "does not load such a robot" if None in holders else "drops them with their joints"
+    fate = (
+        "does not load such a robot" if None in holders else "ignores these links and their joints"
+    )
     ctx.report(
         robot.INERTIA_MISSING.diagnostic(
             f"{len(roots)} moving links have no <inertial>. Gazebo {fate}; Cartwheel computes the "
-            f"masses from their geometry at {WATER:g} kg/m³: {shown}{more}",
+            f"masses from the geometry at {WATER:g} kg/m³: {shown}{more}",
             origin=first.origin,
             hint="`cartwheel check` shows the <inertial> of each.",
             values={"links": tuple(roots), "masses": tuple(weights)},
@@ -196,16 +198,18 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
 def _mover(root: str, holder: Joint | None) -> str:
     if holder is None:
         return f'the root link "{root}", with everything fixed to it,'
-    return f'link "{root}" moves on the joint "{holder.name}" but'
+    return f'link "{root}" moves on joint "{holder.name}" but'
 
 
 def _fate(holder: Joint | None) -> str:
     return (
-        "Gazebo does not load such a robot" if holder is None else "Gazebo drops it with its joint"
+        "Gazebo does not load such a robot"
+        if holder is None
+        else "Gazebo ignores the link and its joint"
     )
 
 
 def _reason(link: Link) -> str:
     if not link.collisions and not link.visuals:
-        return ", because it has no geometry either"
-    return f", the mass of its geometry at {WATER:g} kg/m³"
+        return ", because the link has no geometry either"
+    return f", the mass of the geometry at {WATER:g} kg/m³"

@@ -44,7 +44,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
     parent, child = _end(node, name, "parent", links), _end(node, name, "child", links)
     if parent == child:
         raise node.fail(
-            f'joint "{name}" joins the link "{child}" to itself',
+            f'joint "{name}" connects link "{child}" to itself',
             code=robot.KINEMATIC_LOOP,
             values={"joint": name},
         )

@@ -72,8 +72,8 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
         other = inbound.get(joint.child)
         if other is not None:
             raise DescriptionError(
-                f'link "{joint.child}" has two parents: joint "{other.name}" joins it to '
-                f'"{other.parent}", joint "{joint.name}" to "{joint.parent}"',
+                f'link "{joint.child}" has two parents: joint "{other.name}" connects it to '
+                f'"{other.parent}", and joint "{joint.name}" to "{joint.parent}"',
                 code=robot.MULTIPLE_PARENTS,
                 values={"link": joint.child, "joints": (other.name, joint.name)},
                 origin=joint.origin,
