@@ -18,6 +18,7 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.bridges.recording.opening import open_recording
+from cartwheel.codes.command import RECORDING_UNFINISHED
 from cartwheel.codes.recording import PLAYBACK_READ_ONLY, RECORDING_EMPTY
 from cartwheel.description import load_robot, load_world
 from cartwheel.messages import encode_cdr
@@ -278,3 +279,21 @@ def test_two_robots_are_told_apart(tmp_path: Path) -> None:
     ahead = player.pose("left").x - player.pose("right").x
     assert ahead == pytest.approx(0.5 * 1.99 - 0.125, abs=0.03)
     assert player.pose("left").y - player.pose("right").y == pytest.approx(2.0, abs=0.02)
+
+
+def test_an_incomplete_recording_is_played_with_a_warning(
+    drives: Callable[[str], Drive], tmp_path: Path
+) -> None:
+    whole = drives("drive.mcap").path.read_bytes()
+    for name, content, warned in (("cut", whole[: len(whole) // 2], True), ("whole", whole, False)):
+        path = tmp_path / f"{name}.mcap"
+        path.write_bytes(content)
+        done = subprocess.run(
+            [PROGRAM, "play", path, "--headless", "--speed", "max"],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        assert (f"[{RECORDING_UNFINISHED}]" in done.stderr) == warned

@@ -83,7 +83,7 @@ RECORDING_UNFINISHED = Code(
     "CW031",
     "recording-unfinished",
     "warning",
-    "the recording is incomplete because its writer was interrupted",
+    "the recording is incomplete because the program that wrote it was interrupted",
 )
 SYSTEM_LIMIT = Code("CW032", "system-limit", "error", "the operating system refused a resource")
 INTERNAL_FAULT = Code(

@@ -98,13 +98,13 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
     add("--seed", type=_whole, metavar="N", default=0, help="random seed for sensor noise")
     add("--iters", type=_whole, metavar="N", help="stop after N steps")
     add("-s", "--server-plugin", action="append", metavar="FILE", default=[],
-        help="gazebo_ros plugins are built in; others are ignored with a warning")  # fmt: skip
+        help="ignored with a warning, except gazebo_ros plugins, which are built in")  # fmt: skip
     add("--allow-path", action="append", metavar="FOLDER", default=[], type=Path,
         help="let services read files in this folder, in addition to packages and "
              "models")  # fmt: skip
-    add("--lockstep", action="store_true", help="no effect: cameras never drop a frame")
+    add("--lockstep", action="store_true", help="no effect: cameras never drop frames")
     add("-e", "--physics", metavar="ENGINE", default="ode",
-        help="no effect: the engine is always MuJoCo, with the parameters for ode")  # fmt: skip
+        help="no effect: MuJoCo is used, with the ODE parameters of the world")  # fmt: skip
     inert = parser.add_argument_group("ignored, with a warning")
     inert.add_argument("-r", "--record", action="store_true", help=argparse.SUPPRESS)
     for name in ("encoding", "path", "period", "filter"):

@@ -12,6 +12,7 @@ from cartwheel.cli.commands.report import size_text
 from cartwheel.cli.console import paint, say, say_table
 from cartwheel.cli.showing import print_diagnostic
 from cartwheel.codes.command import RECORDING_UNFINISHED
+from cartwheel.errors import Diagnostic
 
 _SINCE_1970 = 10**17
 """ns; recordings that begin later have wall-clock timestamps."""
@@ -83,12 +84,14 @@ def _print(path: Path, recording: Recording) -> None:
     say()
     say_table(rows)
     if not recording.complete:
-        print_diagnostic(
-            RECORDING_UNFINISHED.diagnostic(
-                "the recording is incomplete because its writer was interrupted",
-                hint="The listed messages can be read.",
-            )
-        )
+        print_diagnostic(unfinished("The listed messages can be read."))
+
+
+def unfinished(hint: str) -> Diagnostic:
+    """The warning for a recording without an end."""
+    return RECORDING_UNFINISHED.diagnostic(
+        "the recording is incomplete because the program that wrote it was interrupted", hint=hint
+    )
 
 
 def _sorted(recording: Recording) -> list[Any]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, cast
 
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.info import unfinished
 from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import say
@@ -87,6 +88,8 @@ def play(options: Options) -> None:
         with interrupts.finally_do(server.close):
             length = (player.end_ns - player.start_ns) / 1e9
             say(f"playing {options.file}, {length:.3f} s, {len(recording.topics)} topics")
+            if not recording.complete:
+                report.diagnostic(unfinished("All messages before the interruption are played."))
             for diagnostic in played.diagnostics:
                 report.diagnostic(diagnostic)
             page = None
