@@ -378,7 +378,7 @@ class Component:
                 self.warn(
                     running.COMMAND_NOT_SIMULATED,
                     f"a command is ignored because {reason} cannot be simulated "
-                    "(later ones on this topic are ignored without a warning)",
+                    "(further invalid commands on this topic are ignored without a warning)",
                 )
 
         return checked

@@ -91,8 +91,16 @@ def test_what_is_no_floor_is_told_and_left(world, text):
 @pytest.mark.parametrize(
     ("bound", "text", "message"),
     [
-        ("<bottom_floor>0</bottom_floor>", "-1", "floor -1 is below the lowest floor 0"),
-        ("<top_floor>2</top_floor>", "3", "floor 3 is above the highest floor 2"),
+        (
+            "<bottom_floor>0</bottom_floor>",
+            "-1",
+            "a command is ignored: floor -1 is below the lowest floor 0",
+        ),
+        (
+            "<top_floor>2</top_floor>",
+            "3",
+            "a command is ignored: floor 3 is above the highest floor 2",
+        ),
     ],
 )
 def test_the_warning_names_the_bound_that_the_floor_exceeds(make, bound, text, message):

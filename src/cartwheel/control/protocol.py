@@ -118,15 +118,19 @@ class Connection:
                 values={"version": version},
             )
         if header_size > MAX_HEADER or payload_size > MAX_PAYLOAD:
-            raise ControlError("a frame exceeds the maximum size", code=CONTROL_LIMIT)
+            raise ControlError("a message exceeds the maximum size", code=CONTROL_LIMIT)
         text = self._read(header_size, deadline)
         payload = self._read(payload_size, deadline)
         try:
             header = json.loads(text)
         except (ValueError, RecursionError) as error:
-            raise ControlError("a frame's header is not JSON", code=CONTROL_MISMATCH) from error
+            raise ControlError(
+                "the header of a message is not JSON", code=CONTROL_MISMATCH
+            ) from error
         if not isinstance(header, dict):
-            raise ControlError("a frame's header is not a JSON object", code=CONTROL_MISMATCH)
+            raise ControlError(
+                "the header of a message is not a JSON object", code=CONTROL_MISMATCH
+            )
         return Frame(header=header, payload=bytes(payload))
 
     def has_ended(self) -> bool:
@@ -152,12 +156,12 @@ class Connection:
         while len(data) < size:
             left = deadline - time.monotonic()
             if left <= 0:
-                raise TimeoutError("a frame was not completed in time")
+                raise TimeoutError(f"a message was not completed within {FRAME_SECONDS:g} s")
             self.sock.settimeout(left)
             chunk = self.sock.recv(min(size - len(data), _CHUNK))
             if not chunk:
                 raise ConnectionResetError(
-                    "the other side closed the connection in the middle of a frame"
+                    "the other side closed the connection in the middle of a message"
                 )
             data += chunk
         return data

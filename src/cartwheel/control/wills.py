@@ -41,7 +41,7 @@ class Wills:
         message = from_dict(wanted, content)
         if name not in self._messages and len(self._messages) >= MOST:
             raise ControlError(
-                f"one connection may register final messages for at most {MOST} topics",
+                f"a connection can register final messages for at most {MOST} topics",
                 code=CONTROL_LIMIT,
                 values={"most": MOST},
             )

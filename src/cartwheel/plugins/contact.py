@@ -44,8 +44,8 @@ class BumperParameters:
 class Bumper(Plugin[Any]):
     """Publishes the contacts of a sensor's collisions as ContactsState messages.
 
-    When nothing is in contact, the message field ``states`` is empty. Original plugin:
-    ``gazebo_ros_bumper`` in the package ``gazebo_plugins``.
+    Messages are also published without contact. The field ``states`` is then empty. Original
+    plugin: ``gazebo_ros_bumper`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)

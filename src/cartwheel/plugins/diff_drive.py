@@ -142,10 +142,10 @@ class DiffDrive(WheelDrive):
     A velocity servo with the maximum torque ``<wheelTorque>`` turns each wheel. A command stays in
     effect until the next command.
 
-    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` is written for ROS
-    2, any other tag for ROS 1. If the model is part of a world file and a tag for ROS 1 has no
-    ``<robotNamespace>``, the topics are in the namespace of the model's name. Original plugin:
-    ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
+    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` counts as written
+    for ROS 2, any other as written for ROS 1. For ROS 1, the model's name is the namespace of the
+    topics if the model is part of a world file and ``<robotNamespace>`` is missing. Original
+    plugin: ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
@@ -207,8 +207,8 @@ class DiffDrive(WheelDrive):
         lefts, rights = config.left_joint, config.right_joint
         if not len(lefts) == len(rights) == config.pairs:
             raise PluginError(
-                f"{config.pairs} pairs of wheels require {config.pairs} left joints and "
-                f"{config.pairs} right joints (got {len(lefts)} left, {len(rights)} right)",
+                f"the numbers of left and right wheel joints must equal the number of wheel pairs, "
+                f"{config.pairs} (got {len(lefts)} left, {len(rights)} right)",
                 code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
                 hint="Set <num_wheel_pairs> to the number of pairs of left and right wheels.",

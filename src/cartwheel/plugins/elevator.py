@@ -105,7 +105,7 @@ class Elevator(Plugin[ElevatorParameters]):
         except ValueError:
             self.warn(
                 running.COMMAND_IGNORED,
-                f'a floor must be a whole number (got "{shown(text)}")',
+                f'a command is ignored: the floor must be a whole number (got "{shown(text)}")',
                 values={"floor": shown(text)},
             )
             return
@@ -118,7 +118,7 @@ class Elevator(Plugin[ElevatorParameters]):
         if fault:
             self.warn(
                 running.COMMAND_IGNORED,
-                f"floor {floor} is {fault}",
+                f"a command is ignored: floor {floor} is {fault}",
                 values={"floor": str(floor)},
             )
             return
@@ -128,7 +128,8 @@ class Elevator(Plugin[ElevatorParameters]):
         if self._lift.within(height) != height:
             self.warn(
                 running.COMMAND_IGNORED,
-                f"floor {floor} at {height:g} m is beyond the limits of the lift's joint",
+                f"a command is ignored: floor {floor} at {height:g} m is beyond the limits of the "
+                "lift's joint",
                 values={"floor": str(floor)},
             )
             return

@@ -81,8 +81,8 @@ class FtSensorParameters:
     frame: str = tag(
         "frame_name",
         default="",
-        doc="Frame ID of a link's wrench. Default: `world`. A joint's wrench is in the frame of "
-        "its child link, as in Gazebo.",
+        doc="Frame ID of the wrench with `<body_name>`. A joint's wrench is in the frame of "
+        "its child link, as in Gazebo. Default: `world`.",
     )
     noise: float = tag(
         "gaussianNoise",
@@ -210,7 +210,7 @@ class GzForceTorqueParameters:
         doc="Topic of the WrenchStamped messages. Default: "
         "`/world/<world>/model/<model>/joint/<joint>/sensor/<sensor>/forcetorque`.",
     )
-    frame: str = frame_tag("Frame ID of the messages. Default: the selected link.")
+    frame: str = frame_tag("Frame ID of the messages. Default: the link selected by `<frame>`.")
 
 
 class GzForceTorque(_JointWrench):
@@ -220,8 +220,8 @@ class GzForceTorque(_JointWrench):
     ``<measure_direction>`` selects the sign: ``child_to_parent`` (default) or ``parent_to_child``.
     ``<force>`` and ``<torque>`` can contain noise for each axis.
 
-    The default frame ID is the selected link. With ``sensor``, it is the child link, or the
-    sensor's name if the sensor is rotated relative to its link. Original sensor:
+    The default frame ID is the link selected by ``<frame>``. With ``sensor``, it is the child link,
+    or the sensor's name if the sensor is rotated relative to its link. Original sensor:
     ``ForceTorqueSensor`` in gz-sensors.
     """
 

@@ -317,10 +317,10 @@ class _GpsSensor(_Receiver):
 class GpsSensor(_GpsSensor):
     """Publishes the geographic position and the velocity of a ``gps`` sensor.
 
-    The topic ``~/out`` contains NavSatFix messages; ``~/vel`` contains the velocity toward east,
-    north and up. The noise in the sensor's ``<gps>`` is applied, in m and m/s. The position is
-    relative to the world's ``<spherical_coordinates>``. Original plugin: ``gazebo_ros_gps_sensor``
-    in the ROS 2 package ``gazebo_plugins``.
+    NavSatFix messages are published on ``~/out``. The velocity toward east, north and up is
+    published on ``~/vel``. The noise in the sensor's ``<gps>`` is applied, in m and m/s. The
+    position is relative to the world's ``<spherical_coordinates>``. Original plugin:
+    ``gazebo_ros_gps_sensor`` in the ROS 2 package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)

@@ -75,10 +75,10 @@ class GraspFix(Plugin[GraspFixParameters]):
     least 0.3 times the larger one. Each check adds 1 to the grip counter of a gripped collision,
     and subtracts 1 from all other counters.
 
-    An object is attached to the palm by a fixed joint when a counter of one of its collisions
-    exceeds ``<grip_count_threshold>``. It is released when the counter no longer exceeds the
-    threshold and a finger has moved by more than ``<release_tolerance>``. A hand holds one object
-    at a time.
+    An object is attached to the palm by a fixed joint when the grip counter of one of its
+    collisions exceeds ``<grip_count_threshold>``. It is released when the counter no longer exceeds
+    the threshold and its distance to a finger has changed by more than ``<release_tolerance>``. A
+    hand holds one object at a time.
 
     Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, as by the
     republisher of the original package. Original plugin: ``gazebo_grasp_plugin`` by Jennifer

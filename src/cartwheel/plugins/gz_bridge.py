@@ -35,12 +35,15 @@ def read_bridge(path: Path) -> list[Bridged]:
         entries = _entries(loader, root)
     except OSError as error:
         raise _invalid(f"the file cannot be read: {error.strerror or error}", origin) from None
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
+    except UnicodeDecodeError:
+        raise _invalid("the file is not a text file", origin) from None
+    except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or "it is not text"
+        problem = getattr(error, "problem", None)
         line = mark.line + 1 if mark is not None else 0
         place = Origin(file=str(path), line=line)
-        raise _invalid(f"the file is not valid YAML: {problem}", place) from None
+        text = f"the file is not valid YAML{f': {problem}' if problem else ''}"
+        raise _invalid(text, place) from None
     if entries is None:
         raise _invalid(
             "the file is not a list of topics",

@@ -23,8 +23,8 @@ class GzContactParameters:
 class GzContact(Bumper):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
 
-    When nothing is in contact, the message field ``states`` is empty. Original plugin: ``Contact``
-    in gz-sim.
+    Messages are also published without contact. The field ``states`` is then empty. Original
+    plugin: ``Contact`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -24,7 +24,13 @@ _KINDS = ("position", "velocity")
 
 
 def _gains(kind: str, name: str, doc: str) -> Any:
-    return tag(f"{kind}_{name}", default=(), doc=f"{doc} {kind} controller, for each joint.")
+    limit = name.endswith(("_min", "_max"))
+    return tag(
+        f"{kind}_{name}",
+        default=(),
+        unit="N m or N" if limit or name == "cmd_offset" else "",
+        doc=f"{doc} {kind} controller, for each joint. Default: {'no limit' if limit else '`0`'}.",
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,7 +55,7 @@ class JointTrajectoryParameters:
         default=(),
         unit="rad or m",
         most=FARTHEST,
-        doc="Initial target of each joint. Default: 0.",
+        doc="Initial target of each joint. Default: `0`.",
     )
     position_p_gain: tuple[float, ...] = _gains("position", "p_gain", "Proportional gain of the")
     position_i_gain: tuple[float, ...] = _gains("position", "i_gain", "Integral gain of the")
@@ -109,9 +115,9 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
 
     Each point is the target until its ``time_from_start`` has passed. Points are not interpolated,
     so smooth motion needs closely spaced points. The force on a joint is the sum of the position
-    controller's output, the velocity controller's output and the point's effort. Gains default to
-    0. The progress, published on ``<topic>_progress`` (Float32), is the number of the current point
-    divided by the total number of points. Original plugin: ``JointTrajectoryController`` in gz-sim.
+    controller's output, the velocity controller's output and the point's effort. The progress,
+    published on ``<topic>_progress`` (Float32), is the number of the current point divided by the
+    total number of points. Original plugin: ``JointTrajectoryController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)
@@ -137,7 +143,8 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         }
         if not any(gains.p or gains.i for both in self._gains.values() for gains in both):
             self.warn(
-                devices.PLUGIN_IDLE, "all gains are 0, so the joints only follow commanded efforts"
+                devices.PLUGIN_IDLE,
+                "all gains are 0, so only the efforts in a trajectory have an effect",
             )
         self._initial = {
             name: config.initial[index] if index < len(config.initial) else 0.0

@@ -161,9 +161,7 @@ class Harness(Plugin[HarnessParameters]):
 
     def _on_velocity(self, message: Any) -> None:
         if self._winch is None:
-            self.warn(
-                running.COMMAND_IGNORED, "the harness has no <winch>, so the velocity is ignored"
-            )
+            self.warn(running.COMMAND_IGNORED, "a command is ignored: the harness has no <winch>")
         else:
             self._velocity = float(message.data)
 
@@ -175,7 +173,7 @@ class Harness(Plugin[HarnessParameters]):
         if rope is None or not rope.attached:
             self.warn(
                 running.ATTACHMENT_FAILED,
-                "the harness cannot detach anything, because nothing is attached",
+                "a command is ignored: the harness has no attached joint to detach",
             )
         else:
             rope.attached = False

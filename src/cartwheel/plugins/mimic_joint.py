@@ -101,7 +101,7 @@ class Differential(Plugin[DifferentialParameters]):
 def _check_different(plugin: Plugin[Any], joint: str, follower: str) -> None:
     if joint == follower:
         raise PluginError(
-            f'joint "{joint}" cannot follow itself',
+            f'joint "{joint}" cannot mimic itself',
             code=devices.PLUGIN_PARAMETER_INVALID,
             origin=plugin.tag.origin,
             values={"joint": joint},

@@ -117,7 +117,7 @@ class _MotorModel(Plugin[Any]):
         if self._number >= len(speeds):
             self.warn(
                 running.COMMAND_IGNORED,
-                f"a command is ignored: it has {len(speeds)} speeds, but none for motor "
+                f"a command is ignored: it has only {len(speeds)} speeds, so none for motor "
                 f"{self._number}",
                 values={"speeds": len(speeds), "motor": self._number},
             )

@@ -213,7 +213,7 @@ class OdometryPublisherParameters:
     dimensions: Literal["2", "3"] = tag(
         "dimensions",
         default="2",
-        doc="2: pose and twist are in the ground plane (x, y, yaw); 3: in three dimensions.",
+        doc="`2`: pose and twist are planar (x, y, yaw). `3`: they are three-dimensional.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyz_offset",
@@ -230,7 +230,8 @@ class OdometryPublisherParameters:
     noise: float = tag(
         "gaussian_noise",
         default=0.0,
-        doc="Standard deviation of the noise on the twist, m/s and rad/s.",
+        unit="m/s and rad/s",
+        doc="Standard deviation of the noise on the twist.",
     )
 
 

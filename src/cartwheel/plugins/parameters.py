@@ -128,7 +128,7 @@ def read(
 def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
     meant = meant_one(element.tag, sorted(known))
     return devices.PLUGIN_PARAMETER_UNKNOWN.diagnostic(
-        f"<{element.tag}> has no effect: the plugin does not read it",
+        f"<{element.tag}> has no effect: the plugin does not support this tag",
         origin=element.origin,
         hint=f"Did you mean <{meant}>?" if meant else "",
         values={"parameter": element.tag, "meant": meant},

@@ -47,7 +47,7 @@ class PosePublisherParameters:
     nested: bool = tag(
         "publish_nested_model_pose",
         default=False,
-        doc="Publish the pose of the model. Nested models have no separate frames.",
+        doc="Default of `<publish_model_pose>`. Nested models have no separate frames.",
     )
     vector: bool = tag(
         "use_pose_vector_msg",
@@ -63,7 +63,7 @@ class PosePublisherParameters:
     static: bool = tag(
         "static_publisher",
         default=False,
-        doc="Publish constant poses, which no joint can change, on `<topic>_static` instead.",
+        doc="Publish poses that no joint can change on `<topic>_static` instead of `<topic>`.",
     )
     static_rate: float | None = tag(
         "static_update_frequency",

@@ -30,8 +30,8 @@ class RaySensorParameters:
         "topicName",
         "topic_name",
         default="",
-        doc="Topic of the messages. Default: `<plugin name>/out`. A `<remapping>` of `~/out` "
-        "takes precedence.",
+        doc="Topic of the messages. A `<remapping>` of `~/out` takes precedence. Default: "
+        "`<plugin name>/out`.",
     )
     frame: str = tag(
         "frame_name",
@@ -43,7 +43,7 @@ class RaySensorParameters:
         "radiation_type",
         "radiationType",
         default="infrared",
-        doc="Radiation type of Range messages.",
+        doc="Radiation type of Range messages. The misspelling `infared` is accepted.",
     )
     min_intensity: float = tag(
         "min_intensity",

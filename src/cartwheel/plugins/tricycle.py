@@ -82,8 +82,8 @@ class TricycleParameters:
         "max_wheel_deceleration",
         default=None,
         unit="rad/s²",
-        doc="Maximum deceleration of the driven wheel. Default: `<wheelAcceleration>`, and has "
-        "no effect without it.",
+        doc="Maximum deceleration of the driven wheel. Has no effect without "
+        "`<wheelAcceleration>`. Default: `<wheelAcceleration>`.",
     )
     wheel_tolerance: float = tag(
         "wheelSpeedTolerance",
@@ -164,9 +164,9 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 class TricycleDrive(SteeredDrive):
     """Drives a tricycle with one driven, steered wheel from Twist commands and publishes odometry.
 
-    A plugin tag that contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``, is
-    written for ROS 2, any other tag for ROS 1. If the model is part of a world file and a tag for
-    ROS 1 has no ``<robotNamespace>``, the topics are in the namespace of the model's name. Original
+    A plugin tag that contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``, counts as
+    written for ROS 2, any other as written for ROS 1. For ROS 1, the model's name is the namespace
+    of the topics if the model is part of a world file and ``<robotNamespace>`` is missing. Original
     plugin: ``gazebo_ros_tricycle_drive`` in the package ``gazebo_plugins``.
     """
 

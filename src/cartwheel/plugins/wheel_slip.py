@@ -97,7 +97,7 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         self.check_not_negative("rate")
         self._wheels = [self._wheel(each) for each in element.find_all("wheel")]
         if not self._wheels:
-            self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so nothing slips")
+            self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so no wheel slips")
             return
         self.part.schedule(0, before=self._apply)
         if "gazebo_ros_wheel_slip" not in self.tag.filename:

@@ -115,7 +115,7 @@ def _whole(node: Node, ctx: Context) -> Model:
             lacking.message,
             code=lacking.code,
             origin=lacking.origin,
-            hint=f"Without it: {error.message}.",
+            hint=f"As a result, the model could not be read: {error.message}.",
             values={**lacking.values, "without": error.values.get("name")},
         ) from error
 

@@ -108,9 +108,10 @@ def read_yaml(path: Path) -> dict[str, Any]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else 0
-        problem = getattr(error, "problem", None) or "it is not YAML"
+        problem = getattr(error, "problem", None)
+        text = f"the file is not valid YAML{f': {problem}' if problem else ''}"
         place = Origin(file=str(path), line=line)
-        raise _unreadable(f"the file is not valid YAML: {problem}", place) from None
+        raise _unreadable(text, place) from None
     if content is None:
         return {}
     if not isinstance(content, dict):

@@ -95,7 +95,7 @@ def transmissions(
             )
             continue
         if not joints or (len(joints) > 1 and not several):
-            text = f"{label} must have one joint to have an effect (got {len(joints)})"
+            text = f"{label} has no effect: it must have exactly one joint (got {len(joints)})"
             warn(devices.TRANSMISSION_IGNORED, element, text, joints=len(joints))
             continue
         for joint in joints:

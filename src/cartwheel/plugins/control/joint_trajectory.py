@@ -236,7 +236,7 @@ class JointTrajectoryController(Controller):
                 values=error.values,
             )
             return
-        self._preempt("a new trajectory replaced it")
+        self._preempt("replaced by a new trajectory")
         self._follow(trajectory, time_ns)
 
     def _follow(self, trajectory: Trajectory, time_ns: int) -> None:
@@ -267,7 +267,7 @@ class JointTrajectoryController(Controller):
         except InvalidTrajectoryError as error:
             goal.reject(self._result(error.result, error.message), error.message)
             return
-        self._preempt("a new goal replaced it")
+        self._preempt("replaced by a new goal")
         self._goal_path, self._goal_end = paths, ends
         span = goal.goal.goal_time_tolerance
         patience = span.sec + span.nanosec / 1e9
@@ -297,13 +297,13 @@ class JointTrajectoryController(Controller):
                 return
             for name, tolerance, error in zip(self._names, self._goal_path, errors, strict=True):
                 if tolerance.violated(*error):
-                    text = f"{name} deviates from its path by {error[0]:.4g}"
+                    text = f'joint "{name}" has {tolerance.excess(*error)} on the path'
                     self._finish("abort", PATH, text)
                     self._hold(time_ns)
                     return
             return
         off = [
-            name
+            f'joint "{name}" has {tolerance.excess(*error)} at the goal'
             for name, tolerance, error in zip(self._names, self._goal_end, errors, strict=True)
             if tolerance.violated(*error)
         ]
@@ -313,8 +313,7 @@ class JointTrajectoryController(Controller):
         endless = self.rig.ros2 and self._goal_patience == 0
         late_ns = followed.end_ns + _SETTLING_NS + round(min(self._goal_patience, 1e9) * 1e9)
         if not endless and time_ns > late_ns:
-            index = self._names.index(off[0])
-            self._finish("abort", GOAL, f"{off[0]} misses its goal by {errors[index][0]:.4g}")
+            self._finish("abort", GOAL, off[0])
             self._hold(time_ns)
 
     def _preempt(self, text: str) -> None:

@@ -126,7 +126,8 @@ class MecanumDriveController(Controller):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
                 "the wheels do not model rollers, so the robot does not move sideways",
-                hint="Pass the controller's parameters when the robot is spawned.",
+                hint="To push the robot with a servo instead, pass the controller's parameters "
+                "when the robot is spawned.",
             )
 
     def start(self, time_ns: int) -> None:

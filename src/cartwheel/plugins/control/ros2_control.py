@@ -118,8 +118,8 @@ class Ros2Control(ControlPlugin):
             if sensor.name not in known:
                 self.warn(
                     running.UNKNOWN_SENSOR,
-                    f'<ros2_control> refers to the sensor "{sensor.name}", which no <gazebo> tag '
-                    "describes, so nothing is measured",
+                    f'the sensor "{sensor.name}" in <ros2_control> has no matching <sensor> in a '
+                    "<gazebo> tag, so nothing is measured",
                     at=sensor.origin,
                     values={"name": sensor.name},
                 )

@@ -43,7 +43,8 @@ class RosControlParameters:
     legacy: bool = tag(
         "legacyModeNS",
         default=True,
-        doc="No effect: PID gains are always read from the global namespace as well.",
+        doc="No effect: PID gains are read from the robot's namespace, or else from the "
+        "global namespace.",
     )
     stop_topic: str = tag(
         "eStopTopic", default="", doc="Topic of a Bool. While it is true, all joints are stopped."

@@ -21,6 +21,12 @@ class Tolerance:
         """Whether an error exceeds the tolerance."""
         return (0 < self.position < abs(position)) or (0 < self.velocity < abs(velocity))
 
+    def excess(self, position: float, velocity: float) -> str:
+        """Describes the error that exceeds the tolerance."""
+        if 0 < self.position < abs(position):
+            return f"a position error of {abs(position):.4g} (tolerance {self.position:g})"
+        return f"a velocity error of {abs(velocity):.4g} (tolerance {self.velocity:g})"
+
 
 class Tolerances:
     """Tolerances of a controller. Source: joint_trajectory_controller.

@@ -51,8 +51,8 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
         name = "xyz"[max(range(3), key=lambda index: wanted[index])]
         controller.warn(
             robot.WHEEL_AXIS_MISALIGNED,
-            f'the axis of joint "{joint}" points along the robot\'s -{name} axis, so it turns '
-            "in the opposite direction",
+            f'the axis of joint "{joint}" points along the robot\'s -{name} axis, so '
+            "positive commands turn it in the opposite direction",
             at=described.origin,
             values={"joint": joint, "axis": f"-{name}"},
         )
