@@ -40,12 +40,12 @@ SPEEDS: dict[str, tuple[float, float]] = {
 """By key: factors of the linear and the angular speed."""
 
 HELP = """\
-   u  i  o      forward, turning left or right      U I O   sideways with shift,
-   j  k  l      turn on the spot; k stops           J K L   for robots that can
-   m  ,  .      backward                            M < >
+   u  i  o      forward            with Shift: sideways,
+   j  k  l      spin, stop, spin   for robots that can move sideways
+   m  ,  .      backward           t  b   up, down (multicopters)
 
-   q z  both speeds up, down      w x  linear      e c  angular      t b  up, down
-   any other key stops            Ctrl-C quits"""
+   q  z  both speeds +10 %, -10 %     w  x  linear speed     e  c  angular speed
+   any other key stops                Ctrl-C quits"""
 
 
 @dataclass

@@ -61,6 +61,6 @@ def print_list(sim: int | None) -> None:
         yaw = math.degrees(one["rpy"][2])
         mass = "static" if one["static"] else f"{one['mass']:.3g} kg"
         rows.append(
-            [one["name"], f"{x:.3f}", f"{y:.3f}", f"{z:.3f}", f"{yaw:.0f}°", mass, one["file"]]
+            [one["name"], *(f"{v:z.3f}" for v in (x, y, z)), f"{yaw:z.0f}°", mass, one["file"]]
         )
     say_table(rows)

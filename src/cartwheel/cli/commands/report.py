@@ -62,7 +62,7 @@ class Report:
         """Says that this is not the only simulation."""
         print_diagnostic(
             OTHER_SIMULATION_RUNNING.diagnostic(
-                "another simulation is running, so commands require --sim PID",
+                "another simulation is running, so commands such as cartwheel topic require --sim PID",
                 hint="\n".join(["Running simulations:", *(f"    {entry}" for entry in others)]),
             )
         )
@@ -195,7 +195,7 @@ class Report:
             for line in table(rows).splitlines():
                 self._line("topic", line)
         if len(topics) > _TOPICS:
-            self._line("", f"and {len(topics) - _TOPICS} more: cartwheel topic list")
+            self._line("", f"and {len(topics) - _TOPICS} more; to list all: cartwheel topic list")
         if self._decorated:
             self._try(session)
 
