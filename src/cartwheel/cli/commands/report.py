@@ -62,7 +62,7 @@ class Report:
         """Says that this is not the only simulation."""
         print_diagnostic(
             OTHER_SIMULATION_RUNNING.diagnostic(
-                "another simulation is running, so commands such as cartwheel topic require --sim PID",
+                "another simulation is running, so commands such as topic require --sim PID",
                 hint="\n".join(["Running simulations:", *(f"    {entry}" for entry in others)]),
             )
         )
