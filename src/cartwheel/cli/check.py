@@ -85,7 +85,7 @@ def check(
         bool,
         typer.Option(
             "--fix",
-            help="Fix misspelt tags, degrees, inertias and wheel sizes in the files.",
+            help="Fix misspelt tags, angles in degrees, inertias and wheel sizes in the files.",
             rich_help_panel=help.REPORT,
         ),
     ] = False,

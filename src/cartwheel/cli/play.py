@@ -46,7 +46,9 @@ def play(
     world: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE|NAME", help="World to show around the robot.", rich_help_panel=help.WORLD
+            metavar="FILE|NAME",
+            help="World to show around the robot: an SDF file, or the name of a bundled world.",
+            rich_help_panel=help.WORLD,
         ),
     ] = None,
     host: arguments.Host = "127.0.0.1",
