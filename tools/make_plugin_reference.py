@@ -51,20 +51,24 @@ and services.
 - Folders in `filename` are ignored. The prefix `lib` and the extension `.so` are optional. The
   prefix `ignition-gazebo-` is read as `gz-sim-`.
 - A plugin that is not listed here has no effect. A warning is reported when the robot is loaded.
+"""
 
-A plugin that raises an error while it runs is disabled: its topics and services are removed, its
-motors brake and its forces become 0. The error message names the plugin, its model, and the file
-and line of its tag; `--verbose` adds the traceback. The simulation continues unless `--strict` is
-set.
-
-## Sensors of gz-sim
-
+_SENSORS = """\
 Sensors written for gz-sim (Gazebo's successor to Gazebo Classic) need no `<plugin>`. Such a sensor
 publishes in each of these cases:
 
 - The world or the model contains the matching system, such as `gz-sim-sensors-system`.
 - The sensor contains `<topic>` or `<gz_frame_id>`.
 - The sensor's type exists only in gz-sim.
+"""
+
+_AFTER = """\
+## Errors
+
+A plugin that raises an error while it runs is disabled: its topics and services are removed, its
+motors brake and its forces become 0. The error message names the plugin, its model, and the file
+and line of its tag; `--verbose` adds the traceback. The simulation continues unless `--strict` is
+set.
 
 ## Plugins in your own package
 
@@ -74,6 +78,7 @@ that use its plugins are affected: a warning reports that the plugin is not supp
 states why the package could not be loaded.
 """
 
+_ROLES = {"publishes": "publishes", "subscribes": "subscribes", "serves": "provides"}
 _TABLE = "The table lists the topics and services of the example above"
 _TABLE_SWITCHED = f"{_TABLE}, with every boolean tag set to `true`"
 
@@ -135,10 +140,10 @@ def reference() -> dict[str, str]:
         ),
         _index("Sensor plugins", [p for p in ours if p.filenames and p.for_sensor]),
         _index("World plugins", [p for p in ours if p.filenames and p.for_world]),
-        _index("Sensors without a plugin", [p for p in ours if not p.filenames]),
+        _index("Sensors without a plugin", [p for p in ours if not p.filenames], _SENSORS),
     ]
     return {
-        INDEX: "\n".join([INTRODUCTION, *tables]),
+        INDEX: "\n".join([INTRODUCTION, *tables, _AFTER]),
         TOPICS: _topics(interfaces),
         **pages,
         **pictures,
@@ -164,7 +169,7 @@ def _topics(interfaces: dict[type[Plugin[Any]], Interface]) -> str:
     return "\n".join(lines)
 
 
-def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
+def _index(heading: str, plugins: list[type[Plugin[Any]]], before: str = "") -> str:
     rows = []
     for plugin in plugins:
         first, *others = plugin.filenames or plugin.serves
@@ -172,7 +177,8 @@ def _index(heading: str, plugins: list[type[Plugin[Any]]]) -> str:
         summary = " ".join(_prose(plugin)[0].split()).split(". ")[0].rstrip(".")
         rows.append(f"| {'<br>'.join(names)} | {summary}. |".replace("..", "."))
     column = "File name" if plugins[0].filenames else "Sensor type"
-    return "\n".join([f"## {heading}", "", f"| {column} | Purpose |", "|---|---|", *rows, ""])
+    lines = [f"## {heading}", "", *([before] if before else [])]
+    return "\n".join([*lines, f"| {column} | Purpose |", "|---|---|", *rows, ""])
 
 
 def _page(plugin: type[Plugin[Any]], interface: Interface, links: dict[str, str]) -> str:
@@ -201,7 +207,8 @@ def _page(plugin: type[Plugin[Any]], interface: Interface, links: dict[str, str]
         switched = any(kind is bool for _, kind in fields(plugin))
         lines += [f"{_TABLE_SWITCHED if switched else _TABLE}.", ""]
         lines += ["| Name | Type | Role |", "|---|---|---|"]
-        lines += [*(f"| `{name}` | `{kind}` | {role} |" for role, name, kind in interface), ""]
+        lines += [*(f"| `{name}` | `{kind}` | {_ROLES[role]} |" for role, name, kind in interface)]
+        lines += [""]
     return "\n".join([*lines, f"[All plugins and sensors](../{INDEX})", ""])
 
 

@@ -44,7 +44,7 @@ class CameraParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Frame rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
+        doc="Frame rate, at most the sensor's rate. 0: the sensor's rate.",
     )
     hack_baseline: float = tag(
         "hackBaseline",

@@ -130,8 +130,8 @@ def watched_collisions(plugin: Plugin[Any], sensor: Sensor) -> set[str]:
         else:
             plugin.warn(
                 devices.CONTACT_COLLISION_UNKNOWN,
-                f'contact sensor "{sensor.name}" refers to the collision "{name}", which does not '
-                "exist, so it never reports a contact",
+                f'the collision "{name}" of contact sensor "{sensor.name}" does not exist, so its '
+                "contacts are not reported",
                 hint=suggestion(name, spellings),
                 values={
                     "sensor": sensor.name,

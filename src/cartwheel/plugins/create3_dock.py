@@ -81,9 +81,10 @@ class Create3OpcodeParameters(_Dock):
 class Create3Opcode(_Docking):
     """Publishes the infrared codes from the dock that the robot's two receivers detect.
 
-    The dock emits a halo, and a red and a green buoy signal. A receiver detects a signal if the
-    distance to the dock is below the range of the receiver plus the range of the signal. Original
-    plugin: ``gazebo_ros_ir_opcode`` in the package ``irobot_create_gazebo_plugins``.
+    The dock emits three infrared signals: the halo, which surrounds it, and the red and the green
+    buoy. A receiver detects a signal if the distance to the dock is below the range of the receiver
+    plus the range of the signal. Original plugin: ``gazebo_ros_ir_opcode`` in the package
+    ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_opcode.so",)

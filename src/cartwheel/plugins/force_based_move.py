@@ -64,8 +64,8 @@ class ForceBasedMoveParameters:
 class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
     """Applies forces to make the robot follow Twist commands, and publishes odometry.
 
-    The robot moves in the plane. The force and the torque are the gains times the velocity errors,
-    and act at the centre of mass. ``linear.x``, ``linear.y`` and ``angular.z`` are used. The
+    The robot moves in the plane: it follows ``linear.x``, ``linear.y`` and ``angular.z``. The force
+    and the torque act at the centre of mass and are the gains times the velocity errors. The
     odometry is relative to the robot's initial pose. Original packages:
     ``ridgeback_gazebo_plugins`` and ``hector_gazebo_plugins``.
     """

@@ -129,10 +129,10 @@ class HectorGpsParameters:
 class HectorGps(_Receiver):
     """Publishes the latitude, longitude, altitude and velocity of a link.
 
-    As in hector_gazebo_plugins, the Earth is treated as flat around the reference point; within a
-    few kilometres the error is below 1 m. Offset, drift, noise and scale are applied as in
-    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_gps`` in the package
-    ``hector_gazebo_plugins``.
+    As in the original plugin, the Earth is treated as flat around the reference point. Within a few
+    kilometres, the error is below 1 m. Position and velocity have an offset, a drift, noise and a
+    scale factor, as in ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_gps`` in the
+    package ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)

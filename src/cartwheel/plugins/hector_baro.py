@@ -53,10 +53,10 @@ class HectorBaroParameters:
 class HectorBaro(Plugin[HectorBaroParameters]):
     """Publishes a link's z position in the world, its altitude above sea level and the pressure.
 
-    The air pressure is computed from the measured altitude: ``pressure = qnh (1 - altitude / 44330
-    m) ^ 5.263157``. Offset, drift, noise and scale are applied as in
-    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_baro`` in the package
-    ``hector_quadrotor_gazebo_plugins``.
+    The z position has an offset, a drift, noise and a scale factor, as in
+    ``libhector_gazebo_ros_imu.so``. The air pressure is computed from the measured altitude:
+    ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``. Original plugin: ``gazebo_ros_baro`` in
+    the package ``hector_quadrotor_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_baro.so",)

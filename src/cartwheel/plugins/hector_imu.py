@@ -148,8 +148,9 @@ class HectorImu(Plugin[HectorImuParameters]):
     """Publishes angular velocity, acceleration and orientation of a link, with noise and drift.
 
     The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
-    drift and noise. The acceleration error also tilts the orientation. Original plugin:
-    ``gazebo_ros_imu`` in the package ``hector_gazebo_plugins``. See also REP 145.
+    drift and noise. Acceleration and angular velocity also have a scale factor. As in the original
+    plugin, the acceleration error also tilts the orientation. Original plugin: ``gazebo_ros_imu``
+    in the package ``hector_gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

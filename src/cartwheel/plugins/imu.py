@@ -200,7 +200,7 @@ class ImuSensorParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
+        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
     )
     initial_orientation: bool = tag(
         "initialOrientationAsReference",

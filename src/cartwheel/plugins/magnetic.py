@@ -88,8 +88,8 @@ class HectorMagneticParameters:
 class HectorMagnetic(Plugin[HectorMagneticParameters]):
     """Publishes the Earth's magnetic field in the link frame.
 
-    The error model is the same as in `libhector_gazebo_ros_imu.so`: scale factor, constant error,
-    drift and noise. Original plugin: ``gazebo_ros_magnetic`` in the package
+    The field has an offset, a drift, noise and a scale factor, as in
+    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_magnetic`` in the package
     ``hector_gazebo_plugins``.
     """
 

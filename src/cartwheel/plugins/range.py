@@ -100,7 +100,7 @@ class RangeParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
+        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
     )
 
 
@@ -151,7 +151,7 @@ class SonarParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. The lower of this and the sensor's rate applies. 0: the sensor's rate.",
+        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
     )
 
 
