@@ -149,8 +149,10 @@ class HectorImu(Plugin[HectorImuParameters]):
 
     The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
     drift and noise. Acceleration and angular velocity also have a scale factor. As in the original
-    plugin, the acceleration error also tilts the orientation. Original plugin: ``gazebo_ros_imu``
-    in the package ``hector_gazebo_plugins``. See also REP 145.
+    plugin, the acceleration error also tilts the orientation. The services
+    ``<topic>/set_accel_bias`` and ``<topic>/set_rate_bias`` set the current drift of the
+    acceleration and of the angular velocity. Original plugin: ``gazebo_ros_imu`` in the package
+    ``hector_gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -156,7 +156,7 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
             f"<resolution> must be positive (got {resolution:g})",
             code=devices.SCAN_SAMPLES_INVALID,
             origin=_place(element, "resolution"),
-            hint="It multiplies <samples>: 1 gives one range per sample.",
+            hint="Set <resolution> to 1 for one range per sample.",
             values={"parameter": "resolution", "value": resolution},
         )
     if asked * resolution > _MOST_RAYS:

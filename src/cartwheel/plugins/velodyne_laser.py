@@ -102,11 +102,11 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
         self._far = min(config.max_range, pattern.maximum)
         if self._near >= self._far:
             raise PluginError(
-                f"the range from {self._near:g} m to {self._far:g} m is empty",
+                f"the minimum range, {self._near:g} m, must be below the maximum range, {self._far:g} m",
                 code=devices.PLUGIN_RANGE_REVERSED,
                 origin=self.tag.origin,
                 values={"parameter": "min_range", "value": self._near, "most": self._far},
-                hint="<min_range> and <max_range> narrow the sensor's own <range>.",
+                hint="Choose <min_range> and <max_range> within the sensor's <range>.",
             )
         self._frame = self.frame(config.frame or sensor.link)
         rate = sensor.update_rate

@@ -351,7 +351,7 @@ class Hardware:
                 origin=joint.interfaces.origin,
                 hint=f"Available interfaces: {offered}."
                 if offered
-                else "The joint has no command interface.",
+                else "Add a command interface to the joint in the robot description.",
                 values={"joint": name, "interface": interface, "offered": offered},
             )
         return joint

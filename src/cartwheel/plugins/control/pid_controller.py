@@ -122,7 +122,7 @@ class PidController(Controller):
             self.warn(
                 running.COMMAND_IGNORED,
                 f"a {what} is ignored because it must contain one value for each joint",
-                hint=f"Joints: {', '.join(self._names)}.",
+                hint=f"Joints of the controller: {', '.join(self._names)}.",
             )
             return []
         by_name = dict(zip(names, zip(values, rates, strict=True), strict=True))

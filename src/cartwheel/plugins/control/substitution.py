@@ -56,13 +56,14 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
                 origin=Origin(file=str(path)),
                 hint=f"Write the value into the file, or pass it with {name}:=…."
                 if not arguments
-                else f"Arguments: {', '.join(sorted(arguments))}.",
+                else f"Arguments of the robot: {', '.join(sorted(arguments))}.",
                 values={"name": name},
             )
         raise PluginError(
             f"{match[0]} cannot be evaluated",
             code=devices.CONTROLLERS_FILE_ARGUMENT,
             origin=Origin(file=str(path)),
+            hint="Write the value into the file.",
             values={"name": match[0]},
         )
 
