@@ -102,7 +102,8 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
         self._far = min(config.max_range, pattern.maximum)
         if self._near >= self._far:
             raise PluginError(
-                f"the minimum range, {self._near:g} m, must be below the maximum range, {self._far:g} m",
+                f"the minimum range of {self._near:g} m must be below the maximum range of "
+                f"{self._far:g} m",
                 code=devices.PLUGIN_RANGE_REVERSED,
                 origin=self.tag.origin,
                 values={"parameter": "min_range", "value": self._near, "most": self._far},
