@@ -33,16 +33,16 @@ class DiffDriveParameters:
         "wheel_separation",
         default=(0.34,),
         unit="m",
-        doc="Distance between the left and right wheel. Repeat the tag for each pair; the last "
-        "value applies to the remaining pairs.",
+        doc="Distance between the left and right wheel. Repeat the tag for each pair. The "
+        "last value applies to the remaining pairs.",
     )
     wheel_diameter: tuple[float, ...] = tag(
         "wheelDiameter",
         "wheel_diameter",
         default=(0.15,),
         unit="m",
-        doc="Diameter of both wheels. Repeat the tag for each pair; the last value applies to the "
-        "remaining pairs.",
+        doc="Diameter of both wheels. Repeat the tag for each pair. The last value applies "
+        "to the remaining pairs.",
     )
     wheel_torque: float = tag(
         "wheelTorque",

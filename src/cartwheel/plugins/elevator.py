@@ -49,10 +49,11 @@ class ElevatorParameters:
 class Elevator(Plugin[ElevatorParameters]):
     """Moves an elevator's car to the commanded floor and operates its door.
 
-    For each command the door closes, the car moves, and the door opens, waits and closes. New
-    commands are ignored until the door is closed again. At floor n, the position of the lift joint
-    is n times ``<floor_height>``. Original plugins: ``gazebo_ros_elevator`` in the package
-    ``gazebo_plugins``, and ``ElevatorPlugin`` in Gazebo Classic.
+    For each command, the door closes and the car moves. The door then opens, waits for
+    ``<door_wait_time>`` and closes. New commands are ignored until the door is closed again. At
+    floor n, the position of the lift joint is n times ``<floor_height>``. Original plugins:
+    ``gazebo_ros_elevator`` in the package ``gazebo_plugins``, and ``ElevatorPlugin`` in Gazebo
+    Classic.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_elevator.so", "libElevatorPlugin.so")

@@ -76,9 +76,9 @@ class GraspFix(Plugin[GraspFixParameters]):
     and subtracts 1 from all other counters.
 
     An object is attached to the palm by a fixed joint when the grip counter of one of its
-    collisions exceeds ``<grip_count_threshold>``. It is released when the counter no longer exceeds
-    the threshold and its distance to a finger has changed by more than ``<release_tolerance>``. A
-    hand holds one object at a time.
+    collisions exceeds ``<grip_count_threshold>``. The object is released when the counter no longer
+    exceeds the threshold and the object's distance to a finger has changed by more than
+    ``<release_tolerance>``. A hand holds one object at a time.
 
     Events are published on ``/gazebo_grasp_plugin_event_republisher/grasp_events``, as by the
     republisher of the original package. Original plugin: ``gazebo_grasp_plugin`` by Jennifer

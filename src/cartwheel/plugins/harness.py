@@ -77,8 +77,8 @@ class Harness(Plugin[HarnessParameters]):
     value true. If the plugin tag contains ``<ros>``, the message is an Empty, and the topics are in
     the plugin's namespace.
 
-    A rope pulls but does not push. While the robot stands on the ground, the rope is slack and
-    exerts no force. While the rope is taut, it holds the link rigidly, as the prismatic joint
+    Each joint acts as a rope, which pulls but does not push. While the robot stands on the ground,
+    the rope is slack and exerts no force. A taut rope holds the link rigidly, as a prismatic joint
     would. Original plugins: ``gazebo_ros_harness`` in the package ``gazebo_plugins``, and
     ``HarnessPlugin`` in Gazebo Classic.
     """

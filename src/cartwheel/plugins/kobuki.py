@@ -85,7 +85,7 @@ class Kobuki(WheelDrive):
     """Drives a Kobuki base and publishes odometry and IMU, bumper, cliff and wheel drop data.
 
     The odometry uses the travelled distance of the wheels and the rotation from the gyroscope. A
-    contact within 30° of straight ahead presses the centre bumper; a contact from 30° to 90°
+    contact within 30° of straight ahead presses the centre bumper. A contact from 30° to 90°
     presses the left or right bumper. Bumper, cliff and wheel drop events are published when their
     state changes. The robot stops while its motor power is off. Original package:
     ``kobuki_gazebo_plugins``.

@@ -63,7 +63,8 @@ class PosePublisherParameters:
     static: bool = tag(
         "static_publisher",
         default=False,
-        doc="Publish poses that no joint can change on `<topic>_static` instead of `<topic>`.",
+        doc="Publish constant poses on `<topic>_static` instead of `<topic>`. A pose is "
+        "constant if no joint can change it.",
     )
     static_rate: float | None = tag(
         "static_update_frequency",
