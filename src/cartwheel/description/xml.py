@@ -50,11 +50,11 @@ def read_bytes(path: Path) -> bytes:
     origin = Origin(file=shown_path(path))
     try:
         if path.is_dir():
-            raise _unreadable("is a folder, not a file", origin)
+            raise _unreadable("the path is a folder, not a file", origin)
         if path.exists() and not path.is_file():
-            raise _unreadable("is not a regular file", origin)
+            raise _unreadable("the path is not a regular file", origin)
         if path.stat().st_size > MAX_BYTES:
-            raise _unreadable(f"is larger than {MAX_BYTES >> 20} MiB", origin)
+            raise _unreadable(f"the file is larger than {MAX_BYTES >> 20} MiB", origin)
         content = path.read_bytes()
     except FileNotFoundError:
         raise DescriptionError(
@@ -66,12 +66,12 @@ def read_bytes(path: Path) -> bytes:
         ) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise _unreadable(f"cannot be read: {reason}", origin) from error
+        raise _unreadable(f"the file cannot be read: {reason}", origin) from error
     if not content.strip():
         raise _unreadable("the file is empty", origin)
     if b"\0" in content[:1024] and not content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise _unreadable(
-            "is a binary file, not a description",
+            "the file is binary, not a description",
             origin,
             "Pass a xacro, URDF, SDF or world file, which is XML text.",
         )
@@ -271,9 +271,9 @@ def _explain(error: expat.ExpatError, still_open: list[tuple[str, int]]) -> tupl
     if error.code == codes[expat.errors.XML_ERROR_NO_ELEMENTS]:
         if inner:
             return f"the file ends while {inner} is still open", None
-        return "is not XML: it contains no element", None
+        return "the file is not XML: it contains no element", None
     if error.code == codes[expat.errors.XML_ERROR_SYNTAX] and not still_open:
-        return "is not XML", "A description begins with <robot> or <sdf>."
+        return "the file is not XML", "A description begins with <robot> or <sdf>."
     if error.code in (
         codes[expat.errors.XML_ERROR_INVALID_TOKEN],
         codes[expat.errors.XML_ERROR_UNDEFINED_ENTITY],

@@ -139,7 +139,7 @@ def _likely(model: Any, body: int) -> str:
     name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, smallest)
     inertia, mass = float(np.min(model.body_inertia[smallest])), model.body_mass[smallest]
     return (
-        f'The smallest moment of inertia in its model is {inertia:.3g} kg m², in "{name}" with '
-        f"{mass:.3g} kg. The most common causes are an inertia that is far too small for the size "
+        f'The smallest moment of inertia in the model is {inertia:.3g} kg m² (link "{name}", '
+        f"{mass:.3g} kg). The most common causes are an inertia that is far too small for the size "
         "of the link, and a very large effort or damping."
     )

@@ -155,8 +155,8 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagn
     text = f'xyz="{xyz}"'
     return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
         message=f'the wheel of joint "{joint.name}" cannot roll forward because its axis '
-        f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} does not '
-        "lie along the axle",
+        f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} is not '
+        "parallel to the axle",
         values={"joint": joint.name, "axis": joint.axis.xyz, "attribute": "askew"},
         origin=node.origin if node is not None else joint.origin,
         instead="" if written is None else text if node is not None else f"<axis {text}/>",

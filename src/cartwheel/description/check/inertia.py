@@ -173,7 +173,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
         if stated > TOO_LARGE * largest:
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity=None if _matters(robot, link, stated) else "info",
-                message=f'the inertia of link "{link.name}" is {stated / largest:.3g} times '
+                message=f'the inertia of link "{link.name}" is {_ratio(stated / largest)} times '
                 f"larger than physically possible for {_weight(inertial.mass)} within this "
                 "geometry",
                 values={
@@ -194,8 +194,8 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
             light = inertial.mass < _LIGHT * robot.description.mass
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity="info" if light else None,
-                message=f'the inertia of link "{link.name}" is {solid / stated:.3g} times smaller '
-                "than that of a solid with this geometry and a mass of "
+                message=f'the inertia of link "{link.name}" is {_ratio(solid / stated)} times '
+                "smaller than that of a solid with this geometry and a mass of "
                 f"{_weight(inertial.mass)}",
                 values={
                     "link": link.name,
@@ -253,7 +253,7 @@ def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
         yield robot_codes.MASS_IN_GRAMS.diagnostic(
             message=f'link "{link.name}" weighs {inertial.mass:g} kg within a bounding box of '
             f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, which "
-            f"makes it denser than any metal ({density / 1000:.3g} kg per litre)",
+            f"makes it denser than any metal ({_ratio(density / 1000)} kg per litre)",
             values={"link": link.name, "mass": inertial.mass, "density": density},
             origin=node.origin if node is not None else inertial.origin,
             instead=_mass_text(inertial.mass / 1000, sdf=node is None) if in_grams else "",
@@ -447,6 +447,11 @@ def _matters(robot: Robot, link: Link, moment: float) -> bool:
     centre = weights @ places / mass
     own = sum(sum(inertial.diagonal) / 2 for _, inertial in others)
     return moment > 0.05 * (own + float(weights @ ((places - centre) ** 2).sum(axis=1)))
+
+
+def _ratio(value: float) -> str:
+    """A number with three digits, without an exponent up to a million times a million."""
+    return f"{value:.3g}" if value < 1000 or value > 1e12 else f"{float(f'{value:.3g}'):,.0f}"
 
 
 def _weight(mass: float) -> str:

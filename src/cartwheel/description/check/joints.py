@@ -18,7 +18,7 @@ _LIMITED = ("revolute", "prismatic")
 _GRAVITY = 9.8
 """m/s²."""
 _LEAST_EFFORT = 10.0
-_DEGREES = "Are they in degrees? URDF and SDF use radians."
+_DEGREES = "Are the limits in degrees? URDF and SDF use radians."
 _TORQUES = ("wheelTorque", "max_wheel_torque")
 _LEAST_DEGREES, _MOST_DEGREES = 30.0, 360.0
 _ENDLESS = frozenset({50.0, 100.0, 200.0, 300.0})
@@ -54,7 +54,7 @@ def limit_reversed(subject: Subject) -> Iterator[Diagnostic]:
         if lower > upper:
             yield robot_codes.LIMIT_REVERSED.diagnostic(
                 message=f'the lower limit of joint "{nodes.name_of(joint)}" is {lower:g}, '
-                f"above the upper limit {upper:g}",
+                f"which is above the upper limit of {upper:g}",
                 values={"joint": nodes.name_of(joint), "lower": lower, "upper": upper},
                 origin=limit.origin,
                 instead=nodes.changed(limit, lower=nodes.short(upper), upper=nodes.short(lower)),

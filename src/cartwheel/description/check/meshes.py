@@ -208,7 +208,7 @@ def _remark(robot: Robot, solid: Solid, factor: float, usual: float) -> Diagnost
         message=f'a {what} of link "{solid.link}" is {solid.extent:.4g} m long, while the other '
         f"shapes are about {usual:.3g} m long",
         values={"link": solid.link, "tag": what, "size": solid.extent, "usual": usual},
-        hint="Is it in millimetres?" if factor < 1 else "Is it scaled twice?",
+        hint="Is the size in millimetres?" if factor < 1 else "Is the shape scaled twice?",
         origin=shape.origin if shape is not None else part.origin,
         instead=instead,
         place="attribute" if place == "attribute" else "element" if place else "",

@@ -109,7 +109,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
             if torque is not None and not known:
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
                     message="Gazebo 11 ignores <torque>, so the wheels get 5 N m instead of "
-                    f"{torque.text.strip()}",
+                    f"{torque.text.strip()} N m",
                     values={"tag": "torque", "plugin": drive.tag.name},
                     origin=torque.origin,
                     instead=nodes.written("wheelTorque", {}, torque.text.strip()),

@@ -93,7 +93,7 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
                 severity="warning",
                 message=f"<{tag}> is {angle:g} rad, more than a full turn",
                 values={"tag": tag, "angle": angle},
-                hint="Is it in degrees?",
+                hint="Is the angle in degrees?",
                 origin=found.origin,
                 instead=nodes.written(tag, {}, nodes.short(math.radians(angle))),
                 place="element",
@@ -103,7 +103,7 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
     if first is not None and low is not None and high is not None and low > high:
         yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
             severity="info",
-            message=f"<min_angle> is {low:g} rad, above <max_angle> {high:g} rad, so the scan "
+            message=f"<min_angle> ({low:g} rad) is above <max_angle> ({high:g} rad), so the scan "
             "runs clockwise",
             values={"tag": "min_angle", "lower": low, "upper": high},
             origin=first.origin,
@@ -122,7 +122,7 @@ def _span(element: Element) -> Iterator[Diagnostic]:
     if first is None or low is None or high is None or low < high:
         return
     yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
-        message=f"<{near}> is {low:g} m, not below <{far}> {high:g} m",
+        message=f"<{near}> ({low:g} m) is not below <{far}> ({high:g} m)",
         values={"tag": near, "lower": low, "upper": high},
         origin=first.origin,
         instead=nodes.written(near, {}, nodes.short(high if 0 <= high < low else 0.1)),

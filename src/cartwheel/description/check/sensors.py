@@ -77,7 +77,8 @@ def rate_above_physics(subject: Subject) -> Iterator[Diagnostic]:
             rate = nodes.number(element.text)
             if rate is not None and rate > highest * 1.001:
                 yield devices_codes.RATE_ABOVE_PHYSICS.diagnostic(
-                    message=f"{rate:g} Hz exceeds the physics rate of {highest:g} steps per second",
+                    message=f"the update rate of {rate:g} Hz exceeds the physics rate of "
+                    f"{highest:g} steps per second",
                     values={"tag": element.tag, "rate": rate, "highest": highest},
                     origin=element.origin,
                     instead=nodes.written(element.tag, {}, nodes.short(highest)),

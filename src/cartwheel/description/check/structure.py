@@ -200,7 +200,8 @@ def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
             )
         elif name in mimic_chain(joints, leader):
             yield robot_codes.MIMIC_UNKNOWN.diagnostic(
-                message=f'joint "{name}" mimics itself through "{leader}"',
+                message=f'joint "{name}" mimics itself'
+                + (f' through "{leader}"' if leader != name else ""),
                 values={"joint": name, "leader": leader},
                 origin=mimic.origin,
                 mark=f'joint="{leader}"',

@@ -39,7 +39,7 @@ def angle_degrees(subject: Subject) -> Iterator[Diagnostic]:
             message=f"the angles {text} are in radians: {max(values, key=abs):g} rad is "
             f"{max(map(abs, values)) / 2 / math.pi:.3g} turns",
             values={"angles": values},
-            hint="Are they in degrees?",
+            hint="Are the angles in degrees?",
             origin=node.origin,
             instead=instead,
             place="attribute" if attribute else "element",

@@ -39,15 +39,15 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
         ValueError: What is wrong with the file.
     """
     if b"<!ENTITY" in data:
-        raise ValueError("declares entities, which are not allowed")
+        raise ValueError("the file declares entities, which are not allowed")
     try:
         root = _parsed(data)
     except ET.ParseError as error:
-        raise ValueError(f"is malformed XML: {error}") from None
+        raise ValueError(f"malformed XML: {error}") from None
     for element in root.iter():
         element.tag = element.tag.rpartition("}")[2]  # ignore the COLLADA version
     if root.tag != "COLLADA":
-        raise ValueError(f"is not a COLLADA file: its root element is <{root.tag}>")
+        raise ValueError(f"the file is not a COLLADA file: its root element is <{root.tag}>")
     return _Scene(path, root, notes).submeshes()
 
 
@@ -130,7 +130,7 @@ class _Scene:
     def _require(self, url: str) -> ET.Element:
         found = self.library.get(url)
         if found is None:
-            raise ValueError(f'refers to "{url}", which it does not contain')
+            raise ValueError(f'the file refers to "{url}", which it does not contain')
         return found
 
     def _transform(self, node: ET.Element) -> Array:
@@ -163,7 +163,7 @@ class _Scene:
         for primitive in self._geometries[key]:
             self.triangles += int(np.maximum(primitive.counts - 2, 0).sum())
             if self.triangles > MOST_TRIANGLES:
-                raise ValueError(f"contains more than {MOST_TRIANGLES} triangles")
+                raise ValueError(f"the file contains more than {MOST_TRIANGLES} triangles")
             look = self._look(bindings.get(primitive.material, primitive.material))
             points, corners = primitive.points
             normals = primitive.normals

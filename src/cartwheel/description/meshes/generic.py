@@ -37,7 +37,7 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
         def get(self, name: str) -> bytes:
             file = (path.parent / unquote(name.strip())).resolve()
             if not file.is_relative_to(path.parent.resolve()):
-                raise ValueError(f'refers to "{name}", which is outside its folder')
+                raise ValueError(f'the file refers to "{name}", which is outside its folder')
             return read_regular(file, MOST_BYTES)
 
     resolver = Beside(str(path))

@@ -64,7 +64,7 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
     if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
         raise MeshError(
             mesh.path,
-            f"the scale {mesh.scale} reduces it to zero size",
+            f"the scale {mesh.scale} reduces the mesh to zero size",
             origin=origin,
             values={"scale": mesh.scale},
         )
@@ -126,7 +126,7 @@ def _select(
         known = sorted({name for part in submeshes for name in (part.name, part.geometry)} - {""})
         raise MeshError(
             mesh.path,
-            f'has no submesh "{mesh.submesh}"',
+            f'the file has no submesh "{mesh.submesh}"',
             origin=origin,
             hint=suggestion(mesh.submesh, known),
             meant=meant(mesh.submesh, known),
@@ -154,9 +154,11 @@ def _loaded(path: Path, origin: Origin | None) -> _Loaded:
             values=error.values,
         ) from error
     except FileNotFoundError:
-        raise MeshError(path, "does not exist", code=FILE_MISSING, origin=origin) from None
+        raise MeshError(path, "the file does not exist", code=FILE_MISSING, origin=origin) from None
     except OSError as error:
-        raise MeshError(path, f"cannot be read: {error.strerror}", origin=origin) from error
+        raise MeshError(
+            path, f"the file cannot be read: {error.strerror}", origin=origin
+        ) from error
 
 
 @lru_cache(maxsize=256)
@@ -173,11 +175,11 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
             values={"format": kind},
         )
     if not size:
-        raise MeshError(path, "is empty")
+        raise MeshError(path, "the file is empty")
     if size > MOST_BYTES:
         raise MeshError(
             path,
-            f"is {size >> 20} MiB large; the limit is {MOST_BYTES >> 20} MiB",
+            f"the file has {size >> 20} MiB; the limit is {MOST_BYTES >> 20} MiB",
             hint=_COARSER,
             values={"bytes": size, "most": MOST_BYTES},
         )
@@ -189,12 +191,12 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     except Exception as error:  # a damaged file may cause any error in its reader
         raise MeshError(path, str(error) or type(error).__name__) from error
     if not submeshes:
-        raise MeshError(path, "has no triangles")
+        raise MeshError(path, "the file has no triangles")
     count = sum(len(part.faces) for part in submeshes)
     if count > MOST_TRIANGLES:
         raise MeshError(
             path,
-            f"has {count} triangles; the limit is {MOST_TRIANGLES}",
+            f"the file has {count} triangles; the limit is {MOST_TRIANGLES}",
             hint=_COARSER,
             values={"triangles": count, "most": MOST_TRIANGLES},
         )

@@ -43,12 +43,15 @@ def _is_ascii(data: bytes) -> bool:
 def _read_binary(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
     if len(data) < _HEADER:
         raise ValueError(
-            f"is not an STL file: it has {len(data)} bytes, fewer than the {_HEADER}-byte header"
+            f"the file is not an STL file: it has {len(data)} bytes, fewer than the "
+            f"{_HEADER}-byte header"
         )
     count = int.from_bytes(data[80:84], "little")
     present = (len(data) - _HEADER) // _RECORD.itemsize
     if count > present:
-        raise ValueError(f"is truncated: it declares {count} triangles but contains {present}")
+        raise ValueError(
+            f"the file is truncated: it declares {count} triangles but contains {present}"
+        )
     records = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)
     return records["corners"].reshape(-1, 3).astype(np.float32)
 
@@ -56,7 +59,9 @@ def _read_binary(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32
 def _read_ascii(data: bytes) -> np.ndarray[tuple[int, int], np.dtype[np.float32]]:
     found = _VERTEX.findall(data)
     if len(found) % 3:
-        raise ValueError(f"is truncated: its {len(found)} vertices do not form complete triangles")
+        raise ValueError(
+            f"the file is truncated: its {len(found)} vertices do not form complete triangles"
+        )
     try:
         return np.array(found, dtype="S").astype(np.float32).reshape(-1, 3)
     except ValueError:

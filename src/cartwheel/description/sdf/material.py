@@ -85,7 +85,8 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
         if places and not name.startswith("Gazebo/"):
             ctx.report(
                 tags.MATERIAL_UNDEFINED.diagnostic(
-                    f'the material "{name}" is not in its scripts, so the colour is unchanged',
+                    f'the scripts of the <material> do not define "{name}", so the colour is '
+                    "unchanged",
                     origin=script.origin,
                     values={"name": name, "meant": ""},
                 )

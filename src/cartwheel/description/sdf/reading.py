@@ -66,7 +66,7 @@ def read_sdf(
             name = further.attributes.get("name", "")
             ctx.report(
                 tags.ELEMENT_LEFT_OUT.diagnostic(
-                    f'only one world can run at a time, so "{name}" is ignored',
+                    f'only one world can run at a time, so world "{name}" is ignored',
                     origin=further.origin,
                     values={"tag": "world", "name": name},
                 )
@@ -92,7 +92,7 @@ def read_sdf(
     elif models:
         raise models[1].fail(
             f"the file has {len(models)} models without a world",
-            "Put them into a <world>; a file with one model describes a robot.",
+            "Put the models into a <world>. A file with a single model describes a robot.",
             code=files.WRONG_KIND,
         )
     else:
