@@ -11,7 +11,6 @@ from .adapter import (
     CartwheelError,
     World,
     command_joints,
-    compiled,
     joint_inputs,
     message_class,
     now_ns,
@@ -112,7 +111,8 @@ class Commands:
         message = zero(kind)
         fill(message, value)
         if kind == "std_msgs/msg/Float64MultiArray":
-            message.data = np.full(max(1, len(joints)), value)
+            inputs = [each for owner, each, _ in joint_inputs(self._world) if owner in topic]
+            message.data = np.full(len(inputs[0]) if inputs else 1, value)
         return message
 
     def _trajectory(self, kind: Any, joints: tuple[str, ...], step: float) -> Any:
@@ -129,7 +129,7 @@ class Commands:
         return trajectory
 
     def _joints_of(self, name: str) -> tuple[str, ...]:
-        """The joints of the input whose owner is named in a topic; of all inputs if there is none."""
+        """The joints of the input whose owner is in a topic's name; of all if there is none."""
         inputs = joint_inputs(self._world)
         for owner, joints, _ in inputs:
             if owner in name.split("/"):

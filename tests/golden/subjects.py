@@ -19,7 +19,7 @@ results were first taken, once with its defaults and once with all switches set.
 SHIPPED = ("robots", "models", "docs", "benchmarks/bases")
 CART = ROOT / "robots/rosbots_description/urdf/rosbots.xacro"
 LIMIT = 120.0
-"""Wall time of a robot or a world, s."""
+"""CPU time of a robot or a world, s."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -36,6 +36,8 @@ HEAVY = ("/Image", "/CompressedImage", "/PointCloud2", "/DisparityImage", "/Pack
 _SHOWN = 1500
 """Largest message that is kept in full as an example, bytes."""
 _HIGH = 20.0
+_LARGE, _SHORT = 500, 0.5
+"""Degrees of freedom from which a shorter time is simulated, s."""
 
 
 def measure(subject: Subject) -> dict[str, Any]:
@@ -85,7 +87,7 @@ def _checked(file: Path | None) -> Any:
 
 def _simulate(found: dict[str, Any], robot: Path | None, file: Path | None, seconds: float) -> None:
     description = load_robot(robot) if robot else None
-    height = _height(description) if description is not None else 0.0
+    height = resting_height(description) if description is not None else 0.0
     with World(file or "empty", lenient=True) as world:
         try:
             if description is not None:
@@ -101,8 +103,9 @@ def _simulate(found: dict[str, Any], robot: Path | None, file: Path | None, seco
             found["compiled"] = _compiled(world)
             ears = Ears(world)
             commands = Commands(world)
+            model, _ = compiled(world)
             with _noted(found, "error"):
-                _run(world, ears, commands, seconds)
+                _run(world, ears, commands, seconds if model.nv < _LARGE else _SHORT)
             found["state"] = state(world)
             found["topics"] = ears.heard()
             found["commands"] = commands.given
@@ -131,7 +134,7 @@ def _noted(found: dict[str, Any], name: str) -> Iterator[None]:
         found[name] = error(refused)
 
 
-def _height(description: Any) -> float:
+def resting_height(description: Any) -> float:
     """The height at which the lowest collision shape touches the ground; 0 for what is fixed."""
     with World(lenient=True) as world:
         known = set(world.models)
@@ -172,17 +175,26 @@ def _run(world: World, ears: Ears, commands: Commands, seconds: float) -> None:
 
 
 class Ears:
-    """Subscribes to every topic and adds up its messages."""
+    """Subscribes to every topic and adds up its messages.
 
-    def __init__(self, world: World) -> None:
+    Args:
+        world: The world.
+        images: Messages of each topic with images after which it is left.
+        summed: Whether the messages are hashed.
+    """
+
+    def __init__(self, world: World, *, images: int = IMAGES, summed: bool = True) -> None:
         self._world = world
+        self._images, self._summed = images, summed
         self._topics: dict[str, Heard] = {}
 
     def listen(self) -> None:
         """Subscribes to the topics that are new."""
         for topic in self._world.graph.topics():
             if topic.name not in self._topics and topic.publishers:
-                heard = self._topics[topic.name] = Heard(self._world, topic.type)
+                most = self._images if topic.type.endswith(HEAVY) else 0
+                heard = Heard(self._world, most=most, summed=self._summed)
+                self._topics[topic.name] = heard
                 heard.close = subscribe(self._world, topic.name, topic.type, heard)
 
     def heard(self) -> dict[str, Any]:
@@ -203,9 +215,9 @@ class Ears:
 class Heard:
     """The messages of a topic."""
 
-    def __init__(self, world: World, kind: str) -> None:
+    def __init__(self, world: World, *, most: int, summed: bool) -> None:
         self._world = world
-        self._most = IMAGES if kind.endswith(HEAVY) else 0
+        self._most, self._summed = most, summed
         self._sum = hashlib.sha256()
         self.count = 0
         self._first = self._last_ns = 0
@@ -214,22 +226,26 @@ class Heard:
         self.close: Callable[[], None] = lambda: None
 
     def __call__(self, message: Any) -> None:
+        self.count += 1
+        if self._summed:
+            self._add(message)
+        if self.count == self._most:
+            self.close()
+
+    def _add(self, message: Any) -> None:
         data = bytes(encode_cdr(message))
         self._sum.update(len(data).to_bytes(8, "little"))
         self._sum.update(data)
-        if not self.count:
-            self._first = now_ns(self._world)
         self._last_ns = now_ns(self._world)
-        self.count += 1
+        if self.count == 1:
+            self._first = self._last_ns
         self._last, self._size = message, len(data)
-        if self.count == self._most:
-            self.close()
 
     def summary(self) -> dict[str, Any]:
         found: dict[str, Any] = {"count": self.count, "sha256": self._sum.hexdigest()}
         if self.count:
             found["first_ns"], found["last_ns"] = self._first, self._last_ns
-            if self._size <= _SHOWN:
+            if self._last is not None and self._size <= _SHOWN:
                 found["last"] = value(to_dict(self._last))
         return found
 
