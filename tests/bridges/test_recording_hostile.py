@@ -174,6 +174,18 @@ def test_a_definition_is_read_in_bounded_time(schema, definition, why):
     assert set(store().fielddefs) == known
 
 
+@pytest.mark.wording
+def test_the_message_about_an_invalid_definition_is_one_line():
+    definition = "int32 x\nint32[ y\n"
+    topic = RecordedTopic(
+        name="/a", type="a/msg/B", encoding="cdr", schema="ros2msg", definition=definition
+    )
+    with raises(RECORDED_TYPE_UNUSABLE, why="definition") as caught:
+        decoder(topic)
+    assert "cannot be parsed" in caught.value.message
+    assert "\n" not in caught.value.message and "int32" not in caught.value.message
+
+
 def test_parentheses_of_texts_and_comments_do_not_count():
     text = (
         'module shop9_msgs { module msg { @verbatim(language="comment", text="((a))")\n'

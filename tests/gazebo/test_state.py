@@ -232,7 +232,7 @@ def test_configuration_refusals(chain):
     message = chain.refused("set_model_configuration", **call | {"model_name": "chian"})
     assert 'Did you mean "chain"?' in message
     message = chain.refused("set_model_configuration", **call | {"joint_positions": []})
-    assert "joint names but" in message
+    assert "joint names (1) and positions (0) differ" in message
     message = chain.refused("set_model_configuration", **call | {"joint_positions": [math.nan]})
     assert '"elbow" must be a finite number (got nan)' in message
 

@@ -281,7 +281,7 @@ class SimulationInterfaces:
         if scope & ~(_TIME | _STATE | _SPAWNED):
             raise Refusal(UNSUPPORTED, f"scope {scope} does not exist")
         if scope & _TIME and not scope & _STATE:
-            raise Refusal(UNSUPPORTED, "time cannot be reset without the state")
+            raise Refusal(UNSUPPORTED, "SCOPE_TIME requires SCOPE_STATE")
         if scope & _SPAWNED:
             self._delete_spawned()
         if scope & _STATE:

@@ -133,7 +133,8 @@ class States:
         names, positions = list(request.joint_names), list(request.joint_positions)
         if len(names) != len(positions):
             raise CartwheelError(
-                f"the request has {len(names)} joint names but {len(positions)} positions",
+                f"the numbers of joint names ({len(names)}) and positions "
+                f"({len(positions)}) differ",
                 code=REQUEST_INVALID,
                 values={"names": len(names), "positions": len(positions)},
             )

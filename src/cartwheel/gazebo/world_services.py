@@ -126,7 +126,10 @@ class WorldServices:
     def _control(self, request: Any) -> Answer:
         asked, simulation = request.world_control, self._simulation
         if asked.reset.time_only:
-            raise GraphError("time cannot be reset without the state", code=REQUEST_UNSUPPORTED)
+            raise GraphError(
+                "time_only is not supported: time can only be reset together with the models",
+                code=REQUEST_UNSUPPORTED,
+            )
         if asked.seed:
             self._tell(
                 SERVICE_FAILED.diagnostic(

@@ -152,7 +152,7 @@ class ReconfigureServer:
     def _known(self, name: str) -> ReconfigureParameter:
         if name not in self._parameters:
             raise UnknownNameError(
-                f"parameter of {self._name}", name, self._parameters, code=PARAMETER_UNKNOWN
+                f"{self._name} parameter", name, self._parameters, code=PARAMETER_UNKNOWN
             )
         return self._parameters[name]
 

@@ -127,7 +127,7 @@ class Scans(Panel):
             self._told.add(topic)
             self.page.show(
                 SCAN_NOT_SHOWN.diagnostic(
-                    f'{topic} is not shown: {model} has no link "{frame}"',
+                    f'{topic} is not shown: model "{model}" has no link "{frame}"',
                     values={"topic": topic, "model": model, "frame": frame},
                 )
             )

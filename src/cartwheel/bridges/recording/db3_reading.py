@@ -39,7 +39,7 @@ class Db3Recording:
             self._survey()
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise RecordingError(
-                f'"{path}" is not a ROS 2 bag: {error}',
+                f'"{path}" is not a ROS 2 bag: {str(error).partition(chr(10))[0]}',
                 code=NOT_A_RECORDING,
                 values={"path": str(path)},
             ) from error

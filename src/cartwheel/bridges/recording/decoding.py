@@ -136,7 +136,8 @@ def _parsed(topic: RecordedTopic) -> dict[str, Any]:
         return dict(get_types_from_msg(topic.definition, topic.type))
     except Exception as error:  # any error of the parser
         raise RecordingError(
-            f"the type definition of {topic.name} cannot be parsed: {error}",
+            # The text of the error contains the whole definition.
+            f"the type definition of {topic.name} cannot be parsed",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "why": "definition"},
         ) from error
