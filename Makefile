@@ -7,7 +7,7 @@ MINUTES ?= 5
 WORKERS ?= 2
 export VENV
 
-.PHONY: run test campaign lint format bench corpus docs ros1 dist clean
+.PHONY: run test campaign lint format bench corpus catalogue docs ros1 dist clean
 
 run: ## simulate the cart in the browser, with a post in front of its camera
 	@tools/setup.sh run
@@ -39,6 +39,10 @@ bench: ## measure the speed relative to MuJoCo alone, and what the check finds; 
 corpus: ## try all robots in FOLDER: load, stand, publish, drive, reach
 	@tools/setup.sh run
 	@$(BIN)/cartwheel corpus $(FOLDER) $(ARGS)
+
+catalogue: ## generate the tables of modules that define plugins and controllers
+	@tools/setup.sh lint
+	@$(BIN)/python tools/make_catalogue.py
 
 docs: ## generate the plugin reference, and build the site in site/
 	@tools/setup.sh docs

@@ -13,8 +13,8 @@ from cartwheel.bridges.ros1.names import _yaml
 from cartwheel.codes.devices import BRIDGE_FILE_INVALID, CONTROLLERS_FILE_UNREADABLE
 from cartwheel.codes.recording import RECORDING_DAMAGED
 from cartwheel.description.check.control_files import ControlFile
-from cartwheel.plugins.control.files import read_yaml
-from cartwheel.plugins.gz_bridge import read_bridge
+from cartwheel.dialects.gz.bridge_file import read_bridge
+from cartwheel.dialects.ros_control.files import read_yaml
 
 BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(
     f"{name}: &{name} [{','.join(['*' + chr(ord(name) - 1)] * 9)}]\n" for name in "bcdefghij"

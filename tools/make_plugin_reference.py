@@ -23,8 +23,8 @@ from typing import Any
 
 from cartwheel.description.loading import load_text
 from cartwheel.description.model import WorldDescription
-from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.catalogue import all_plugins
+from cartwheel.dialects.catalogue import all_plugins
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.session import Session
 from plugin_examples import FILES, Interface, example, fields, picture, robot, slug, title, world
 
@@ -73,7 +73,7 @@ set.
 ## Plugins in your own package
 
 Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
-points to a subclass of `cartwheel.plugins.base.Plugin`. If a package cannot be loaded, only robots
+points to a subclass of `cartwheel.plugin.Plugin`. If a package cannot be loaded, only robots
 that use its plugins are affected: a warning reports that the plugin is not supported, and its hint
 states why the package could not be loaded.
 """

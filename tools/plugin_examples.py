@@ -16,7 +16,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from cartwheel.plugins.base import Plugin
+from cartwheel.dialects.plugin import Plugin
 
 FILES = Path(__file__).parent / "examples"
 """Examples that are written by hand, and the package that they name."""

@@ -45,9 +45,9 @@ _PLUGIN_API = """\
 The base class of plugins, and the fields of their parameters. A package adds plugins through the
 entry point group `cartwheel.plugins`.
 
-::: cartwheel.plugins.base.Plugin
+::: cartwheel.dialects.plugin.Plugin
 
-::: cartwheel.plugins.parameters.tag
+::: cartwheel.dialects.tags.tag
 """
 
 

@@ -287,7 +287,7 @@ class World:
                 when the block ends.
         """
         from cartwheel.bridges.recording import Recorder
-        from cartwheel.plugins.robot_descriptions import RobotDescriptions
+        from cartwheel.gazebo.robot_descriptions import RobotDescriptions
 
         simulation = self.session.simulation
         recorder = Recorder(

@@ -9,15 +9,15 @@ from typing import Any
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.component import Shared
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.dialects.gz.bridge_file import read_bridge
+from cartwheel.dialects.registry import attach
+from cartwheel.dialects.ros_control.files import ControllerFiles
+from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
 from cartwheel.graph.graph import Subscription
 from cartwheel.messages import message_class, stamp
-from cartwheel.plugins.control.files import ControllerFiles
-from cartwheel.plugins.gz_bridge import read_bridge
-from cartwheel.plugins.registry import attach
-from cartwheel.plugins.world_plugins import attach_world
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.pacing import Pacer

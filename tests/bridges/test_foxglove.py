@@ -33,11 +33,11 @@ from cartwheel.codes.wires import (
 )
 from cartwheel.description import load_robot, load_text, load_world
 from cartwheel.errors import CartwheelError, Code, Diagnostic, Origin
+from cartwheel.gazebo.robot_descriptions import RobotDescriptions
 from cartwheel.graph import Graph
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, service_classes, zero
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1
 from cartwheel.messages.store import store
-from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
 from cartwheel.simulation.snapshot import RunState
 

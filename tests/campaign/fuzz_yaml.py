@@ -73,14 +73,14 @@ def _reader(read: Callable[[Path], object]) -> Callable[[bytes], None]:
 
 
 def _controllers(path: Path) -> None:
-    from cartwheel.plugins.control.files import (
+    from cartwheel.dialects.ros_control.files import (
         controller_entries,
         is_ros2,
         read_parameters,
         ros1_entries,
         ros2_file,
     )
-    from cartwheel.plugins.control.substitution import substitute
+    from cartwheel.dialects.ros_control.substitution import substitute
 
     content = substitute(read_parameters(path), path, {"name": "x", "prefix": ""})
     if is_ros2(content):
@@ -90,7 +90,7 @@ def _controllers(path: Path) -> None:
 
 
 def _bridge(path: Path) -> None:
-    from cartwheel.plugins.gz_bridge import read_bridge
+    from cartwheel.dialects.gz.bridge_file import read_bridge
 
     read_bridge(path)
 

@@ -11,8 +11,8 @@ from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.corpus import finding
 from cartwheel.description import installed, load, load_text, missing, numbers, xml
 from cartwheel.description.check import check, spelling
+from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import CartwheelError, suggestion
-from cartwheel.plugins.control.substitution import substitute
 
 MOST = 3.0
 """s of CPU time. Each takes a minute and more where a search begins anew at each character."""

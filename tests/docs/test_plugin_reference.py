@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.catalogue import all_plugins
+from cartwheel.dialects.catalogue import all_plugins
+from cartwheel.dialects.plugin import Plugin
 
 ROOT = Path(__file__).parents[2]
 PLUGINS = [each for each in all_plugins() if each.__module__.startswith("cartwheel.")]

@@ -11,9 +11,9 @@ from tests.coded import coded
 
 from cartwheel.codes.graph import FRAMES_SHARED
 from cartwheel.description import load_robot, load_text, load_world
+from cartwheel.gazebo.robot_descriptions import RobotDescriptions
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.geometry import Pose
-from cartwheel.plugins.robot_descriptions import RobotDescriptions
 from cartwheel.session import Session
 from cartwheel.simulation.simulation import Simulation
 

@@ -9,8 +9,8 @@ from tests.plugins.cameras import RED, SKY, depths_of, focal, pixels_of, reds, s
 
 from cartwheel.codes import devices
 from cartwheel.description.model import CameraIntrinsics
+from cartwheel.devices.cameras.lens import Distortion, Lens
 from cartwheel.geometry import Pose
-from cartwheel.plugins.camera_lens import Distortion, Lens
 
 BARREL = {"k1": -0.25, "k2": 0.05, "p1": 0.0, "p2": 0.0, "k3": 0.0}
 PINCUSHION = {"k1": 0.2, "k2": 0.1, "p1": 0.0, "p2": 0.0, "k3": 0.05}

@@ -4,29 +4,38 @@ import importlib
 import pkgutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-import cartwheel.plugins
-from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.catalogue import (
+import cartwheel.dialects
+from cartwheel.dialects.catalogue import (
     all_plugins,
     plugin_named,
     plugin_names,
     plugin_serving,
     short_name,
 )
+from cartwheel.dialects.plugin import Plugin
 
 
 def written():
     """Every class in the package that answers to something."""
-    package = cartwheel.plugins
+    package = cartwheel.dialects
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
         for each in vars(importlib.import_module(module.name)).values():
             if not (isinstance(each, type) and issubclass(each, Plugin)):
                 continue
             if each.__module__ == module.name and hasattr(each, "filenames"):
                 yield each
+
+
+def test_the_generated_tables_are_up_to_date():
+    script = Path(__file__).parents[2] / "tools" / "make_catalogue.py"
+    done = subprocess.run(
+        [sys.executable, str(script), "--check"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_plugin_is_found_by_each_of_its_names():
@@ -74,9 +83,10 @@ def test_only_what_is_named_is_imported():
         [
             sys.executable,
             "-c",
-            "import sys; from cartwheel.plugins.catalogue import plugin_named;"
+            "import sys; from cartwheel.dialects.catalogue import plugin_named;"
             "assert plugin_named('libgazebo_ros_imu.so');"
-            "print('cartwheel.plugins.imu' in sys.modules, 'cartwheel.plugins.gps' in sys.modules)",
+            "print('cartwheel.dialects.classic.imu' in sys.modules);"
+            "print('cartwheel.dialects.makers.gps' in sys.modules)",
         ],
         capture_output=True,
         text=True,

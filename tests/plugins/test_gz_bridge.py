@@ -5,8 +5,8 @@ from tests.plugins.conftest import cart_sdf
 
 import cartwheel as cw
 from cartwheel.codes import devices
+from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.errors import CartwheelError
-from cartwheel.plugins.gz_bridge import read_bridge
 
 DRIVE = """<plugin filename="gz-sim-diff-drive-system" name="d">
   <left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>

@@ -14,10 +14,10 @@ from cartwheel.codes import world as world_codes
 from cartwheel.codes.command import INTERNAL_FAULT
 from cartwheel.description import load_robot
 from cartwheel.description.model import WorldDescription
+from cartwheel.dialects import catalogue
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
 from cartwheel.errors import CartwheelError
-from cartwheel.plugins import catalogue
-from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
 from cartwheel.session import Session
 
 _ROBOT = """<robot name="cart">
@@ -318,7 +318,7 @@ def test_a_broken_package_fails_only_who_names_it(make, cart, installed, rosbots
 
 
 _PACKAGE = """
-from cartwheel.plugins.base import Plugin
+from cartwheel.dialects.plugin import Plugin
 from dataclasses import dataclass
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from cartwheel.errors import Diagnostic, PluginError
 
 def knowledge() -> PluginKnowledge:
     """Information about all plugins and controllers that Cartwheel supports."""
-    from cartwheel.plugins.catalogue import all_plugins
-    from cartwheel.plugins.control.catalogue import controller_types
-    from cartwheel.plugins.control.suggestion import files_for
+    from cartwheel.dialects.catalogue import all_plugins
+    from cartwheel.dialects.ros_control.catalogue import controller_types
+    from cartwheel.dialects.ros_control.suggestion import files_for
 
     names = {name for plugin in all_plugins() for name in plugin.filenames}
     return PluginKnowledge(
@@ -26,17 +26,17 @@ def knowledge() -> PluginKnowledge:
 
 
 def _default_joints(tag: PluginTag) -> Iterable[tuple[tuple[str, ...], str]]:
-    from cartwheel.plugins.catalogue import plugin_named
-    from cartwheel.plugins.parameters import default_joints
+    from cartwheel.dialects.catalogue import plugin_named
+    from cartwheel.dialects.tags import default_joints
 
     plugin = plugin_named(tag.filename)
     return () if plugin is None else default_joints(plugin.parameters, tag.element)
 
 
 def _judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:
-    from cartwheel.plugins.catalogue import plugin_named, short_name
-    from cartwheel.plugins.parameters import read
-    from cartwheel.plugins.world_plugins import BUILT_IN
+    from cartwheel.dialects.catalogue import plugin_named, short_name
+    from cartwheel.dialects.tags import read
+    from cartwheel.dialects.world_plugins import BUILT_IN
 
     plugin = plugin_named(tag.filename)
     if plugin is None:

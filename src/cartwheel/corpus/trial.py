@@ -15,12 +15,12 @@ from cartwheel.description import load_robot
 from cartwheel.description.check import RULES, check
 from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.ros_control.files import ControllerFiles, for_robot, read_parameters
+from cartwheel.dialects.ros_control.suggestion import suggested
+from cartwheel.dialects.world_plugins import BUILT_IN
 from cartwheel.errors import CartwheelError, PluginError
 from cartwheel.geometry import Pose
-from cartwheel.plugins.catalogue import plugin_named, short_name
-from cartwheel.plugins.control.files import ControllerFiles, for_robot, read_parameters
-from cartwheel.plugins.control.suggestion import suggested
-from cartwheel.plugins.world_plugins import BUILT_IN
 
 STANDING = 10.0
 """Simulation time without commands, s."""

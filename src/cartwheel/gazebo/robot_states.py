@@ -9,10 +9,10 @@ from typing import Any
 from cartwheel.codes.graph import FRAMES_SHARED
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.gazebo.robot_descriptions import TOPIC, RobotDescriptions, is_robot
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Publisher, resolve_frame
 from cartwheel.messages import header, message_class
-from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions, is_robot
 from cartwheel.simulation import Simulation
 
 NODE = "robot_state_publisher"

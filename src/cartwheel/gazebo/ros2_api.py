@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import CartwheelError, Reporter, UnknownNameError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.forces import Pushes
@@ -27,7 +28,6 @@ from cartwheel.gazebo.state import States, StateTopics
 from cartwheel.gazebo.world_services import WorldServices
 from cartwheel.graph import Service
 from cartwheel.messages import header, message_class
-from cartwheel.plugins.catalogue import short_name
 from cartwheel.session import Session
 
 NODE = "gazebo"

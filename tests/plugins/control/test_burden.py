@@ -7,7 +7,7 @@ from tests.plugins.control.arms import ARM, GRAVITY, MASS, ROS1, beam, robot, tr
 
 from cartwheel.codes import devices
 from cartwheel.description import load_text
-from cartwheel.plugins.control.burden import burdens
+from cartwheel.dialects.ros_control.burden import burdens
 
 ALONE = MASS * GRAVITY * ARM
 """N m: of one beam."""

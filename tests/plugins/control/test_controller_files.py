@@ -9,9 +9,9 @@ from tests.plugins.control.arms import ros2_system as system
 import cartwheel as cw
 from cartwheel.codes import devices
 from cartwheel.description import load_robot
+from cartwheel.dialects.ros_control.files import ControllerFiles, ros2_file
+from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import PluginError
-from cartwheel.plugins.control.files import ControllerFiles, ros2_file
-from cartwheel.plugins.control.substitution import substitute
 
 GROUP = "position_controllers/JointGroupPositionController"
 

@@ -1,7 +1,7 @@
 """Arguments of controllers' files that a launch file would know."""
 
 from cartwheel.description import load_text
-from cartwheel.plugins.control.launch_arguments import launch_arguments
+from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
 
 LINK = (
     '<link name="{0}"/><joint name="{0}_joint" type="fixed"><parent link="base"/>'

@@ -5,9 +5,9 @@ import math
 import pytest
 
 from cartwheel.codes import devices
+from cartwheel.dialects.ros_control.controllers.limiter import Limiter
+from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError
-from cartwheel.plugins.control.limiter import Limiter
-from cartwheel.plugins.control.settings import Settings
 
 
 def test_velocity_and_acceleration():

@@ -3,9 +3,9 @@
 import pytest
 
 from cartwheel.codes import devices
+from cartwheel.dialects.ros_control.pid import Gains, Pid
+from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError
-from cartwheel.plugins.control.pid import Gains, Pid
-from cartwheel.plugins.control.settings import Settings
 
 
 def test_each_term():

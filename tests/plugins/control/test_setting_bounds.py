@@ -5,9 +5,9 @@ import pytest
 import cartwheel as cw
 from cartwheel.codes import devices
 from cartwheel.description import load_text
+from cartwheel.dialects.gz.air_pressure import pressure_at
+from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError
-from cartwheel.plugins.air_pressure import pressure_at
-from cartwheel.plugins.control.settings import Settings
 
 _SLIP = """<robot name="r"><link name="a"/>
 <joint name="j" type="continuous"><parent link="a"/><child link="w"/></joint><link name="w"/>

@@ -3,8 +3,8 @@
 import pytest
 
 from cartwheel.codes import devices
+from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError
-from cartwheel.plugins.control.settings import Settings
 
 
 def test_dots_and_slashes_and_nesting_are_the_same():

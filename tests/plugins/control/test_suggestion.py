@@ -5,7 +5,7 @@ from tests.plugins.control.arms import ROS1, beam, robot, ros2_joint, ros2_plugi
 from tests.plugins.control.arms import ros2_system as system
 
 from cartwheel.description import load_robot
-from cartwheel.plugins.control.suggestion import suggested
+from cartwheel.dialects.ros_control.suggestion import suggested
 
 ROS1_FILE = """
 c:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cartwheel.plugins.control.trajectory import Trajectory, Waypoint
+from cartwheel.devices.joints.trajectory import Trajectory, Waypoint
 
 SECOND = 1_000_000_000
 

@@ -4,8 +4,7 @@ import math
 from dataclasses import dataclass
 
 from cartwheel.messages import message_class
-from cartwheel.plugins.base import Plugin
-from cartwheel.plugins.parameters import tag
+from cartwheel.plugin import Plugin, tag
 
 BOOL = "std_msgs/msg/Bool"
 

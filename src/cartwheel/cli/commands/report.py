@@ -19,8 +19,8 @@ from cartwheel.cli.console import (
 from cartwheel.cli.showing import print_diagnostic
 from cartwheel.codes.command import OTHER_SIMULATION_RUNNING
 from cartwheel.control.registry import Running
+from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.gate.access import Access, refused_page
-from cartwheel.plugins.control.files import ControllerFiles
 
 if TYPE_CHECKING:
     from cartwheel.description.model import RobotDescription, WorldDescription
@@ -160,7 +160,7 @@ class Report:
             if not description.plugins:
                 self._no_manager(description)
             return
-        from cartwheel.plugins.control.suggestion import suggested
+        from cartwheel.dialects.ros_control.suggestion import suggested
 
         files = suggested(description)
         self._line("control", "no controllers are running; in ROS, launch files start them")

@@ -12,9 +12,9 @@ from cartwheel.cli.commands.bridges import log_all_on
 from cartwheel.cli.commands.report import Report
 from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
+from cartwheel.gazebo.robot_descriptions import TOPIC, RobotDescriptions
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.gazebo.ros2_api import Ros2Api
-from cartwheel.plugins.robot_descriptions import TOPIC, RobotDescriptions
 from cartwheel.session import CLOCK_RATE, Session
 from cartwheel.simulation import RunState
 from cartwheel.simulation.limits import check_speed

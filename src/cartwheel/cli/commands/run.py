@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from cartwheel.cli.commands.page import Page
     from cartwheel.control.server import ControlServer
     from cartwheel.description.model import RobotDescription, WorldDescription
-    from cartwheel.plugins.robot_descriptions import RobotDescriptions
+    from cartwheel.gazebo.robot_descriptions import RobotDescriptions
     from cartwheel.session import Session
     from cartwheel.simulation.pacing import Pacer
 
@@ -205,7 +205,7 @@ def _described(session: Session, options: Options) -> Iterator[RobotDescriptions
     if not options.record and options.foxglove_port is None and options.ros2_node is None:
         yield None
         return
-    from cartwheel.plugins.robot_descriptions import RobotDescriptions
+    from cartwheel.gazebo.robot_descriptions import RobotDescriptions
 
     descriptions = RobotDescriptions(session.simulation, session.graph)
     if options.ros1_node is None and options.ros2_node is None:

@@ -1,0 +1,1 @@
+"""Cameras: lenses, images, depths and their messages."""

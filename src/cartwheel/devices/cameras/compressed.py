@@ -1,0 +1,238 @@
+"""Compressed images on subtopics, like the plugins for image_transport."""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.codes import running
+from cartwheel.component import Component
+from cartwheel.devices.cameras.formats import ImageFormat, Pixels
+from cartwheel.errors import GraphError
+from cartwheel.graph import ReconfigureParameter, choices
+from cartwheel.messages import message_class
+
+COMPRESSED = "sensor_msgs/msg/CompressedImage"
+_FORMATS = ("jpeg", "png")
+_INVERSE = 1
+"""Value of the header of compressed depths that selects inverse quantisation."""
+
+PARAMETERS = (
+    ReconfigureParameter(
+        name="enable", type="bool", default=True, description="Publish compressed images"
+    ),
+    ReconfigureParameter(
+        name="format",
+        type="str",
+        default="jpeg",
+        description="Compression format",
+        edit_method=choices(*_FORMATS, description="JPEG is lossy, PNG is lossless"),
+    ),
+    ReconfigureParameter(
+        name="jpeg_quality",
+        type="int",
+        default=80,
+        minimum=1,
+        maximum=100,
+        description="JPEG quality; 100 is the best",
+    ),
+    ReconfigureParameter(
+        name="jpeg_progressive", type="bool", default=False, description="Progressive JPEG"
+    ),
+    ReconfigureParameter(
+        name="jpeg_optimize", type="bool", default=False, description="Smaller but slower JPEG"
+    ),
+    ReconfigureParameter(
+        name="jpeg_restart_interval",
+        type="int",
+        default=0,
+        minimum=0,
+        maximum=65535,
+        description="Blocks between JPEG restart markers; 0 for no markers",
+    ),
+    ReconfigureParameter(
+        name="png_level",
+        type="int",
+        default=9,
+        minimum=1,
+        maximum=9,
+        description="PNG compression level; 9 gives the smallest images",
+    ),
+)
+"""Names, types, defaults and limits are those of compressed_image_transport."""
+
+DEPTH_PARAMETERS = (
+    ReconfigureParameter(
+        name="enable", type="bool", default=True, description="Publish compressed depths"
+    ),
+    ReconfigureParameter(
+        name="format",
+        type="str",
+        default="png",
+        description="Compression format of depths",
+        edit_method=choices("png", "rvl", description="Both are lossless"),
+    ),
+    ReconfigureParameter(
+        name="depth_max",
+        type="double",
+        default=10.0,
+        minimum=1.0,
+        maximum=100.0,
+        description="Maximum depth, m",
+    ),
+    ReconfigureParameter(
+        name="depth_quantization",
+        type="double",
+        default=100.0,
+        minimum=1.0,
+        maximum=150.0,
+        description="Depth at which the quantisation step is 1 m",
+    ),
+    ReconfigureParameter(
+        name="png_level",
+        type="int",
+        default=1,
+        minimum=1,
+        maximum=9,
+        description="PNG compression level; 9 gives the smallest images",
+    ),
+)
+"""Names, types, defaults and limits are those of compressed_depth_image_transport."""
+
+
+class CompressedImages:
+    """The topic ``<image>/compressed``, with parameters that can be changed at run time.
+
+    Source: compressed_image_transport.
+
+    Args:
+        owner: The publishing plugin.
+        image: Topic of the image.
+        form: Format of the image.
+        rate: Publish rate for listings, Hz.
+        adjustable: Whether ``dynamic_reconfigure`` offers the parameters.
+    """
+
+    def __init__(
+        self,
+        owner: Component,
+        image: str,
+        form: ImageFormat,
+        *,
+        rate: float | None,
+        adjustable: bool,
+    ) -> None:
+        self._format = form
+        self._publisher = owner.advertise(
+            f"{image}/compressed", COMPRESSED, rate=rate, qos="sensor"
+        )
+        self._message = message_class(COMPRESSED)
+        self._values: Mapping[str, Any] = {p.name: p.default for p in PARAMETERS}
+        if adjustable:
+            server = owner.reconfigure(f"{image}/compressed", PARAMETERS, self._change, preset=True)
+            self._values = server.values if server is not None else self._values
+
+    @property
+    def wanted(self) -> bool:
+        return self._publisher.wanted and bool(self._values["enable"])
+
+    def publish(self, moment: Any, pixels: Pixels) -> None:
+        """Compresses and publishes RGB pixels, shape (height, width, 3), in the image's format."""
+        form = self._format
+        kind = self._values["format"]
+        transport = f"{form.encoding}; {kind} compressed {'bgr8' if form.colour else ''}"
+        data = _packed(pixels if form.colour else form.encode(pixels), kind, self._values)
+        self._publisher.publish(
+            self._message(
+                header=moment,
+                format=transport if kind == "jpeg" else transport.rstrip(),
+                data=np.frombuffer(data, dtype=np.uint8),
+            )
+        )
+
+    def _change(self, values: dict[str, Any]) -> None:
+        if values["format"] not in _FORMATS:
+            raise GraphError(
+                f'images cannot be compressed as "{values["format"]}"',
+                code=running.IMAGE_COMPRESSION_UNKNOWN,
+                values={"format": str(values["format"])},
+                hint=f"Supported formats: {', '.join(_FORMATS)}.",
+            )
+        self._values = values
+
+
+class CompressedDepths:
+    """The topic ``<image>/compressedDepth`` of a depth image in m, as in ROS 2.
+
+    Depths are quantised inversely, so that near depths have smaller steps; 0 means no depth.
+    Source: compressed_depth_image_transport.
+
+    Args:
+        owner: The publishing plugin.
+        image: Topic of the depth image.
+        rate: Publish rate for listings, Hz.
+    """
+
+    def __init__(self, owner: Component, image: str, *, rate: float | None) -> None:
+        self._publisher = owner.advertise(
+            f"{image}/compressedDepth", COMPRESSED, rate=rate, qos="sensor"
+        )
+        self._message = message_class(COMPRESSED)
+        values: dict[str, Any] = {p.name: p.default for p in DEPTH_PARAMETERS}
+        self._furthest, self._level = values["depth_max"], values["png_level"]
+        step = values["depth_quantization"]
+        self._factor = step * (step + 1.0)
+        self._offset = 1.0 - self._factor / self._furthest
+
+    @property
+    def wanted(self) -> bool:
+        return self._publisher.wanted
+
+    def publish(self, moment: Any, depths: NDArray[np.float32]) -> None:
+        """Compresses and publishes depths in m, shape (height, width).
+
+        Depths that are not finite, not positive or beyond the maximum are encoded as 0, no depth.
+        """
+        from PIL import Image
+
+        valid = np.isfinite(depths) & (depths > 0) & (depths < self._furthest)
+        steps = np.zeros(depths.shape, dtype=np.uint16)
+        inverse = self._factor / depths[valid] + self._offset
+        steps[valid] = np.minimum(inverse, np.iinfo(np.uint16).max)
+        buffer = io.BytesIO()
+        buffer.write(struct.pack("<iff", _INVERSE, self._factor, self._offset))
+        Image.fromarray(steps).save(buffer, format="PNG", compress_level=self._level)
+        self._publisher.publish(
+            self._message(
+                header=moment,
+                format="32FC1; compressedDepth png",
+                data=np.frombuffer(buffer.getvalue(), dtype=np.uint8),
+            )
+        )
+
+
+def _packed(pixels: NDArray[Any], kind: str, values: Mapping[str, Any]) -> bytes:
+    from PIL import Image
+
+    if pixels.dtype != np.uint8:
+        # In 16-bit images the lower byte repeats the upper one.
+        pixels = (pixels >> 8).astype(np.uint8)
+    buffer = io.BytesIO()
+    image = Image.fromarray(pixels)
+    if kind == "png":
+        image.save(buffer, format="PNG", compress_level=values["png_level"])
+    else:
+        image.save(
+            buffer,
+            format="JPEG",
+            quality=values["jpeg_quality"],
+            progressive=values["jpeg_progressive"],
+            optimize=values["jpeg_optimize"],
+            restart_marker_blocks=values["jpeg_restart_interval"],
+        )
+    return buffer.getvalue()

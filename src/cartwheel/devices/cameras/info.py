@@ -1,0 +1,113 @@
+"""The published ``sensor_msgs/CameraInfo`` of a camera, which ``set_camera_info`` can replace."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cartwheel.devices.cameras.lens import Lens
+from cartwheel.messages import header, message_class, service_classes
+
+INFO = "sensor_msgs/msg/CameraInfo"
+SET_INFO = "sensor_msgs/srv/SetCameraInfo"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rectified:
+    """Entries of R and P. None keeps the entry of the identity (R) or of K (P)."""
+
+    turn: tuple[float, ...] | None = None
+    """R, row by row."""
+    fx: float | None = None
+    fy: float | None = None
+    cx: float | None = None
+    cy: float | None = None
+    """Pixels."""
+    tx: float | None = None
+    ty: float = 0.0
+    """Last column of P."""
+
+
+_PLAIN = Rectified()
+
+
+class Calibration:
+    """CameraInfo of a pinhole camera, with Gazebo's image centre and stereo baseline.
+
+    Args:
+        lens: The rendered lens.
+        frame: Frame ID of the messages.
+        focal_length: Pixels; 0 to compute it from the field of view.
+        centre: Principal point in pixels; 0 for (size + 1) / 2.
+        baseline: Distance to the right of the left camera of a stereo pair, m.
+        rectified: Entries of R and P that differ from the identity and K.
+    """
+
+    def __init__(
+        self,
+        lens: Lens,
+        frame: str,
+        *,
+        focal_length: float = 0.0,
+        centre: tuple[float, float] = (0.0, 0.0),
+        baseline: float = 0.0,
+        rectified: Rectified = _PLAIN,
+    ) -> None:
+        self._frame = frame
+        self.width, self.height = lens.intrinsics.width, lens.intrinsics.height
+        focal = focal_length or lens.focal
+        cx = centre[0] or (self.width + 1) / 2
+        cy = centre[1] or (self.height + 1) / 2
+        self.info = message_class(INFO)(
+            header=header(0, frame),
+            height=self.height,
+            width=self.width,
+            distortion_model="plumb_bob",
+            d=np.array(lens.distortion.coefficients, dtype=float),
+            k=np.array([focal, 0, cx, 0, focal, cy, 0, 0, 1]),
+            r=np.eye(3).ravel() if rectified.turn is None else np.array(rectified.turn),
+            p=np.array(
+                [
+                    *(_or_default(rectified.fx, focal), 0, _or_default(rectified.cx, cx)),
+                    _or_default(rectified.tx, -focal * baseline),
+                    *(
+                        0,
+                        _or_default(rectified.fy, focal),
+                        _or_default(rectified.cy, cy),
+                        rectified.ty,
+                    ),
+                    *(0, 0, 1, 0),
+                ],
+                dtype=float,
+            ),
+            binning_x=0,
+            binning_y=0,
+            roi=message_class("sensor_msgs/msg/RegionOfInterest")(
+                x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
+            ),
+        )
+        """The published message without its stamp."""
+        self._response = service_classes(SET_INFO)[1]
+
+    def message(self, now: int) -> Any:
+        """Returns the message for a time in ns."""
+        return dataclasses.replace(self.info, header=header(now, self._frame))
+
+    def set(self, request: Any) -> Any:
+        """Serves ``set_camera_info``: replaces the published message. The image does not change."""
+        given = request.camera_info
+        if (given.width, given.height) != (self.width, self.height):
+            return self._response(
+                success=False,
+                status_message=f"the calibration is for {given.width} x {given.height} pixels, "
+                f"but the camera has {self.width} x {self.height}",
+            )
+        self.info = given
+        return self._response(success=True, status_message="")
+
+
+def _or_default(value: float | None, default: float) -> float:
+    return default if value is None else value

@@ -1,0 +1,1 @@
+"""Drives: from velocity commands to joint commands, and odometry."""

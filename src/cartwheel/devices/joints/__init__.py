@@ -1,0 +1,1 @@
+"""Joints: trajectories and PID controllers."""

@@ -1,0 +1,1 @@
+"""How robot descriptions specify devices: tags and parameters, one folder for each dialect."""

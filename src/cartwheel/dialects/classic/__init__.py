@@ -1,0 +1,1 @@
+"""Plugins of Gazebo Classic and gazebo_ros_pkgs."""

@@ -1,0 +1,353 @@
+"""``libgazebo_ros_camera.so``: raw and compressed images with their calibration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar, TypeVar
+
+from cartwheel.codes import devices
+from cartwheel.description.model import CameraIntrinsics
+from cartwheel.description.sdf.sensors import MOST_BENT
+from cartwheel.devices.cameras.depth import DepthOptions
+from cartwheel.devices.cameras.eye import Eye, EyeTopics, joined
+from cartwheel.devices.cameras.info import Rectified
+from cartwheel.devices.cameras.lens import Distortion
+from cartwheel.dialects.camera_base import CameraBase
+from cartwheel.dialects.tags import tag, vector
+
+_NINE = 9
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CameraParameters:
+    camera_name: str = tag(
+        "cameraName",
+        "camera_name",
+        default="",
+        doc="Namespace of the topics. Default: the sensor's name, or no namespace if other "
+        "tags have ROS 1 spellings such as `imageTopicName`.",
+    )
+    image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
+    info_topic: str = tag(
+        "cameraInfoTopicName", default="camera_info", doc="Topic of the CameraInfo messages."
+    )
+    frame: str = tag(
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame ID of the messages. Default: the sensor's link.",
+    )
+    update_rate: float = tag(
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Frame rate, at most the sensor's rate. 0: the sensor's rate.",
+    )
+    hack_baseline: float = tag(
+        "hackBaseline",
+        "hack_baseline",
+        default=0.0,
+        unit="m",
+        doc="Distance to the left camera of a stereo pair, for the projection matrix P.",
+    )
+    focal_length: float = tag(
+        "focalLength",
+        "focal_length",
+        default=0.0,
+        unit="px",
+        doc="Focal length in the camera matrix K. 0: computed from the field of view.",
+    )
+    cx: float = tag(
+        "Cx", "cx", default=0.0, unit="px", doc="x of the principal point. 0: (width + 1) / 2."
+    )
+    cy: float = tag(
+        "Cy", "cy", default=0.0, unit="px", doc="y of the principal point. 0: (height + 1) / 2."
+    )
+    cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="No effect.")
+    k1: float = tag(
+        "distortionK1",
+        "distortion_k1",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Radial distortion coefficient k1. The sensor's `<distortion>` takes precedence.",
+    )
+    k2: float = tag(
+        "distortionK2",
+        "distortion_k2",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Radial distortion coefficient k2.",
+    )
+    k3: float = tag(
+        "distortionK3",
+        "distortion_k3",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Radial distortion coefficient k3.",
+    )
+    t1: float = tag(
+        "distortionT1",
+        "distortion_t1",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Tangential distortion coefficient t1.",
+    )
+    t2: float = tag(
+        "distortionT2",
+        "distortion_t2",
+        default=0.0,
+        most=MOST_BENT,
+        doc="Tangential distortion coefficient t2.",
+    )
+    auto_distortion: bool = tag(
+        "autoDistortion",
+        "auto_distortion",
+        default=False,
+        doc="No effect: the distortion is always rendered.",
+    )
+    border_crop: bool = tag(
+        "borderCrop",
+        "border_crop",
+        default=True,
+        doc="No effect: the image has no black borders.",
+    )
+    rectification: str = tag(
+        "rectification_matrix",
+        default="",
+        doc="Rectification matrix R: nine numbers, row by row (ROS 2). Default: identity.",
+    )
+    p_fx: float | None = tag(
+        "P_fx",
+        default=None,
+        unit="px",
+        doc="fx in the projection matrix P (ROS 2). Default: fx in K.",
+    )
+    p_fy: float | None = tag(
+        "P_fy",
+        default=None,
+        unit="px",
+        doc="fy in the projection matrix P (ROS 2). Default: fy in K.",
+    )
+    p_cx: float | None = tag(
+        "P_cx",
+        default=None,
+        unit="px",
+        doc="cx in the projection matrix P (ROS 2). Default: cx in K.",
+    )
+    p_cy: float | None = tag(
+        "P_cy",
+        default=None,
+        unit="px",
+        doc="cy in the projection matrix P (ROS 2). Default: cy in K.",
+    )
+    p_tx: float | None = tag(
+        "Tx",
+        default=None,
+        doc="Tx in the projection matrix P (ROS 2). Default: -fx times the baseline.",
+    )
+    p_ty: float = tag("Ty", default=0.0, doc="Ty in the projection matrix P (ROS 2).")
+    trigger_topic: str = tag(
+        "triggerTopicName",
+        default="image_trigger",
+        doc="Topic of the Empty messages that trigger an image.",
+    )
+    triggered: bool = tag(
+        "triggered", default=False, doc="Publish an image only after a trigger message."
+    )
+
+
+P = TypeVar("P", bound=CameraParameters)
+
+
+class RosCamera(CameraBase[P]):
+    """Base class of the camera plugins in gazebo_plugins."""
+
+    waits: ClassVar[bool] = False
+    """Whether images are always triggered."""
+
+    @property
+    def is_ros2(self) -> bool:
+        """Whether the tag is written for gazebo_plugins in ROS 2."""
+        tags = [child.tag for child in self.tag.element.children]
+        return "ros" in tags or (
+            any("_" in name for name in tags) and all(name.islower() for name in tags)
+        )
+
+    def _asked_rate(self) -> float:
+        return self.config.update_rate
+
+    def _base(self) -> str:
+        """Namespace of all topics. Default: the sensor's name in ROS 2, none in ROS 1."""
+        assert self.sensor is not None
+        if self.config.camera_name:
+            return self.config.camera_name
+        written_for_ros1 = not self.is_ros2 and any(
+            child.tag != child.tag.lower() for child in self.tag.element.children
+        )
+        return "" if written_for_ros1 else self.sensor.name
+
+    def _lenses(self) -> Sequence[tuple[CameraIntrinsics, str]]:
+        """Returns each lens with the namespace of its topics."""
+        assert self.sensor is not None
+        base = self._base()
+        if self.sensor.type not in ("multicamera", "multi_camera"):
+            return [(self.sensor.cameras[0], base)]
+        lenses = []
+        for index, lens in enumerate(self.sensor.cameras):
+            side = lens.name or str(index)
+            if not self.is_ros2:
+                side = next((word for word in ("left", "right") if word in lens.name), side)
+            lenses.append((lens, joined(base, side)))
+        return lenses
+
+    def _open_eyes(self) -> Iterator[Eye]:
+        config, lenses = self.config, self._lenses()
+        distortion = Distortion(
+            k1=config.k1, k2=config.k2, p1=config.t1, p2=config.t2, k3=config.k3
+        )
+        rectified = self._rectified()
+        for lens, base in lenses:
+            left = len(lenses) > 1 and "left" in lens.name
+            yield self._eye(
+                lens,
+                EyeTopics(
+                    image=joined(base, config.image_topic),
+                    info=joined(base, config.info_topic),
+                    base=base,
+                    adjustable=not self.is_ros2,
+                ),
+                frame=config.frame,
+                distortion=distortion,
+                focal_length=config.focal_length,
+                centre=(config.cx, config.cy),
+                baseline=0.0 if left else config.hack_baseline,
+                rectified=rectified,
+            )
+
+    def _rectified(self) -> Rectified:
+        config = self.config
+        turn = None
+        if config.rectification:
+            element = self.tag.element.find("rectification_matrix") or self.tag.element
+            turn = vector(replace(element, text=config.rectification), _NINE)
+        return Rectified(
+            turn=turn,
+            fx=config.p_fx,
+            fy=config.p_fy,
+            cx=config.p_cx,
+            cy=config.p_cy,
+            tx=config.p_tx,
+            ty=config.p_ty,
+        )
+
+    def _trigger_topics(self) -> list[str]:
+        config = self.config
+        if not (self.waits or config.triggered):
+            return []
+        # In ROS 2 all lenses share one trigger.
+        bases = [self._base()] if self.is_ros2 else [base for _, base in self._lenses()]
+        return [joined(base, config.trigger_topic) for base in bases]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DepthByTypeParameters(CameraParameters):
+    min_depth: float = tag(
+        "min_depth",
+        default=0.4,
+        unit="m",
+        doc="For sensors of type depth: depths at or below this value are -inf.",
+    )
+    max_depth: float = tag(
+        "max_depth",
+        default=math.inf,
+        unit="m",
+        doc="For sensors of type depth: depths at or above this value are inf.",
+    )
+
+
+class Camera(RosCamera[DepthByTypeParameters]):
+    """Publishes the images of a camera sensor.
+
+    The sensor looks along its x axis. Images are rendered only while one of the topics has
+    subscribers. The topics are in the namespace ``<cameraName>``. Each camera of a ``multicamera``
+    sensor has separate topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the
+    plugin also publishes depth images and points.
+
+    ``image_raw/compressed`` contains JPEG or PNG images. The service ``set_camera_info`` replaces
+    the published CameraInfo and does not change the image. If the plugin tag is written for ROS 1,
+    ``imager_rate`` and the compression parameters can be changed with dynamic_reconfigure.
+
+    The image is distorted with the sensor's ``<distortion>``, or else with the plugin's
+    coefficients. ``camera_info`` contains the same coefficients.
+
+    Original plugin: ``gazebo_ros_camera`` (with ``gazebo_ros_camera_utils``) in the package
+    ``gazebo_plugins``, for ROS 1 and ROS 2.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_camera.so",
+        "libgazebo_ros_multicamera.so",
+    )
+    parameters: ClassVar[type] = DepthByTypeParameters
+
+    def _depth_options(self) -> DepthOptions | None:
+        assert self.sensor is not None
+        if self.sensor.type not in ("depth", "depth_camera", "rgbd_camera"):
+            return None
+        base, config = self._base(), self.config
+        return DepthOptions(
+            depth=joined(base, "depth/image_raw"),
+            info=joined(base, "depth/camera_info"),
+            points=joined(base, "points"),
+            nearest=config.min_depth,
+            furthest=config.max_depth,
+            beyond="inf",
+            compressed=True,
+        )
+
+
+class TriggeredCamera(Camera):
+    """Publishes one image for each message on ``<cameraName>/image_trigger``.
+
+    Tags and topics are the same as for ``libgazebo_ros_camera.so``. Original plugins:
+    ``gazebo_ros_triggered_camera`` and ``gazebo_ros_triggered_multicamera`` in the package
+    ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_triggered_camera.so",
+        "libgazebo_ros_triggered_multicamera.so",
+    )
+    waits: ClassVar[bool] = True
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ProsilicaParameters(CameraParameters):
+    poll_service: str = tag(
+        "pollServiceName", default="request_image", doc="Not supported: the camera always streams."
+    )
+
+
+class Prosilica(RosCamera[ProsilicaParameters]):
+    """Publishes the images of a Prosilica camera in streaming mode.
+
+    Topics are the same as for ``libgazebo_ros_camera.so``. Setting the parameter ``trigger_mode``
+    to ``polled`` has no effect and causes a warning. Original plugin: ``gazebo_ros_prosilica`` in
+    the package ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)
+    parameters: ClassVar[type] = ProsilicaParameters
+
+    def configure(self) -> None:
+        super().configure()
+        scope = f"{self.namespace}/{self._base()}"
+        if self.graph.parameters.search("trigger_mode", scope) == "polled":
+            self.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                'the parameter trigger_mode "polled" has no effect: the camera streams',
+                values={"parameter": "trigger_mode"},
+            )

@@ -1,0 +1,226 @@
+"""``libgazebo_ros_diff_drive.so``: differential drive with odometry, TF and joint states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from cartwheel.codes import devices
+from cartwheel.devices.drives.odometry import NO_COVARIANCE, Odometry, planar_covariance
+from cartwheel.devices.drives.wheel_states import JointStates, WheelTransforms
+from cartwheel.dialects.tags import tag
+from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.errors import PluginError
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DiffDriveParameters:
+    left_joint: tuple[str, ...] = tag(
+        "leftJoint",
+        "left_joint",
+        default=("left_joint",),
+        doc="Joint of the left wheel. Repeat the tag for each pair.",
+    )
+    right_joint: tuple[str, ...] = tag(
+        "rightJoint",
+        "right_joint",
+        default=("right_joint",),
+        doc="Joint of the right wheel. Repeat the tag for each pair.",
+    )
+    pairs: int = tag("num_wheel_pairs", default=1, doc="Number of wheel pairs.")
+    wheel_separation: tuple[float, ...] = tag(
+        "wheelSeparation",
+        "wheel_separation",
+        default=(0.34,),
+        unit="m",
+        doc="Distance between the left and right wheel. Repeat the tag for each pair. The "
+        "last value applies to the remaining pairs.",
+    )
+    wheel_diameter: tuple[float, ...] = tag(
+        "wheelDiameter",
+        "wheel_diameter",
+        default=(0.15,),
+        unit="m",
+        doc="Diameter of both wheels. Repeat the tag for each pair. The last value applies "
+        "to the remaining pairs.",
+    )
+    wheel_torque: float = tag(
+        "wheelTorque",
+        "max_wheel_torque",
+        "torque",
+        default=5.0,
+        unit="N m",
+        doc="Maximum torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
+    )
+    wheel_acceleration: float = tag(
+        "wheelAcceleration",
+        "max_wheel_acceleration",
+        default=0.0,
+        unit="m/s²",
+        doc="Maximum acceleration of the wheels' commanded rim speed. 0: no limit.",
+    )
+    command_topic: str = tag(
+        "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
+    )
+    odometry_topic: str = tag(
+        "odometryTopic", "odometry_topic", default="odom", doc="Topic of the odometry."
+    )
+    odometry_frame: str = tag(
+        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
+    )
+    base_frame: str = tag(
+        "robotBaseFrame",
+        "robot_base_frame",
+        default="base_footprint",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
+    )
+    update_rate: float = tag(
+        "updateRate",
+        "update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
+    )
+    source: Literal["world", "encoder", "0", "1"] = tag(
+        "odometrySource",
+        "odometry_source",
+        default="world",
+        doc="Source of the odometry. `world` (or `1`): ground-truth pose in the world; `encoder` "
+        "(or `0`): wheel rotation.",
+    )
+    publish_tf: bool = tag(
+        "publishTf",
+        "publishTF",
+        default=True,
+        doc="Publish the odometry and its transform. If false, `<publish_odom>` and "
+        "`<publishOdomTF>` have no effect.",
+    )
+    publish_odom: bool | None = tag(
+        "publish_odom",
+        default=None,
+        doc="Publish the odometry. Default: `true`, or `false` if the plugin tag is written "
+        "for ROS 2.",
+    )
+    publish_odom_tf: bool | None = tag(
+        "publishOdomTF",
+        "publish_odom_tf",
+        default=None,
+        doc="Publish the transform of the odometry. Default: `true`, or `false` if the "
+        "plugin tag is written for ROS 2.",
+    )
+    publish_wheel_tf: bool = tag(
+        "publishWheelTF",
+        "publish_wheel_tf",
+        default=False,
+        doc="Publish the transforms of the wheels.",
+    )
+    publish_joint_state: bool = tag(
+        "publishWheelJointState",
+        default=False,
+        doc="Publish the positions and velocities of the wheels on `joint_states`.",
+    )
+    covariance_x: float = tag(
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
+    )
+    covariance_y: float = tag(
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
+    )
+    legacy_mode: bool = tag(
+        "legacyMode",
+        default=False,
+        doc="Reverse the turning direction, as in old releases of Gazebo's plugin.",
+    )
+
+
+class DiffDrive(WheelDrive):
+    """Drives pairs of wheels from Twist commands and publishes odometry.
+
+    A velocity servo with the maximum torque ``<wheelTorque>`` turns each wheel. A command stays in
+    effect until the next command.
+
+    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` counts as written
+    for ROS 2, any other as written for ROS 1. For ROS 1, the model's name is the namespace of the
+    topics if the model is part of a world file and ``<robotNamespace>`` is missing. Original
+    plugin: ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
+    empty_is_model: ClassVar[bool] = True
+    prefixes_by_namespace: ClassVar[bool] = True
+    parameters: ClassVar[type] = DiffDriveParameters
+
+    def configure(self) -> None:
+        config: DiffDriveParameters = self.config
+        element = self.tag.element
+        self.check_above_zero(wheelTorque=config.wheel_torque)
+        if element.find("torque") and not element.find("wheelTorque"):
+            self.warn(
+                devices.PLUGIN_PARAMETER_OBSOLETE,
+                "<torque> is read as <wheelTorque>; Gazebo 11 ignores it and uses 5 N m",
+                severity="info",
+                values={"parameter": "torque"},
+            )
+        self._take_wheels(self._wheel_pairs(), torque=config.wheel_torque)
+        rate = config.update_rate
+        # The ROS 2 plugin of the same name publishes only on request, without the model's name.
+        ros2 = any(element.find(name) for name in ("left_joint", "right_joint", "ros"))
+        if not ros2:
+            self.under_model()
+        publishes_odom = not ros2 if config.publish_odom is None else config.publish_odom
+        publishes_tf = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
+        covariance = planar_covariance(
+            config.covariance_x, config.covariance_y, config.covariance_yaw
+        )
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic if config.publish_tf and publishes_odom else None,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=rate,
+                transform=config.publish_tf and publishes_tf,
+                wheels=WheelTransforms(self, self.joints) if config.publish_wheel_tf else None,
+                pose_covariance=covariance,
+                twist_covariance=covariance if ros2 else NO_COVARIANCE,
+            )
+        )
+        if config.publish_joint_state:
+            # In Gazebo's order: right before left.
+            order = [self.joints[i ^ 1] for i in range(len(self.joints))]
+            self.joint_states = JointStates(self, order, rate=rate)
+        self._run_wheels(
+            command_topic=config.command_topic,
+            base=config.base_frame,
+            encoded=config.source in ("encoder", "0"),
+            control_rate=rate,
+            rate=rate,
+            acceleration=config.wheel_acceleration,
+            reverse=config.legacy_mode,
+        )
+
+    def _wheel_pairs(self) -> list[WheelPair]:
+        config: DiffDriveParameters = self.config
+        lefts, rights = config.left_joint, config.right_joint
+        if not len(lefts) == len(rights) == config.pairs:
+            raise PluginError(
+                f"the numbers of left and right wheel joints must equal the number of wheel pairs, "
+                f"{config.pairs} (got {len(lefts)} left, {len(rights)} right)",
+                code=devices.WHEELS_UNPAIRED,
+                origin=self.tag.origin,
+                hint="Set <num_wheel_pairs> to the number of pairs of left and right wheels.",
+                values={"left": len(lefts), "right": len(rights)},
+            )
+        separations, diameters = config.wheel_separation, config.wheel_diameter
+        return [
+            WheelPair(
+                left=left.strip(),
+                right=right.strip(),
+                separation=separations[min(index, len(separations) - 1)],
+                diameter=diameters[min(index, len(diameters) - 1)],
+            )
+            for index, (left, right) in enumerate(zip(lefts, rights, strict=True))
+        ]

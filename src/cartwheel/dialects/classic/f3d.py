@@ -1,0 +1,55 @@
+"""``libgazebo_ros_f3d.so``: the external force and torque on a link."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+from cartwheel.messages import header, message_class
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class F3DParameters:
+    body: str = tag("bodyName", doc="Link on which the wrench is measured.")
+    topic: str = tag(
+        "topicName",
+        default="f3d",
+        doc="Topic of the WrenchStamped messages. In Gazebo, this tag is required.",
+    )
+    frame: str = tag(
+        "frameName",
+        default="world",
+        doc="Frame ID of the messages. The values are always in the world frame.",
+    )
+
+
+class F3D(Plugin[F3DParameters]):
+    """Publishes the force and torque that contacts, attached objects and wrenches exert on a link.
+
+    Objects can be attached by plugins such as grippers, and wrenches applied by plugins or
+    services.
+
+    The torque is about the link's centre of mass. Both vectors are in the world frame. Gravity and
+    joint reaction forces are not included. A message is published at every step. Original plugin:
+    ``gazebo_ros_f3d`` in the package ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)
+    parameters: ClassVar[type] = F3DParameters
+
+    def configure(self) -> None:
+        self._link = self.part.link(self.config.body, origin=self.tag.origin)
+        self.part.feel(self.config.body)
+        self._frame = self.frame(self.config.frame)
+        self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
+        self._Wrench = message_class("geometry_msgs/msg/Wrench")
+        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
+        self._publisher = self.advertise(self.config.topic, "geometry_msgs/msg/WrenchStamped")
+        self.part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        force, torque = self._link.load()
+        wrench = self._Wrench(self._Vector3(*force.tolist()), self._Vector3(*torque.tolist()))
+        self._publisher.publish(self._WrenchStamped(header(self.part.time_ns, self._frame), wrench))

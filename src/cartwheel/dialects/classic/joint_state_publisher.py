@@ -1,0 +1,130 @@
+"""``libgazebo_ros_joint_state_publisher.so`` and its gz-sim counterpart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.codes import running
+from cartwheel.devices.drives.wheel_states import JointStates
+from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+from cartwheel.simulation.handles import JointHandle
+
+
+def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
+    """Returns the joints in the tag, or all movable joints if the tag is empty."""
+    description = plugin.part.description
+    if not names:
+        names = [joint.name for joint in description.joints if joint.drivable]
+    handles = []
+    for name in names:
+        joint = description.joint(name)
+        if joint is not None and joint.type == "fixed":
+            plugin.warn(
+                running.JOINT_WITHOUT_STATE,
+                f'joint "{name}" is fixed, so it has no state to publish',
+                severity="info",
+                values={"joint": name},
+            )
+        else:
+            handles.append(plugin.part.joint(name, origin=plugin.tag.origin))
+    return handles
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointStatePublisherParameters:
+    names: tuple[str, ...] = tag(
+        "jointName",
+        "joint_name",
+        default=(),
+        doc="Joints to publish, separated by commas. Default: all movable joints.",
+    )
+    update_rate: float = tag(
+        "updateRate",
+        "update_rate",
+        default=100.0,
+        unit="Hz",
+        doc="Publish rate. 0: every step.",
+    )
+
+
+class JointStatePublisher(Plugin[JointStatePublisherParameters]):
+    """Publishes positions and velocities of joints on ``joint_states``.
+
+    The topic is in the plugin's namespace. As in Gazebo Classic, the namespace is the model's name
+    if ``<robotNamespace>`` is empty, or if it is missing and the model is part of a world file. A
+    plugin tag for ROS 2, which contains ``<ros>``, ``<joint_name>`` or ``<update_rate>``, publishes
+    on ``/joint_states`` by default. Original plugin: ``gazebo_ros_joint_state_publisher`` in the
+    package ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
+    parameters: ClassVar[type] = JointStatePublisherParameters
+    empty_is_model: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        config, element = self.config, self.tag.element
+        self.check_not_negative("update_rate")
+        ros2 = any(element.find(name) for name in ("ros", "joint_name", "update_rate"))
+        if not ros2:
+            self.under_model()
+        names = [name.strip() for text in config.names for name in text.split(",")]
+        self._states = JointStates(
+            self,
+            _joints(self, [name for name in names if name]),
+            rate=config.update_rate or None,
+            velocities=True,
+        )
+        self.part.schedule(
+            config.update_rate,
+            after=lambda: self._states.publish(self.part.time_ns),
+            active=self._states.wanted,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzJointStatePublisherParameters:
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the JointState messages. "
+        "Default: `/world/<world>/model/<model>/joint_state`.",
+    )
+    names: tuple[str, ...] = tag(
+        "joint_name",
+        default=(),
+        doc="Joint to publish. Repeat the tag for each joint. Default: all movable joints.",
+    )
+    update_rate: float = tag(
+        "update_rate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+    )
+
+
+class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
+    """Publishes positions, velocities and efforts of joints.
+
+    Original plugin: ``JointStatePublisher`` in gz-sim.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-state-publisher-system",)
+    parameters: ClassVar[type] = GzJointStatePublisherParameters
+
+    def configure(self) -> None:
+        config, part = self.config, self.part
+        self.check_not_negative("update_rate")
+        topic = config.topic or f"/world/{part.world.name}/model/{part.name}/joint_state"
+        self._states = JointStates(
+            self,
+            _joints(self, [name.strip() for name in config.names]),
+            topic=gz_name(self, topic, ""),
+            rate=config.update_rate or None,
+            velocities=True,
+            efforts=True,
+        )
+        part.schedule(
+            config.update_rate,
+            after=lambda: self._states.publish(part.time_ns),
+            active=self._states.wanted,
+        )

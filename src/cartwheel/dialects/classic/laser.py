@@ -1,0 +1,75 @@
+"""``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so``: laser scanners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.codes import devices
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.scan import Scanner
+from cartwheel.dialects.scan_messages import laser_scan
+from cartwheel.dialects.tags import tag
+from cartwheel.messages import header
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LaserParameters:
+    topic: str = tag("topicName", "topic_name", default="scan", doc="Topic of the scans.")
+    frame: str = tag(
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame ID of the messages. Default: the sensor's link.",
+    )
+    update_rate: float = tag(
+        "updateRate",
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="No effect: the sensor's `<update_rate>` applies.",
+    )
+
+
+class Laser(Plugin[LaserParameters]):
+    """Publishes the ranges of a ray sensor as a LaserScan.
+
+    As in Gazebo, a ``ray`` sensor measures the collision geometry, and a ``gpu_ray`` sensor
+    measures the visual geometry. All rays are measured simultaneously, so ``time_increment`` and
+    ``scan_time`` are 0. If the sensor has several rows, only the middle row is published.
+
+    Original plugins: ``gazebo_ros_laser`` and ``gazebo_ros_gpu_laser`` in the package
+    ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros_laser.so",
+        "libgazebo_ros_gpu_laser.so",
+    )
+    parameters: ClassVar[type] = LaserParameters
+    empty_is_model: ClassVar[bool] = True
+    for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "ray"
+    prefixes_by_namespace: ClassVar[bool] = True
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        self._scanner = Scanner(self.part, self.sensor)
+        rows = self._scanner.pattern.vertical.count
+        if rows > 1:
+            self.warn(
+                devices.SENSOR_SETTING_IGNORED,
+                f"a LaserScan has a single row, so only the middle row of {rows} is published",
+                values={"setting": "vertical", "rows": rows},
+            )
+        self._frame = self.frame(self.config.frame or self.sensor.link)
+        rate = self.sensor.update_rate
+        self._publisher = self.advertise(
+            self.config.topic, "sensor_msgs/msg/LaserScan", rate=rate or None, qos="sensor"
+        )
+        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def _publish(self) -> None:
+        moment = header(self.part.time_ns, self._frame)
+        scan = self._scanner.measure()
+        self._publisher.publish(laser_scan(moment, self._scanner.pattern, scan))

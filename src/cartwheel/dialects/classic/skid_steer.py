@@ -1,0 +1,113 @@
+"""``libgazebo_ros_skid_steer_drive.so``: four driven wheels that turn by skidding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.drives.odometry import Odometry, planar_covariance
+from cartwheel.dialects.tags import tag
+from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SkidSteerParameters:
+    left_front: str = tag(
+        "leftFrontJoint", default="left_front_joint", doc="Joint of the left front wheel."
+    )
+    right_front: str = tag(
+        "rightFrontJoint", default="right_front_joint", doc="Joint of the right front wheel."
+    )
+    left_rear: str = tag(
+        "leftRearJoint", default="left_rear_joint", doc="Joint of the left rear wheel."
+    )
+    right_rear: str = tag(
+        "rightRearJoint", default="right_rear_joint", doc="Joint of the right rear wheel."
+    )
+    wheel_separation: float = tag(
+        "wheelSeparation", default=0.4, unit="m", doc="Distance between the left and right wheels."
+    )
+    wheel_diameter: float = tag(
+        "wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels."
+    )
+    torque: float = tag(
+        "torque", "wheelTorque", default=5.0, unit="N m", doc="Maximum torque of each motor."
+    )
+    command_topic: str = tag(
+        "commandTopic", "topicName", default="cmd_vel", doc="Topic of the Twist commands."
+    )
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
+    base_frame: str = tag(
+        "robotBaseFrame",
+        default="base_footprint",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
+    )
+    update_rate: float = tag(
+        "updateRate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
+    )
+    broadcast_tf: bool = tag(
+        "broadcastTF", default=False, doc="Publish the transform of the odometry."
+    )
+    covariance_x: float = tag(
+        "covariance_x", default=1e-4, unit="m²", doc="Variance of the odometry in x."
+    )
+    covariance_y: float = tag(
+        "covariance_y", default=1e-4, unit="m²", doc="Variance of the odometry in y."
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw", default=1e-2, unit="rad²", doc="Variance of the odometry in yaw."
+    )
+
+
+class SkidSteerDrive(WheelDrive):
+    """Drives a skid-steered robot with four wheels from Twist commands and publishes odometry.
+
+    The robot turns less than commanded because its tyres slide sideways. The odometry is the
+    ground-truth pose. Original plugin: ``gazebo_ros_skid_steer_drive`` in the package
+    ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_skid_steer_drive.so",)
+    parameters: ClassVar[type] = SkidSteerParameters
+
+    def configure(self) -> None:
+        config: SkidSteerParameters = self.config
+        self.check_above_zero(torque=config.torque)
+        pairs = [
+            WheelPair(
+                left=left,
+                right=right,
+                separation=config.wheel_separation,
+                diameter=config.wheel_diameter,
+            )
+            for left, right in (
+                (config.left_front, config.right_front),
+                (config.left_rear, config.right_rear),
+            )
+        ]
+        self._take_wheels(pairs, torque=config.torque)
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=config.update_rate,
+                transform=config.broadcast_tf,
+                pose_covariance=planar_covariance(
+                    config.covariance_x, config.covariance_y, config.covariance_yaw
+                ),
+            )
+        )
+        self._run_wheels(
+            command_topic=config.command_topic,
+            base=config.base_frame,
+            encoded=False,
+            control_rate=config.update_rate,
+            rate=config.update_rate,
+        )

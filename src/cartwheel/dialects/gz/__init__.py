@@ -1,0 +1,1 @@
+"""Systems and sensors of new Gazebo (gz-sim)."""

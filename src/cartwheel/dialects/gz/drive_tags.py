@@ -1,0 +1,229 @@
+"""Common parts of gz-sim's drives: topics under the model's name, limits, odometry."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+from cartwheel.codes import devices
+from cartwheel.devices.drives.odometry import Odometry
+from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+from cartwheel.errors import PluginError
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzDriveParameters:
+    topic: str = tag(
+        "topic", default="", doc="Topic of the Twist commands. Default: `/model/<model>/cmd_vel`."
+    )
+    odom_topic: str = tag(
+        "odom_topic", default="", doc="Topic of the odometry. Default: `/model/<model>/odometry`."
+    )
+    tf_topic: str = tag(
+        "tf_topic",
+        default="",
+        doc="Topic of the odometry's transform (TFMessage). Default: `/model/<model>/tf`.",
+    )
+    frame: str = tag(
+        "frame_id", default="", doc="Frame ID of the odometry. Default: `<model>/odom`."
+    )
+    child_frame: str = tag(
+        "child_frame_id",
+        default="",
+        doc="Child frame ID of the odometry. Default: `<model>/<root link>`.",
+    )
+    rate: float = tag(
+        "odom_publish_frequency",
+        default=50.0,
+        unit="Hz",
+        doc="Publish rate of the odometry. 0: every step.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzCommonLimits(GzDriveParameters):
+    """Limits on linear and angular motion."""
+
+    min_velocity: float | None = tag(
+        "min_velocity",
+        default=None,
+        unit="m/s or rad/s",
+        doc="Minimum linear and angular velocity. Default: no limit.",
+    )
+    max_velocity: float | None = tag(
+        "max_velocity",
+        default=None,
+        unit="m/s or rad/s",
+        doc="Maximum linear and angular velocity. Default: no limit.",
+    )
+    min_acceleration: float | None = tag(
+        "min_acceleration",
+        default=None,
+        unit="m/s² or rad/s²",
+        doc="Minimum linear and angular acceleration. Default: no limit.",
+    )
+    max_acceleration: float | None = tag(
+        "max_acceleration",
+        default=None,
+        unit="m/s² or rad/s²",
+        doc="Maximum linear and angular acceleration. Default: no limit.",
+    )
+    min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Not supported.")
+    max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Not supported.")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzLimitedParameters(GzCommonLimits):
+    """Separate limits for linear and angular motion, which override the common limits."""
+
+    min_linear_velocity: float | None = tag(
+        "min_linear_velocity", default=None, unit="m/s", doc="Overrides `<min_velocity>`."
+    )
+    max_linear_velocity: float | None = tag(
+        "max_linear_velocity", default=None, unit="m/s", doc="Overrides `<max_velocity>`."
+    )
+    min_angular_velocity: float | None = tag(
+        "min_angular_velocity", default=None, unit="rad/s", doc="Overrides `<min_velocity>`."
+    )
+    max_angular_velocity: float | None = tag(
+        "max_angular_velocity", default=None, unit="rad/s", doc="Overrides `<max_velocity>`."
+    )
+    min_linear_acceleration: float | None = tag(
+        "min_linear_acceleration", default=None, unit="m/s²", doc="Overrides `<min_acceleration>`."
+    )
+    max_linear_acceleration: float | None = tag(
+        "max_linear_acceleration", default=None, unit="m/s²", doc="Overrides `<max_acceleration>`."
+    )
+    min_angular_acceleration: float | None = tag(
+        "min_angular_acceleration",
+        default=None,
+        unit="rad/s²",
+        doc="Overrides `<min_acceleration>`.",
+    )
+    max_angular_acceleration: float | None = tag(
+        "max_angular_acceleration",
+        default=None,
+        unit="rad/s²",
+        doc="Overrides `<max_acceleration>`.",
+    )
+    min_linear_jerk: float | None = tag(
+        "min_linear_jerk", default=None, unit="m/s³", doc="Not supported."
+    )
+    max_linear_jerk: float | None = tag(
+        "max_linear_jerk", default=None, unit="m/s³", doc="Not supported."
+    )
+    min_angular_jerk: float | None = tag(
+        "min_angular_jerk", default=None, unit="rad/s³", doc="Not supported."
+    )
+    max_angular_jerk: float | None = tag(
+        "max_angular_jerk", default=None, unit="rad/s³", doc="Not supported."
+    )
+
+
+class Limiter:
+    """Limits a commanded speed and its acceleration.
+
+    Args:
+        velocity: Minimum and maximum, m/s or rad/s; None for no limit.
+        acceleration: Minimum and maximum, m/s² or rad/s²; None for no limit.
+    """
+
+    def __init__(
+        self,
+        velocity: tuple[float | None, float | None],
+        acceleration: tuple[float | None, float | None],
+    ) -> None:
+        self._velocity, self._acceleration = velocity, acceleration
+        self.value = 0.0
+
+    @classmethod
+    def common(cls, limits: GzCommonLimits) -> Limiter:
+        """Returns the limiter for any motion."""
+        return cls(
+            (limits.min_velocity, limits.max_velocity),
+            (limits.min_acceleration, limits.max_acceleration),
+        )
+
+    @classmethod
+    def of(cls, limits: GzLimitedParameters, kind: str) -> Limiter:
+        """Returns the limiter for ``linear`` or ``angular`` motion."""
+
+        def pair(what: str) -> tuple[float | None, float | None]:
+            both = []
+            for bound in ("min", "max"):
+                own = getattr(limits, f"{bound}_{kind}_{what}")
+                both.append(getattr(limits, f"{bound}_{what}") if own is None else own)
+            return both[0], both[1]
+
+        return cls(pair("velocity"), pair("acceleration"))
+
+    def step(self, wanted: float, seconds: float) -> float:
+        """Returns the limited speed after a time step in s."""
+        low, high = self._acceleration
+        change = _clamp(
+            wanted - self.value,
+            None if low is None else low * seconds,
+            None if high is None else high * seconds,
+        )
+        self.value = _clamp(self.value + change, *self._velocity)
+        return self.value
+
+
+def _clamp(value: float, low: float | None, high: float | None) -> float:
+    if low is not None:
+        value = max(value, low)
+    return value if high is None else min(value, high)
+
+
+def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
+    """Warns about jerk limits, which are not supported, and checks the other limits.
+
+    Raises:
+        PluginError: A minimum exceeds its maximum.
+    """
+    for field in dataclasses.fields(limits):
+        value = getattr(limits, field.name)
+        if value is not None and "jerk" in field.name:
+            plugin.warn(
+                devices.PLUGIN_PARAMETER_IGNORED,
+                f"<{field.name}> has no effect: jerk is not limited",
+                values={"parameter": field.name},
+            )
+        if value is not None and field.name.startswith("min_"):
+            most = getattr(limits, field.name.replace("min_", "max_"))
+            if most is not None and value > most:
+                raise PluginError(
+                    f"<{field.name}> must not exceed its maximum {most:g} (got {value:g})",
+                    code=devices.PLUGIN_RANGE_REVERSED,
+                    origin=plugin.place_of(field.name),
+                    values={"parameter": field.name, "value": value, "most": most},
+                )
+
+
+def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
+    """Returns the global name of a gz-sim topic; the default is under the model's name."""
+    return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
+
+
+def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:
+    """Creates the odometry of a gz-sim drive.
+
+    Raises:
+        PluginError: The rate is negative.
+    """
+    plugin.check_not_negative("rate")
+    name = plugin.part.name
+    return plugin.keep(
+        Odometry(
+            plugin,
+            topic=gz_name(plugin, config.odom_topic, "odometry"),
+            frame=config.frame or f"{name}/odom",
+            base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
+            rate=config.rate,
+            transform=True,
+            tf_topic=gz_name(plugin, config.tf_topic, "tf"),
+        )
+    )

@@ -1,0 +1,113 @@
+"""Sensors without a plugin, which gz-sim's systems publish by type."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable
+from typing import Any
+
+from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.tags import tag
+from cartwheel.simulation import Part
+
+SYSTEMS = {
+    "gz-sim-sensors-system": (
+        "camera",
+        "depth",
+        "depth_camera",
+        "rgbd_camera",
+        "thermal_camera",
+        "wide_angle_camera",
+        "segmentation_camera",
+        "boundingbox_camera",
+        "gpu_lidar",
+        "gpu_ray",
+        "lidar",
+        "ray",
+    ),
+    "gz-sim-imu-system": ("imu",),
+    "gz-sim-contact-system": ("contact",),
+    "gz-sim-navsat-system": ("navsat", "gps"),
+    "gz-sim-magnetometer-system": ("magnetometer",),
+    "gz-sim-altimeter-system": ("altimeter",),
+    "gz-sim-logical-camera-system": ("logical_camera",),
+    "gz-sim-air-pressure-system": ("air_pressure",),
+    "gz-sim-air-speed-system": ("air_speed",),
+    "gz-sim-forcetorque-system": ("force_torque",),
+}
+"""Sensor types that each system enables. A system has no other effect: Cartwheel's plugins
+serve the types themselves.
+"""
+
+_NEW_TYPES = {
+    "rgbd_camera",
+    "thermal_camera",
+    "segmentation_camera",
+    "boundingbox_camera",
+    "gpu_lidar",
+    "lidar",
+    "navsat",
+    "air_pressure",
+    "air_speed",
+}
+"""Types that Gazebo Classic does not have."""
+_NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
+
+
+def frame_tag(doc: str = "Frame ID of the messages. Default: the sensor's link.") -> Any:
+    """Returns the field for the frame ID of gz-sim's sensors."""
+    return tag(
+        "gz_frame_id",
+        "ignition_frame_id",
+        default="",
+        doc=doc,
+    )
+
+
+def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
+    """Whether a sensor without a plugin publishes.
+
+    It publishes if its system is loaded, or if it is written for gz-sim. Gazebo Classic's sensors
+    publish nothing to ROS without a plugin.
+
+    Args:
+        sensor: A sensor without a plugin.
+        systems: Short names of the systems in the world and in the model.
+    """
+    if any(sensor.type in SYSTEMS.get(system, ()) for system in systems):
+        return True
+    return sensor.type in _NEW_TYPES or any(sensor.element.find(tag) for tag in _NEW_TAGS)
+
+
+def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
+    """Returns the sensor's element as the tag of the plugin that publishes it.
+
+    Only children that the plugin reads are kept.
+    """
+    tops = {name.split("/")[0] for name in known}
+    element = sensor.element
+    children = tuple(
+        dataclasses.replace(child, text=_spelt(child.text)) if child.tag == "topic" else child
+        for child in element.children
+        if child.tag in tops
+    )
+    return PluginTag(
+        name=sensor.name,
+        filename="",
+        element=type(element)(tag="sensor", children=children, origin=element.origin),
+        origin=sensor.origin,
+    )
+
+
+def _spelt(topic: str) -> str:
+    """Converts a topic to the characters of ROS names; a relative topic remains relative."""
+    topic = topic.strip()
+    spelt = gz_topic(topic) if topic else ""
+    return spelt if topic.startswith("/") else spelt.removeprefix("/")
+
+
+def default_topic(part: Part, sensor: Sensor, last: str) -> str:
+    """Returns the default topic of a sensor: Gazebo's scoped name, ending in `last`."""
+    scope = ("world", part.world.name, "model", part.name, "link", sensor.link)
+    return gz_topic("/".join((*scope, "sensor", sensor.name, last)))

@@ -1,0 +1,1 @@
+"""Plugins that makers of robots and sensors publish."""

@@ -1,0 +1,108 @@
+"""Joints that follow other joints: mimic joints, and the differential of a rocker-bogie chassis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.codes import devices
+from cartwheel.description.model import Mimic
+from cartwheel.description.numbers import MOST_RATIO
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+from cartwheel.errors import PluginError
+from cartwheel.simulation.limits import FARTHEST
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MimicJointParameters:
+    joint: str = tag("joint", default="left_joint", doc="Joint to mimic.")
+    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Joint that mimics `<joint>`.")
+    multiplier: float = tag(
+        "multiplier",
+        default=1.0,
+        most=MOST_RATIO,
+        doc="The position of `<mimicJoint>` is multiplier * position of `<joint>` + offset.",
+    )
+    offset: float = tag(
+        "offset",
+        default=0.0,
+        unit="rad or m",
+        most=FARTHEST,
+        doc="Offset of the position of `<mimicJoint>`.",
+    )
+    max_effort: float = tag(
+        "maxEffort",
+        default=1.0,
+        unit="N m or N",
+        doc="No effect: the joint mimics the position exactly.",
+    )
+    sensitiveness: float = tag(
+        "sensitiveness",
+        default=0.0,
+        unit="rad or m",
+        doc="No effect: the joint mimics even the smallest motion.",
+    )
+    has_pid: str | None = tag(
+        "hasPID", default=None, doc="No effect: the joint mimics the position exactly."
+    )
+
+
+class MimicJoint(Plugin[MimicJointParameters]):
+    """Makes a joint mimic the position of a different joint.
+
+    ``<mimic>`` in a URDF has the same effect without a plugin. Original plugin:
+    ``MimicJointPlugin`` in the package ``roboticsgroup_upatras_gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
+        "libroboticsgroup_gazebo_mimic_joint_plugin.so",
+        "libgazebo_mimic_joint_plugin.so",
+    )
+    parameters: ClassVar[type] = MimicJointParameters
+
+    def configure(self) -> None:
+        config = self.config
+        _check_different(self, config.joint, config.mimic_joint)
+        mimic = Mimic(joint=config.joint, multiplier=config.multiplier, offset=config.offset)
+        self.part.mimic(config.mimic_joint, mimic, origin=self.tag.origin)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DifferentialParameters:
+    first: str = tag("jointA", default="left_joint", doc="First joint.")
+    second: str = tag(
+        "jointB", default="right_joint", doc="Second joint, which turns by the same angle."
+    )
+    force: float = tag(
+        "forceConstant", default=0.0, unit="N m/rad", doc="No effect: the coupling is rigid."
+    )
+
+
+class Differential(Plugin[DifferentialParameters]):
+    """Couples two joints so that their angles are equal, like a rocker-bogie differential.
+
+    The coupling is rigid. In Gazebo, the joints are coupled by a spring with the stiffness
+    ``<forceConstant>``. Original plugin: ``differential_plugin`` in the package
+    ``leo_gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)
+    parameters: ClassVar[type] = DifferentialParameters
+
+    def configure(self) -> None:
+        config = self.config
+        _check_different(self, config.first, config.second)
+        mimic = Mimic(joint=config.first, multiplier=1.0, offset=0.0)
+        self.part.mimic(config.second, mimic, origin=self.tag.origin)
+
+
+def _check_different(plugin: Plugin[Any], joint: str, follower: str) -> None:
+    if joint == follower:
+        raise PluginError(
+            f'joint "{joint}" cannot mimic itself',
+            code=devices.PLUGIN_PARAMETER_INVALID,
+            origin=plugin.tag.origin,
+            values={"joint": joint},
+        )

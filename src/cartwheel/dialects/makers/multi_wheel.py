@@ -1,0 +1,100 @@
+"""``libdiffdrive_plugin_multi_wheel.so``: differential drive with any number of wheels."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.codes import devices
+from cartwheel.devices.drives.odometry import Odometry, planar_covariance
+from cartwheel.dialects.tags import tag
+from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.errors import PluginError
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MultiWheelParameters:
+    left: str = tag(
+        "leftJoints", default="left_joint", doc="Joints of the left wheels, separated by spaces."
+    )
+    right: str = tag(
+        "rightJoints", default="right_joint", doc="Joints of the right wheels, separated by spaces."
+    )
+    separation: float = tag(
+        "wheelSeparation", default=0.34, unit="m", doc="Distance between the left and right wheels."
+    )
+    diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels.")
+    torque: float = tag("torque", default=5.0, unit="N m", doc="Maximum torque of each motor.")
+    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
+    base_frame: str = tag(
+        "robotBaseFrame",
+        default="base_footprint",
+        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        "is used.",
+    )
+    rate: float = tag(
+        "updateRate",
+        default=100.0,
+        unit="Hz",
+        doc="Rate of the control loop and of the topics. 0: every step.",
+    )
+    publish_tf: bool = tag(
+        "publishOdometryTf", default=True, doc="Publish the transform of the odometry."
+    )
+    publish_message: bool = tag("publishOdometryMsg", default=True, doc="Publish the odometry.")
+
+
+class MultiWheelDrive(WheelDrive):
+    """Drives any number of wheels on each side from Twist commands and publishes odometry.
+
+    All wheels on a side turn at the same speed. The odometry is the ground-truth pose. Original
+    plugin: ``diffdrive_plugin_multi_wheel`` in the package ``hector_gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libdiffdrive_plugin_multi_wheel.so",)
+    parameters: ClassVar[type] = MultiWheelParameters
+
+    def configure(self) -> None:
+        config: MultiWheelParameters = self.config
+        left, right = config.left.split(), config.right.split()
+        if not left or not right:
+            raise PluginError(
+                "<leftJoints> and <rightJoints> must each contain a joint",
+                code=devices.WHEELS_UNPAIRED,
+                origin=self.tag.origin,
+                values={"left": len(left), "right": len(right)},
+            )
+        # Extra wheels on one side are paired with the last wheel on the other side.
+        sides = itertools.zip_longest(left, right)
+        pairs = [
+            WheelPair(
+                left=one or left[-1],
+                right=two or right[-1],
+                separation=config.separation,
+                diameter=config.diameter,
+            )
+            for one, two in sides
+        ]
+        self._take_wheels(pairs, torque=config.torque)
+        covariance = planar_covariance(1e-5, 1e-5, 1e-3)
+        self.odometry = self.keep(
+            Odometry(
+                self,
+                topic=config.odometry_topic if config.publish_message else None,
+                frame=config.odometry_frame,
+                base=config.base_frame,
+                rate=config.rate,
+                transform=config.publish_tf,
+                pose_covariance=covariance,
+            )
+        )
+        self._run_wheels(
+            command_topic=config.command_topic,
+            base=config.base_frame,
+            encoded=False,
+            control_rate=config.rate,
+            rate=config.rate,
+        )

@@ -1,0 +1,189 @@
+"""The base class of all plugins: parameters, file names, and the names of a tag."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import ClassVar, Generic, TypeVar
+
+from cartwheel.component import Component, Scope, Shared
+from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.dialects.tags import SMALLEST, invalid, read
+from cartwheel.errors import Origin
+from cartwheel.simulation import Part
+from cartwheel.simulation.limits import FARTHEST
+
+C = TypeVar("C")
+
+
+@dataclass(kw_only=True, slots=True)
+class TagScope(Scope):
+    """The scope of a plugin, whose parameters are tags."""
+
+    tag: PluginTag
+
+    def place_of(self, parameter: str) -> Origin | None:
+        """Returns the file and line of a tag in the plugin, or of the plugin if it is missing."""
+        child = self.tag.element.find(parameter)
+        return child.origin if child is not None else self.tag.origin
+
+
+class Plugin(Component, Generic[C]):
+    """Base class of all plugins.
+
+    Plugins are created before the model is compiled, so that they can request motors. A subclass
+    sets `filenames` and `parameters`. Its `configure` acquires handles, advertises topics and
+    schedules callbacks. Other packages register their plugins under the entry point group
+    ``cartwheel.plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]]
+    """File names without ``lib`` and ``.so``: ``gazebo_ros_diff_drive``."""
+    parameters: ClassVar[type]
+    """A frozen dataclass of `tag` fields."""
+    for_sensor: ClassVar[bool] = False
+    """Whether the plugin belongs inside a ``<sensor>``."""
+    sensor_type: ClassVar[str] = ""
+    """Usual type of that sensor, shown in its documentation. Empty if `serves` is set."""
+    for_world: ClassVar[bool] = False
+    """Whether the plugin belongs directly inside a ``<world>``. Its `part` is then the world's."""
+    empty_is_model: ClassVar[bool] = False
+    """Whether an empty ``<robotNamespace>`` selects the model's name instead of no namespace."""
+    prefixes_by_namespace: ClassVar[bool] = False
+    """Whether frame IDs are prefixed with the namespace if there is no ``tf_prefix``."""
+    serves: ClassVar[tuple[str, ...]] = ()
+    """Types of sensors that the plugin supports without a ``<plugin>``, like gz-sim's systems.
+
+    The parameters of such a plugin are read from the ``<sensor>`` itself.
+    """
+
+    def __init__(self, part: Part, shared: Shared, tag: PluginTag, sensor: Sensor | None) -> None:
+        self.tag = tag
+        self.sensor = sensor
+        super().__init__(self._scope(part, shared, tag))
+        self.config: C
+        self.config, diagnostics = read(self.parameters, tag.element)
+        for diagnostic in diagnostics:
+            part.report(diagnostic)
+        try:
+            self.configure()
+        except Exception:
+            # The subclass's own close may use attributes that configure has not set.
+            Component.close(self)
+            raise
+
+    def _scope(self, part: Part, shared: Shared, tag: PluginTag) -> TagScope:
+        ros = tag.element.find("ros/namespace")
+        plain = tag.element.find("robotNamespace")
+        # As in Gazebo: the tag takes precedence over the spawner's namespace.
+        namespace = part.namespace.rstrip("/")
+        frame_prefix = part.frame_prefix
+        if ros is not None:
+            namespace = ros.text.strip()
+        elif plain is not None:
+            namespace = plain.text.strip() or (part.name if self.empty_is_model else "")
+        if ros is None and self.prefixes_by_namespace and not frame_prefix:
+            frame_prefix = namespace
+        names = (part.name, tag.name)
+        name = tag.filename or tag.name
+        model = f' of model "{part.name}"' if part.name else ""
+        return TagScope(
+            part=part,
+            shared=shared,
+            node="/".join(name for name in names if name) or "world",
+            title=f'plugin "{name}"{model}' if tag.filename else f'sensor "{name}"{model}',
+            origin=tag.origin,
+            namespace=namespace,
+            frame_prefix=frame_prefix,
+            remappings=_remappings(tag),
+            owner=self,
+            tag=tag,
+        )
+
+    @property
+    def namespace(self) -> str:
+        """Namespace of the plugin's topics and services."""
+        return self.scope.namespace
+
+    @namespace.setter
+    def namespace(self, namespace: str) -> None:
+        self.scope.namespace = namespace
+
+    def configure(self) -> None:
+        """Acquires handles, advertises topics and schedules callbacks.
+
+        Raises:
+            PluginError: A parameter is not allowed.
+            UnknownNameError: A link or joint does not exist.
+        """
+        raise NotImplementedError
+
+    def under_model(self) -> None:
+        """Uses the model's name as the namespace if neither the tag nor the spawner specifies one.
+
+        Most Gazebo plugins use no namespace in this case.
+        """
+        element = self.tag.element
+        namespace = element.find("robotNamespace") or element.find("ros")
+        if namespace is None and not self.part.namespace:
+            self.namespace = self.part.name
+
+    def remaps(self, name: str) -> bool:
+        """Whether the tag remaps this private name (``out`` for ``~/out``)."""
+        return name in self.scope.remappings
+
+    def check_above_zero(self, **values: float) -> None:
+        """Checks that parameters, given by their tags, are positive.
+
+        Raises:
+            PluginError: A value is 0 or negative, or too small to divide by.
+        """
+        for name, value in values.items():
+            if value < SMALLEST:
+                least = "positive" if value <= 0 else f"at least {SMALLEST:g}"
+                raise invalid(name, value, least, self.place_of(name))
+
+    def check_not_negative(self, *names: str) -> None:
+        """Checks that parameters, given by their fields, are not negative.
+
+        Fields that the plugin does not have are skipped. Each component of a vector is checked.
+
+        Raises:
+            PluginError: A value is negative.
+        """
+        fields = {each.name: each for each in dataclasses.fields(self.parameters)}
+        for name in names:
+            value = getattr(self.config, name, 0.0)
+            numbers = value if isinstance(value, tuple) else (value,)
+            least = min((each for each in numbers if each is not None), default=0.0)
+            if least < 0:
+                tags: tuple[str, ...] = fields[name].metadata["tags"]
+                written = (each for each in tags if self.tag.element.find(each) is not None)
+                tag = next(written, tags[0])
+                raise invalid(tag, float(least), "at least 0", self.place_of(tag))
+
+    def check_lengths(self, **values: float) -> None:
+        """Checks dimensions of a drive in m, given by their tags.
+
+        Raises:
+            PluginError: A value is 0 or negative, or larger than any robot.
+        """
+        self.check_above_zero(**values)
+        for name, value in values.items():
+            if value > FARTHEST:
+                raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
+
+    @property
+    def input_name(self) -> str:
+        """Name of the plugin's input for manual joint positions."""
+        return self.tag.name or self.node
+
+
+def _remappings(tag: PluginTag) -> dict[str, str]:
+    ros = tag.element.find("ros")
+    pairs = {}
+    for remapping in ros.find_all("remapping") if ros else ():
+        source, separator, target = remapping.text.strip().partition(":=")
+        if separator:
+            pairs[source.removeprefix("~/")] = target.removeprefix("~/")
+    return pairs

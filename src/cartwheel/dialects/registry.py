@@ -1,0 +1,158 @@
+"""Creates the plugins of a model from its tags."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from cartwheel.codes import devices
+from cartwheel.component import Shared
+from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.dialects.catalogue import (
+    plugin_named,
+    plugin_names,
+    plugin_serving,
+    short_name,
+    unloadable,
+)
+from cartwheel.dialects.gz.sensor_tags import own_tag, publishes
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tags_of
+from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
+from cartwheel.errors import (
+    CartwheelError,
+    StaticModelError,
+    UnknownNameError,
+    meant_one,
+)
+from cartwheel.simulation import Part
+from cartwheel.simulation.resident import Behaviour
+
+_Faults = tuple[type[CartwheelError], ...]
+_ANY: _Faults = (CartwheelError,)
+_HARMLESS: _Faults = (StaticModelError,)
+"""Errors after which a plugin is skipped, with a report."""
+
+
+def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behaviour]:
+    """Creates the plugins of a model and reports unsupported ones.
+
+    If a plugin cannot be created, the model is not loaded. These plugins are skipped with a report
+    instead: gz-sim systems in a model that is part of a world, as in Gazebo; plugins for sensors
+    without a ``<plugin>``; plugins that would drive a joint of a static model; and plugins that
+    raise an unexpected exception.
+
+    Args:
+        part: The model's part of the simulation.
+        shared: Objects that all components of the simulation share.
+        lenient: Also skip plugins that refer to an element that the model does not have.
+
+    Raises:
+        CartwheelError: A plugin's parameters are invalid. Plugins created before it are closed.
+    """
+    plugins: list[Plugin[object]] = []
+    sensors = [sensor for link in part.description.links for sensor in link.sensors]
+    pairs: list[tuple[PluginTag, Sensor | None]] = [(tag, None) for tag in part.description.plugins]
+    pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
+    systems = {short_name(tag.filename) for tag in (*part.world.plugins, *part.description.plugins)}
+    in_world = any(model is part.description for model in part.world.models)
+    more: _Faults = (UnknownNameError,) if lenient else ()
+    try:
+        for tag, sensor in pairs:
+            plugin = plugin_named(tag.filename)
+            own_system = in_world and short_name(tag.filename).startswith("gz-sim-")
+            if plugin is None and short_name(tag.filename) in BUILT_IN:
+                continue
+            if plugin is None:
+                _report_unknown(part, tag)
+            elif plugin.for_world or (plugin.for_sensor and sensor is None):
+                place = "world" if plugin.for_world else "sensor"
+                part.report(
+                    devices.PLUGIN_MISPLACED.diagnostic(
+                        f'plugin "{tag.filename}" has no effect here because it belongs inside a '
+                        f"<{place}>",
+                        origin=tag.origin,
+                        values={"name": tag.filename, "place": place},
+                    )
+                )
+            else:
+                forgiven = _ANY if own_system else (*_HARMLESS, *more)
+                plugins += _create(part, shared, plugin, tag, sensor, forgiven=forgiven)
+        alone = [
+            one
+            for one in sensors
+            if one.name not in part.read_sensors
+            and not any(plugin_named(tag.filename) for tag in one.plugins)
+        ]
+        plugins += _serve(part, shared, alone, systems)
+    except Exception:
+        for created in plugins:
+            created.close()
+        raise
+    return list(plugins)
+
+
+def _create(
+    part: Part,
+    shared: Shared,
+    plugin: type[Plugin[object]],
+    tag: PluginTag,
+    sensor: Sensor | None,
+    *,
+    forgiven: _Faults,
+) -> list[Plugin[object]]:
+    """Returns a list of the plugin; empty, with a report, if it cannot be created."""
+    try:
+        return [part.made(lambda: plugin(part, shared, tag, sensor))]
+    except CartwheelError as error:
+        if not isinstance(error, forgiven):
+            raise
+        part.report(left_out(tag, error))
+    except Exception as error:  # noqa: BLE001 - a plugin's own
+        part.report(failed(tag, error))
+    return []
+
+
+def _serve(
+    part: Part, shared: Shared, sensors: Iterable[Sensor], systems: Collection[str]
+) -> Iterator[Plugin[object]]:
+    """Creates plugins for sensors that have no ``<plugin>``."""
+    for sensor in sensors:
+        plugin = plugin_serving(sensor.type)
+        wanted = publishes(sensor, systems)
+        if wanted and plugin is not None:
+            tag = own_tag(sensor, tags_of(plugin.parameters))
+            yield from _create(part, shared, plugin, tag, sensor, forgiven=_ANY)
+            continue
+        if sensor.plugins:
+            # The diagnostic about the unsupported plugin also covers the sensor.
+            continue
+        reason = (
+            (f', and sensors of type "{sensor.type}" publish nothing without a plugin')
+            if wanted
+            else ""
+        )
+        part.report(
+            devices.SENSOR_WITHOUT_PLUGIN.diagnostic(
+                f'sensor "{sensor.name}" has no <plugin>{reason or ", so it publishes nothing"}',
+                severity="warning" if wanted else "info",
+                origin=sensor.origin,
+                values={"sensor": sensor.name, "type": sensor.type},
+            )
+        )
+
+
+def _report_unknown(part: Part, tag: PluginTag) -> None:
+    # The cutoff is high because the names of different plugins are similar.
+    meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
+    broken = unloadable()
+    suggested = f'Did you mean "{meant}"?' if meant else ""
+    part.report(
+        devices.PLUGIN_UNKNOWN.diagnostic(
+            f'plugin "{tag.filename}" is not supported, so it has no effect',
+            severity="warning",
+            origin=tag.origin,
+            hint=" ".join((suggested, *broken)).strip(),
+            values={"name": tag.filename, "meant": meant, "broken": tuple(broken)},
+            mark=tag.filename,
+        )
+    )

@@ -1,0 +1,221 @@
+"""``libgazebo_ros2_control.so`` and ``gz_ros2_control-system``: ROS 2 controllers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from cartwheel.codes import devices, running
+from cartwheel.description.model import Element
+from cartwheel.dialects.ros2_control.components import HardwareComponents
+from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
+from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
+from cartwheel.dialects.ros_control.controller import Rig
+from cartwheel.dialects.ros_control.files import (
+    ControllerFiles,
+    controller_entries,
+    read_ros2,
+    ros2_file,
+)
+from cartwheel.dialects.ros_control.hardware import Hardware
+from cartwheel.dialects.ros_control.interfaces import (
+    SYSTEMS,
+    JointInterfaces,
+    hardware_of,
+    ros2_control,
+    simulated_systems,
+)
+from cartwheel.dialects.ros_control.pid import Gains
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.tags import tag
+from cartwheel.errors import Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ros2ControlParameters:
+    files: tuple[str, ...] = tag(
+        "parameters",
+        default=(),
+        doc="YAML files with the parameters of the controller manager and its controllers.",
+    )
+    manager: str = tag(
+        "controller_manager_name",
+        "controller_manager_node_name",
+        default="controller_manager",
+        doc="Name of the controller manager's node, and of its section in the YAML files.",
+    )
+    hold_joints: bool = tag(
+        "hold_joints", default=True, doc="Hold joints that no controller has commanded yet."
+    )
+    gain: float = tag(
+        "position_proportional_gain",
+        default=0.1,
+        doc="No effect: positions are held as firmly as the joint's effort limit allows.",
+    )
+    description: str = tag(
+        "robot_param",
+        default="robot_description",
+        doc="No effect: the description that contains the plugin is used.",
+    )
+    description_node: str = tag(
+        "robot_param_node",
+        default="",
+        doc="No effect: the description that contains the plugin is used.",
+    )
+
+
+class Ros2Control(ControlPlugin):
+    """Runs the controllers in its YAML files, at the `update_rate` of the controller manager.
+
+    The YAML files are specified by ``<parameters>`` and by the option ``--controllers`` of
+    ``cartwheel run``. Original packages: ``gazebo_ros2_control`` and ``gz_ros2_control``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libgazebo_ros2_control.so",
+        "gz_ros2_control-system",
+        "ign_ros2_control-system",
+    )
+    parameters: ClassVar[type] = Ros2ControlParameters
+
+    def configure(self) -> None:
+        config: Ros2ControlParameters = self.config
+        part = self.part
+        self.namespace = self.namespace.strip("/")
+        own = self.shared.get(ControllerFiles).take()
+        named = [self._path(text) for text in config.files]
+        paths = [*(path for path in named if path is not None), *own]
+        contents = [read_ros2(path, part.description) for path in paths]
+        merged = ros2_file(contents, self.namespace, config.manager)
+        source = ", ".join(str(path) for path in paths)
+        if merged.elsewhere and not merged.manager:
+            self.warn(
+                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+                f"the controller files have parameters for {', '.join(merged.elsewhere)}, but the "
+                f'controller manager is "/{self.namespace}/{config.manager}", so no controller '
+                "starts".replace("//", "/"),
+                values={"nodes": tuple(merged.elsewhere)},
+            )
+        settings = Settings(merged.manager, config.manager, source)
+        rate = settings.number("update_rate", 100.0)
+        if rate <= 0:
+            raise settings.invalid("update_rate", rate, "positive")
+        joints, sensors, notes = ros2_control(part.description)
+        for note in notes:
+            part.report(note)
+        for system in simulated_systems(part.description):
+            self._check_system(system)
+        if not joints:
+            self.warn(
+                devices.CONTROL_WITHOUT_JOINTS,
+                "no <ros2_control> contains a joint, so controllers have no joint to command",
+            )
+        known = {sensor.name for link in part.description.links for sensor in link.sensors}
+        for sensor in sensors:
+            if sensor.name not in known:
+                self.warn(
+                    running.UNKNOWN_SENSOR,
+                    f'the sensor "{sensor.name}" in <ros2_control> has no matching <sensor> in a '
+                    "<gazebo> tag, so nothing is measured",
+                    at=sensor.origin,
+                    values={"name": sensor.name},
+                )
+        entries = controller_entries(merged, self.namespace, source)
+        if paths and not entries and not merged.elsewhere:
+            self.warn(
+                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+                "no parameter specifies a controller type, so no controller starts",
+                at=Origin(file=source),
+            )
+        hardware = Hardware(self, joints, _gains(joints, merged.nodes))
+        hardware.holds = config.hold_joints
+        rig = Rig(
+            self,
+            hardware,
+            namespace=self.namespace,
+            ros2=True,
+            sensors=self._sensors(),
+            push=self._push(entry.type for entry in entries),
+        )
+        manager = self._run(rig, rate)
+        self._start(entries)
+        Ros2ManagerServices(
+            self,
+            manager,
+            name=config.manager,
+            entries=entries,
+            components=HardwareComponents(simulated_systems(part.description), joints, sensors),
+        )
+
+    def _path(self, text: str) -> Path | None:
+        """Returns the file in a ``<parameters>`` tag; None, with a report, if it does not exist."""
+        text = text.strip()
+        path = Path(text)
+        origin = self.tag.origin
+        if not path.is_absolute():
+            # A description from a service has no folder. Like its meshes, it uses the current
+            # folder.
+            path = Path("" if origin.file.startswith("<") else origin.file).parent / path
+        if not path.is_file():
+            self.warn(
+                devices.CONTROLLERS_FILE_UNREADABLE,
+                f'<parameters>: the file "{text}" does not exist, so its controllers do not start',
+                severity="error",
+                values={"file": text},
+            )
+            return None
+        return path
+
+    def _check_system(self, system: Element) -> None:
+        name = hardware_of(system)
+        if name and name not in SYSTEMS:
+            self.warn(
+                devices.HARDWARE_NOT_SIMULATED,
+                f'the hardware "{name}" of <ros2_control name="{system.attribute("name") or ""}"> '
+                f"is not simulated, so its joints are driven as with {SYSTEMS[0]}",
+                at=system.origin,
+                values={"hardware": name},
+            )
+
+
+def _gains(
+    joints: list[JointInterfaces], nodes: Mapping[str, Mapping[str, Any]]
+) -> dict[str, tuple[str, Gains]]:
+    """Returns the PID of each joint whose commands a PID converts to efforts.
+
+    The gains are in the joint's ``<param>`` tags, or in the files under ``pid_gains``. Source:
+    gazebo_ros2_control.
+
+    Raises:
+        PluginError: A gain is not a number.
+    """
+    gains = {}
+    for joint in joints:
+        if not joint.by_pid:
+            continue
+        prefix = f"{joint.by_pid[:3]}_"
+        written: Mapping[str, Any] = {
+            key.removeprefix(prefix): value
+            for key, value in joint.gains.items()
+            if key.startswith(prefix)
+        }
+        for name, values in nodes.items():
+            listed = Settings(values, name).section(f"pid_gains/{joint.by_pid}/{joint.name}")
+            if not written and listed.names():
+                written = {key: listed.raw(key) for key in listed.names()}
+        settings = Settings(written, f"gains of {joint.name}")
+        most = settings.number("max_integral_error", math.inf)
+        gains[joint.name] = (
+            joint.by_pid,
+            Gains(
+                p=settings.number("kp", 0.0),
+                i=settings.number("ki", 0.0),
+                d=settings.number("kd", 0.0),
+                i_min=settings.number("min_integral_error", -most),
+                i_max=most,
+            ),
+        )
+    return gains

@@ -1,0 +1,101 @@
+"""The base class of the ros_control and ros2_control plugins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from cartwheel.codes import running
+from cartwheel.description.model import Sensor
+from cartwheel.devices.drives.rollers import has_rollers
+from cartwheel.dialects.classic.ft_sensor import JointLoad
+from cartwheel.dialects.inertial_unit import InertialUnit
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.ros_control.controller import Rig, SensedLink
+from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
+from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
+from cartwheel.dialects.ros_control.manager import ControllerManager
+from cartwheel.dialects.ros_control.ordering import in_order
+from cartwheel.errors import CartwheelError
+from cartwheel.simulation.pushing import BodyDriveHandle
+
+
+class ControlPlugin(Plugin[Any]):
+    """Runs a controller manager at a rate."""
+
+    manager: ControllerManager | None = None
+
+    def reset(self) -> None:
+        if self.manager is not None:
+            self.manager.reset()
+
+    def close(self) -> None:
+        if self.manager is not None:
+            self.manager.close()
+        super().close()
+
+    def _run(self, rig: Rig, rate: float) -> ControllerManager:
+        """Creates the controller manager and schedules it.
+
+        Args:
+            rig: The robot.
+            rate: Control rate, Hz; 0: every step.
+        """
+        manager = self.manager = ControllerManager(rig)
+        part = self.part
+        rig.period_ns = part.period_ns(rate)
+        nominal = rig.period_ns / 1e9
+        part.schedule(rate, before=lambda: manager.update(part.time_ns, nominal))
+        step_ns = part.period_ns(0)
+        if rig.hardware.follows and rig.period_ns > step_ns:
+            # As in Gazebo, controllers run at their rate, and PIDs of joints at every step.
+            manager.writes = False
+            part.schedule(0, before=lambda: manager.write(part.time_ns, part.period_ns(0) / 1e9))
+        part.schedule(
+            rate, after=lambda: manager.sense(part.time_ns), active=lambda: manager.senses
+        )
+        return manager
+
+    def _sensors(self) -> list[SensedLink]:
+        """Returns the robot's sensors that a broadcaster can publish."""
+        return [
+            SensedLink(name=each.name, type=each.type, sensor=each, unit=self._unit(each))
+            for link in self.part.description.links
+            for each in link.sensors
+            if each.type == "imu" or (each.type == "force_torque" and each.joint)
+        ]
+
+    def _unit(self, sensor: Sensor) -> InertialUnit | JointLoad:
+        if sensor.type == "force_torque":
+            return JointLoad(self.part, sensor)
+        return InertialUnit(
+            self.part, sensor.link, sensor.pose, sensor=sensor, origin=sensor.origin
+        )
+
+    def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:
+        """Returns a servo of the whole robot if one of the controller types needs it."""
+        if has_rollers(self.part.description):
+            return None
+        if any(name in MecanumDriveController.types for name in types):
+            return self.part.body_drive(origin=self.tag.origin)
+        return None
+
+    def _start(self, entries: Iterable[ControllerEntry]) -> None:
+        """Loads and starts controllers. One that cannot be started is reported and skipped."""
+        manager = self.manager
+        assert manager is not None
+        loaded = self.shared.get(ControllerFiles).loaded
+        for entry in in_order(list(entries)):
+            try:
+                loaded.append(manager.load_entry(entry))
+                manager.switch([entry.name], [])
+            except CartwheelError as error:
+                self.part.report(
+                    running.CONTROLLER_NOT_STARTED.because(
+                        f'controller "{entry.name}" is not started',
+                        error,
+                        origin=self.tag.origin,
+                        severity="warning",
+                        values={"controller": entry.name},
+                    )
+                )

@@ -1,0 +1,378 @@
+"""The base class of all controllers."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, ClassVar
+
+from cartwheel.component import Component, Scope
+from cartwheel.description.model import Sensor
+from cartwheel.dialects.classic.ft_sensor import JointLoad
+from cartwheel.dialects.inertial_unit import InertialUnit
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.ros2_control.parameters import ParameterServices
+from cartwheel.dialects.ros_control.chaining import Reference
+from cartwheel.dialects.ros_control.hardware import Hardware, JointHardware
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Severity, Value
+from cartwheel.graph import JointInput, resolve_name
+from cartwheel.messages import message_class
+from cartwheel.simulation.clock import NANOSECONDS, Beat
+from cartwheel.simulation.pushing import BodyDriveHandle
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SensedLink:
+    """A sensor that broadcasters can publish."""
+
+    name: str
+    type: str
+    """``imu`` or ``force_torque``."""
+    sensor: Sensor
+    unit: InertialUnit | JointLoad
+    """Measures the sensor, for all controllers."""
+
+
+class Rig:
+    """The parts of a robot that its controllers share.
+
+    Args:
+        plugin: The plugin of the controller manager.
+        hardware: The joints.
+        namespace: Namespace of the controllers.
+        ros2: Use the names and defaults of ros2_control.
+        sensors: Sensors that broadcasters can publish.
+        push: Servo that moves the whole robot; None if no controller needs one.
+    """
+
+    def __init__(
+        self,
+        plugin: Plugin[Any],
+        hardware: Hardware,
+        *,
+        namespace: str,
+        ros2: bool,
+        sensors: Sequence[SensedLink] = (),
+        push: BodyDriveHandle | None = None,
+    ) -> None:
+        self.plugin = plugin
+        self.hardware = hardware
+        self.namespace = namespace
+        self.ros2 = ros2
+        self.sensors = {each.name: each for each in sensors}
+        self.push = push
+        """Moves a robot whose wheels cannot do so by friction: mecanum wheels without rollers."""
+        self.period_ns = 0
+        """Control period, ns."""
+        self.remappings: dict[str, Mapping[str, str]] = {}
+        """Remapped topic names, by controller."""
+
+    def report(
+        self,
+        code: Code,
+        message: str,
+        *,
+        at: Origin | None = None,
+        hint: str = "",
+        values: Mapping[str, Value] | None = None,
+    ) -> None:
+        """Reports a warning at `at`, by default at the plugin's tag; see `Plugin.warn`."""
+        self.plugin.warn(code, message, at=at, hint=hint, values=values)
+
+
+@dataclass(kw_only=True, slots=True)
+class ControllerScope(Scope):
+    """The names of a controller, which are below its own name."""
+
+    name: str
+    """The controller's name."""
+    outer: Scope
+    """The scope of the controller manager's plugin."""
+    base: str
+    """Namespace of the controller manager."""
+    own: Mapping[str, str]
+    """New names of the controller's topics by their names before the remapping."""
+
+    def resolve(self, name: str) -> str:
+        """Returns a topic name after remapping; below the controller's name unless global."""
+        full = self._full(f"~/{name}")
+        for source, target in self.own.items():
+            if self._full(source) == full:
+                full = self._full(target)
+                break
+        return self.outer.resolve(full)
+
+    def published(self, name: str, type_name: str) -> str:  # noqa: ARG002
+        """Returns `resolve`: controllers' topics are ROS topics already."""
+        return self.resolve(name)
+
+    def _full(self, name: str) -> str:
+        """Resolves a name as a node does: ``~/…`` is below the controller's name."""
+        space = self.base.strip("/")
+        if name.startswith("~/"):
+            name, space = name.removeprefix("~/"), f"{space}/{self.name}"
+        return resolve_name(name, space)
+
+
+class Controller(Component):
+    """Base class of all controllers, created when a controller is loaded.
+
+    A subclass lists its `types`. Its `configure` reads the parameters and calls `claim` for each
+    joint that it commands. While the controller runs, `update` is called at the manager's rate.
+    """
+
+    types: ClassVar[tuple[str, ...]]
+    """Names of the type in ROS 1 and ROS 2."""
+
+    def __init__(self, name: str, type_name: str, settings: Settings, rig: Rig) -> None:
+        self.name = name
+        self.type = type_name
+        self.settings = settings
+        self.rig = rig
+        outer = rig.plugin.scope
+        super().__init__(
+            ControllerScope(
+                part=outer.part,
+                shared=outer.shared,
+                node=f"{outer.part.name}/{name}",
+                title=f'controller "{name}"',
+                origin=outer.origin,
+                frame_prefix=outer.frame_prefix,
+                name=name,
+                outer=outer,
+                base=rig.namespace,
+                own=rig.remappings.get(name, {}),
+            )
+        )
+        self.running = False
+        """Whether the controller is running, or starts at the next update."""
+        self.started = False
+        """Whether `start` has been called. Messages that arrive earlier are kept until then."""
+        self._early: list[Callable[[], None]] = []
+        self.claims: dict[str, JointHardware] = {}
+        """The claimed joints, by name."""
+        self.interfaces: dict[str, str] = {}
+        """The claimed interface of each joint."""
+        self.references: list[Reference] = []
+        """Reference interfaces that other controllers can command."""
+        self._input: JointInput | None = None
+        if rig.ros2:
+            self.graph.nodes[self.node] = resolve_name(name, rig.namespace)
+        try:
+            self.configure(settings)
+        except CartwheelError:
+            Controller.close(self)
+            raise
+        if rig.ros2:
+            values = {**settings.flat(), "type": type_name, "use_sim_time": True}
+            ParameterServices(self._offer_parameters, self.graph.nodes[self.node], values)
+
+    def configure(self, settings: Settings) -> None:
+        """Reads parameters, claims joints, and creates publishers and subscriptions.
+
+        Raises:
+            PluginError: A parameter is not allowed.
+            UnknownNameError: A joint does not exist.
+        """
+        raise NotImplementedError
+
+    def begin(self, time_ns: int) -> None:
+        """Starts the controller, and delivers the messages that arrived before."""
+        self.start(time_ns)
+        self.started = True
+        early, self._early = self._early, []
+        for call in early:
+            call()
+        if self._input is not None and not self.chained:
+            self.graph.joint_inputs.add(self._input)
+
+    def end(self, time_ns: int) -> None:
+        """Stops the controller."""
+        self.started = False
+        self._early.clear()
+        self._leave_joints()
+        self.stop(time_ns)
+
+    def start(self, time_ns: int) -> None:
+        """Called when the controller starts. The claimed joints are already active."""
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        """Commands the claimed joints.
+
+        Args:
+            time_ns: Simulation time.
+            seconds: Time since the last update, s.
+        """
+
+    def idle(self, time_ns: int) -> None:
+        """Called instead of `update` while not running, to publish the status of the action."""
+
+    senses: bool = False
+    """Whether `sense` has messages to publish."""
+
+    def sense(self, time_ns: int) -> None:
+        """Publishes quantities that are only known after a step: accelerations and forces."""
+
+    def stop(self, time_ns: int) -> None:
+        """Called when the controller stops."""
+
+    def close(self) -> None:
+        """Removes all topics and services when the controller is unloaded."""
+        self.graph.nodes.pop(self.node, None)
+        self._leave_joints()
+        super().close()
+        for each in self.references:
+            self.rig.hardware.references.pop(each.full_name, None)
+        self.references.clear()
+
+    def claim(self, joint: str, interface: str) -> JointHardware:
+        """Claims a joint, which the controller commands while it runs.
+
+        Raises:
+            UnknownNameError: The joint does not exist.
+            PluginError: The joint does not have this command interface.
+        """
+        hardware = self.rig.hardware.joint(joint, interface)
+        self.claims[joint] = hardware
+        self.interfaces[joint] = interface
+        return hardware
+
+    def export(self, joint: JointHardware, interface: str) -> Reference:
+        """Creates a reference interface, by which other controllers can command the joint."""
+        reference = Reference(self.name, joint, interface)
+        self.references.append(reference)
+        self.rig.hardware.references[reference.full_name] = reference
+        return reference
+
+    @property
+    def chained(self) -> bool:
+        """Whether another controller commands a reference of this one."""
+        return any(each.taken for each in self.references)
+
+    def state_interfaces(self) -> list[str]:
+        """Returns the state interfaces of the claimed joints, such as ``joint/position``."""
+        return [
+            f"{joint.name}/{kind}"
+            for joint in self.claims.values()
+            for kind in joint.interfaces.states
+        ]
+
+    def subscribe(
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Any], None],
+        *,
+        unset: bool = True,
+        always: bool = False,
+    ) -> None:
+        """Creates a subscription that closes with the controller.
+
+        Messages are received while the controller runs; with `always`, also while it does not.
+        Messages with a number that is too large are ignored with a warning. Each controller decides
+        what NaN and infinity mean.
+        """
+        checked = self.checked(callback, unset=unset)
+
+        def receive(message: Any) -> None:
+            if self.running and not self.started:
+                self._early.append(lambda: checked(message))
+            elif self.running or always:
+                checked(message)
+
+        topic = self.resolve(topic)
+        self.keep(self.graph.subscribe(topic, receive, type_name=type_name, node=self.node))
+
+    def accept_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
+        """Accepts manual joint positions while the controller runs; see `JointInput`."""
+        self._input = self.joint_input([claim.joint for claim in self.claims.values()], put)
+
+    @property
+    def input_name(self) -> str:
+        """Name of the controller's input for manual joint positions."""
+        return self.name
+
+    def publish_command(self, topic: str, type_name: str, **fields: object) -> None:
+        """Publishes a message on one of the controller's own command topics."""
+        self.graph.publish(self.resolve(topic), type_name, message_class(type_name)(**fields))
+
+    def _leave_joints(self) -> None:
+        if self._input is not None:
+            self.graph.joint_inputs.remove(self._input)
+
+    def _offer_parameters(self, name: str, type_name: str, handler: Callable[[Any], Any]) -> None:
+        """Offers a parameter service, unless another robot's controller already offers it."""
+        with contextlib.suppress(GraphError):
+            self._serve(name, type_name, handler)
+
+    def serve(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+    ) -> bool:
+        """Offers a service that is withdrawn with the controller.
+
+        Raises:
+            GraphError: Another controller already offers the service.
+        """
+        self._serve(self.resolve(name), type_name, handler, threaded=threaded)
+        return True
+
+    def _serve(
+        self,
+        name: str,
+        type_name: str,
+        handler: Callable[[Any], Any],
+        *,
+        threaded: bool = False,
+    ) -> None:
+        graph = self.graph
+        service = graph.serve(name, type_name, handler, node=self.node, threaded=threaded)
+        self._open.callback(graph.withdraw, service)
+
+    def warn(
+        self,
+        code: Code,
+        message: str,
+        *,
+        at: Origin | None = None,
+        hint: str = "",
+        values: Mapping[str, Value] | None = None,
+        severity: Severity = "warning",
+    ) -> None:
+        """Reports a diagnostic about this controller; see `Component.warn`."""
+        values = {"controller": self.name, **(values or {})}
+        message = f"{self.title}: {message}"
+        super().warn(code, message, at=at, hint=hint, values=values, severity=severity)
+
+
+class Rhythm:
+    """Determines when a periodic task is due, at multiples of its period since time 0.
+
+    Args:
+        rate: Hz; 0: always due.
+    """
+
+    def __init__(self, rate: float) -> None:
+        period = (
+            Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
+        )
+        self._beat = Beat(max(Fraction(period), Fraction(1)))
+        self._due = 0
+
+    def start(self, time_ns: int) -> None:
+        """Sets the next due time to the first multiple from now on."""
+        self._due = self._beat.due(time_ns)
+
+    def due(self, time_ns: int) -> bool:
+        """Whether the task is due. If it is, the next multiple becomes the next due time."""
+        if self._due > time_ns:
+            return False
+        self._due = self._beat.due(time_ns + 1)
+        return True

@@ -1,0 +1,220 @@
+"""Controllers that forward commands to joints, directly or through a PID."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.codes import running
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.pid import Gains, Pid
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.messages import header, message_class, zero
+
+_FLOAT = "std_msgs/msg/Float64"
+
+
+class JointCommand(Controller):
+    """Forwards ``command`` (Float64) of one joint to the interface in the type's name.
+
+    Source: forward_command_controller, ForwardCommandController.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "effort_controllers/JointEffortController",
+        "velocity_controllers/JointVelocityController",
+        "position_controllers/JointPositionController",
+    )
+
+    def configure(self, settings: Settings) -> None:
+        interface = self.type.partition("_")[0]
+        self._joint = self.claim(settings.text("joint"), interface)
+        self._command = 0.0
+        self.subscribe("command", _FLOAT, self._on_command)
+        if interface == "position":
+            self.accept_positions(lambda wanted, _: _put(self, wanted))
+
+    def start(self, time_ns: int) -> None:  # noqa: ARG002
+        self._command = self._joint.command
+
+    def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        self._joint.command = self._command
+
+    def _on_command(self, message: Any) -> None:
+        if math.isfinite(message.data):
+            self._command = float(message.data)
+
+
+class JointPid(Controller):
+    """Controls one joint with a PID whose output is an effort or a velocity.
+
+    The topic ``command`` (Float64) sets the target; ``state`` is published. Source:
+    effort_controllers and velocity_controllers.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "effort_controllers/JointPositionController",
+        "effort_controllers/JointVelocityController",
+        "velocity_controllers/JointPositionController",
+    )
+
+    def configure(self, settings: Settings) -> None:
+        self._interface = self.type.partition("_")[0]
+        self._follows = "position" if self.type.endswith("JointPositionController") else "velocity"
+        self._joint = self.claim(settings.text("joint"), self._interface)
+        self._gains = Gains.read(settings.section("pid"))
+        settings.ignore("pid")
+        self._pid = Pid(self._gains)
+        self._command = 0.0
+        self.subscribe("command", _FLOAT, self._on_command)
+        if self._follows == "position":
+            self.accept_positions(lambda wanted, _: _put(self, wanted))
+        self._publisher = self.advertise("state", "control_msgs/msg/JointControllerState")
+        self._count = 0
+        self._State = message_class("control_msgs/msg/JointControllerState")
+
+    def start(self, time_ns: int) -> None:  # noqa: ARG002
+        self._command = self._joint.position if self._follows == "position" else 0.0
+        self._pid.reset()
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        joint = self._joint
+        if self._follows == "velocity":
+            error = self._command - joint.velocity
+            law = self._pid.velocity(self._command, joint.velocity, seconds)
+        else:
+            target = self._command
+            if joint.type != "continuous":
+                target = min(max(target, joint.lower), joint.upper)
+                error = target - joint.position
+            else:
+                error = math.remainder(target - joint.position, 2 * math.pi)
+            law = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
+        output = law.effort - law.damping * joint.velocity
+        if self._interface == "effort":
+            joint.set_effort(law.effort, damping=law.damping)
+        else:
+            joint.command = output
+        self._count += 1
+        # As in ros_control, every tenth update.
+        if self._count % 10 == 1 and self._publisher.wanted:
+            gains = self._gains
+            self._publisher.publish(
+                self._State(
+                    header=header(time_ns, ""),
+                    set_point=self._command,
+                    process_value=joint.position if self._follows == "position" else joint.velocity,
+                    process_value_dot=joint.velocity if self._follows == "position" else 0.0,
+                    error=error,
+                    time_step=seconds,
+                    command=output,
+                    p=gains.p,
+                    i=gains.i,
+                    d=gains.d,
+                    i_clamp=gains.i_max,
+                    antiwindup=gains.antiwindup,
+                )
+            )
+
+    def _on_command(self, message: Any) -> None:
+        if math.isfinite(message.data):
+            self._command = float(message.data)
+
+
+class JointGroup(Controller):
+    """Forwards a Float64MultiArray to several joints: ``command``, or ``commands`` in ROS 2.
+
+    ``effort_controllers/JointGroupPositionController`` has a PID for each joint. Source:
+    forward_command_controller, effort_controllers/JointGroupPositionController.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "effort_controllers/JointGroupEffortController",
+        "velocity_controllers/JointGroupVelocityController",
+        "position_controllers/JointGroupPositionController",
+        "effort_controllers/JointGroupPositionController",
+        "forward_command_controller/ForwardCommandController",
+        "forward_command_controller/MultiInterfaceForwardCommandController",
+    )
+
+    def configure(self, settings: Settings) -> None:
+        interface = self.type.partition("_")[0]
+        if self.type.startswith("forward_"):
+            interface = settings.text("interface_name", "")
+            if not interface:
+                names = settings.texts("interface_names")
+                if len(names) != 1:
+                    raise settings.invalid("interface_names", names, "a list of one interface")
+                interface = names[0]
+        else:
+            # Published files also specify it for these types, whose name contains the interface.
+            settings.ignore("interface_name")
+        names = (
+            [settings.text("joint")]
+            if self.type.endswith("MultiInterfaceForwardCommandController")
+            else settings.texts("joints")
+        )
+        if not names:
+            raise settings.invalid("joints", names, "a list of at least one joint")
+        self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
+        self._pids: list[Pid] = []
+        if self.type == "effort_controllers/JointGroupPositionController":
+            # ROS 2 files have the gains under the same key as for trajectory controllers.
+            form = "gains/{}" if self.rig.ros2 and settings.raw("gains") else "{}/pid"
+            gains = [Gains.read(settings.section(form.format(name))) for name in names]
+            self._pids = [Pid(each) for each in gains]
+            for name in ("gains", *names):
+                settings.ignore(name)
+        self._commands: list[float] | None = None
+        topic = "commands" if self.rig.ros2 else "command"
+        self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
+        if interface == "position" or self._pids:
+            self.accept_positions(lambda wanted, _: self._put(topic, wanted))
+
+    def start(self, time_ns: int) -> None:  # noqa: ARG002
+        self._commands = [joint.position for joint in self._joints] if self._pids else None
+        for pid in self._pids:
+            pid.reset()
+
+    def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        if self._commands is None:
+            return
+        for index, (joint, command) in enumerate(zip(self._joints, self._commands, strict=True)):
+            if not self._pids:
+                joint.command = command
+                continue
+            target = min(max(command, joint.lower), joint.upper)
+            error = target - joint.position
+            if joint.type == "continuous":
+                error = math.remainder(error, 2 * math.pi)
+            law = self._pids[index].position(
+                error, seconds, target=target, lightness=joint.lightness
+            )
+            joint.set_effort(law.effort, damping=law.damping)
+
+    def _put(self, topic: str, wanted: Mapping[str, float]) -> None:
+        values = np.array([wanted[joint.joint] for joint in self._joints])
+        layout = zero("std_msgs/msg/MultiArrayLayout")
+        self.publish_command(topic, "std_msgs/msg/Float64MultiArray", layout=layout, data=values)
+
+    def _on_commands(self, message: Any) -> None:
+        values = [float(value) for value in message.data]
+        if len(values) != len(self._joints):
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"a command is ignored because it has {len(values)} values for "
+                f"{len(self._joints)} joints",
+                values={"got": len(values), "joints": len(self._joints)},
+            )
+        elif all(math.isfinite(value) for value in values):
+            self._commands = values
+
+
+def _put(controller: Controller, wanted: Mapping[str, float]) -> None:
+    """Commands the controller's only joint on its topic."""
+    (value,) = wanted.values()
+    controller.publish_command("command", _FLOAT, data=float(value))

@@ -1,0 +1,174 @@
+"""``joint_state_controller`` and ``joint_state_broadcaster``: publishers of joint states."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+
+from cartwheel.codes import devices
+from cartwheel.dialects.ros_control.controller import Controller, Rhythm
+from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.interfaces import COMMANDS
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.graph import Publisher
+from cartwheel.messages import header, message_class
+from cartwheel.messages.store import TWIN
+
+_DYNAMIC = f"control_msgs{TWIN}/msg/DynamicJointState"
+
+
+class JointStateController(Controller):
+    """Publishes the states of all joints with interfaces.
+
+    In ROS 1, ``joint_states`` in the controllers' namespace is published at ``publish_rate``, with
+    the ``extra_joints`` as they are written. In ROS 2 it is published at the manager's rate, and
+    ``dynamic_joint_states`` contains all state interfaces of each joint. With ``use_local_topics``,
+    both are below the controller's name. ``joints`` and ``interfaces`` select a subset. Source:
+    joint_state_controller, joint_state_broadcaster.
+    """
+
+    types: ClassVar[tuple[str, ...]] = (
+        "joint_state_controller/JointStateController",
+        "joint_state_broadcaster/JointStateBroadcaster",
+    )
+
+    def configure(self, settings: Settings) -> None:
+        rig = self.rig
+        self._rate = 0.0 if rig.ros2 else settings.number("publish_rate")
+        if self._rate < 0 or (not rig.ros2 and self._rate == 0):
+            raise settings.invalid("publish_rate", self._rate, "positive")
+        names = sorted(rig.hardware.names) if not rig.ros2 else rig.hardware.names
+        self._sources = {kind: kind for kind in COMMANDS}
+        self._chosen: list[str] = []
+        self._frame = ""
+        if rig.ros2:
+            names = self._choose(settings, names)
+        self._joints = [rig.hardware.joint(name) for name in names]
+        local = rig.ros2 and settings.boolean("use_local_topics", False)
+        self._extra: list[tuple[str, float, float, float]] = []
+        if rig.ros2:
+            extra = settings.texts("extra_joints", [])
+            self._extra = [(name, 0.0, 0.0, 0.0) for name in extra if name not in names]
+        else:
+            self._extra = self._read_extra(settings.raw("extra_joints") or [], names)
+        space = "" if local else f"/{rig.namespace.strip('/')}/"
+        self._publisher = self.advertise(
+            f"{space}joint_states", "sensor_msgs/msg/JointState", rate=self._rate or None
+        )
+        self._dynamic: Publisher | None = None
+        if rig.ros2 and settings.boolean("publish_dynamic_joint_states", True):
+            self._dynamic = self.advertise(f"{space}dynamic_joint_states", _DYNAMIC)
+        self._names = [*names, *(each[0] for each in self._extra)]
+        self._rhythm = Rhythm(self._rate)
+        self._JointState = message_class("sensor_msgs/msg/JointState")
+
+    def _choose(self, settings: Settings, names: list[str]) -> list[str]:
+        """Reads ROS 2's parameters for the published joints and interfaces; returns the joints."""
+        # Only both together select anything. One alone is reported as a parameter without effect.
+        if {"joints", "interfaces"} <= set(settings.names()):
+            joints, interfaces = settings.texts("joints"), settings.texts("interfaces")
+            if joints and interfaces:
+                names, self._chosen = joints, interfaces
+        for kind in COMMANDS:
+            source = settings.text(f"map_interface_to_joint_state/{kind}", kind)
+            if kind in self._chosen:
+                source = kind
+            if source not in COMMANDS:
+                self.warn(
+                    devices.INTERFACE_UNKNOWN,
+                    f'no joint has an interface "{source}", so the {kind} of all joints is NaN',
+                    values={"interface": source},
+                )
+            self._sources[kind] = source
+            if self._chosen and source not in self._chosen:
+                self._sources[kind] = ""
+        self._frame = settings.text("frame_id", "base_link")
+        # All joints are in the URDF.
+        settings.ignore("use_urdf_to_filter")
+        return names
+
+    def _read_extra(self, entries: Any, known: list[str]) -> list[tuple[str, float, float, float]]:
+        if not isinstance(entries, list):
+            raise self.settings.invalid("extra_joints", entries, "a list")
+        extra = []
+        for index, entry in enumerate(entries):
+            each = Settings(
+                entry if isinstance(entry, dict) else {}, f"{self.name}/extra_joints/{index}"
+            )
+            name = each.text("name")
+            if name not in known:
+                extra.append(
+                    (
+                        name,
+                        each.number("position", 0.0),
+                        each.number("velocity", 0.0),
+                        each.number("effort", 0.0),
+                    )
+                )
+        return extra
+
+    def state_interfaces(self) -> list[str]:
+        return [f"{joint.name}/{kind}" for joint in self._joints for kind in self._kinds(joint)]
+
+    def _kinds(self, joint: JointHardware) -> list[str]:
+        """Returns the published interfaces of a joint."""
+        return self._chosen or list(joint.interfaces.states)
+
+    def start(self, time_ns: int) -> None:
+        self._rhythm.start(time_ns)
+
+    def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        if not self._rhythm.due(time_ns):
+            return
+        head = header(time_ns, self._frame)
+        if self._publisher.wanted:
+            position, velocity, effort = (
+                np.array(
+                    [
+                        *(_value(joint, self._sources[kind]) for joint in self._joints),
+                        *(each[number] for each in self._extra),
+                    ]
+                )
+                for number, kind in enumerate(COMMANDS, start=1)
+            )
+            self._publisher.publish(
+                self._JointState(
+                    header=head,
+                    name=self._names,
+                    position=position,
+                    velocity=velocity,
+                    effort=effort,
+                )
+            )
+        if self._dynamic is not None and self._dynamic.wanted:
+            self._dynamic.publish(self._interfaces_as_message(head))
+
+    def _interfaces_as_message(self, head: Any) -> Any:
+        states = [
+            (kinds := self._kinds(joint), [_value(joint, kind) for kind in kinds])
+            for joint in self._joints
+        ]
+        states += [(list(COMMANDS), list(values)) for _, *values in self._extra]
+        InterfaceValue = message_class(f"control_msgs{TWIN}/msg/InterfaceValue")
+        return message_class(_DYNAMIC)(
+            header=head,
+            joint_names=self._names,
+            interface_values=[
+                InterfaceValue(interface_names=kinds, values=np.array(values))
+                for kinds, values in states
+            ],
+        )
+
+
+def _value(joint: JointHardware, kind: str) -> float:
+    """Returns the value of a state interface; NaN if it does not exist."""
+    match kind:
+        case "position":
+            return joint.position
+        case "velocity":
+            return joint.velocity
+        case "effort":
+            return joint.effort
+    return math.nan

@@ -1,0 +1,212 @@
+"""``pid_controller``: joints that follow references, which other controllers can set, by a PID."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from cartwheel.codes import running
+from cartwheel.dialects.ros_control.chaining import Reference
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.interfaces import COMMANDS
+from cartwheel.dialects.ros_control.pid import Gains, Law, Pid
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.messages import header, message_class, zero
+from cartwheel.messages.store import TWIN
+
+_COMMAND = f"control_msgs{TWIN}/msg/MultiDOFCommand"
+_STATE = f"control_msgs{TWIN}/msg/MultiDOFStateStamped"
+_ONE_STATE = f"control_msgs{TWIN}/msg/SingleDOFState"
+_NOTHING = (math.nan, math.nan)
+
+
+class PidController(Controller):
+    """Commands joints by a PID on the error of their references, with feedforward.
+
+    The references come from another controller that uses ``<controller>/<joint>`` as its joint, or
+    else from ``reference`` (MultiDOFCommand). The measured values are those of the joint, or with
+    ``use_external_measured_states`` those on ``measured_state``. ``feedforward_gain`` times the
+    reference is added to the output. Source: pid_controller.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ("pid_controller/PidController",)
+
+    def configure(self, settings: Settings) -> None:
+        names = settings.texts("dof_names")
+        self._names = settings.texts("reference_and_state_dof_names", []) or names
+        if not names or len(self._names) != len(names):
+            wanted = f"a list of {len(names)} names, as many as in dof_names"
+            raise settings.invalid("reference_and_state_dof_names", self._names, wanted)
+        kinds = settings.texts("reference_and_state_interfaces")
+        if not (len(kinds) == 1 and kinds[0] in COMMANDS) and kinds != ["position", "velocity"]:
+            wanted = f"one of {', '.join(COMMANDS)}, or position and velocity"
+            raise settings.invalid("reference_and_state_interfaces", kinds, wanted)
+        interface = settings.text("command_interface")
+        self._external = settings.boolean("use_external_measured_states", False)
+        self._feeds_forward = settings.boolean("enable_feedforward", True)
+        self._begins_here = settings.boolean("set_current_state_as_first_setpoint", True)
+        self._loops = []
+        for name, state_name in zip(names, self._names, strict=True):
+            joint = self.claim(name, interface)
+            # Only the state of a joint with a different name is used.
+            state = joint if name == state_name else self.rig.hardware.joint(state_name)
+            section = settings.section(f"gains/{name}")
+            self._loops.append(
+                _Loop(
+                    joint=joint,
+                    state=state,
+                    references=tuple(self.export(state, kind) for kind in kinds),
+                    damps=interface == "effort" and state is joint and not self._external,
+                    forward=section.number("feedforward_gain", 0.0),
+                    wraps=section.boolean("angle_wraparound", False),
+                    pid=Pid(Gains.read_ros2(section)),
+                )
+            )
+        self.subscribe("reference", _COMMAND, self._on_reference)
+        if self._external:
+            self.subscribe("measured_state", _COMMAND, self._on_measured)
+        self.serve("set_feedforward_control", "std_srvs/srv/SetBool", self._on_feedforward)
+        self._state_publisher = self.advertise("controller_state", _STATE)
+
+    def start(self, time_ns: int) -> None:  # noqa: ARG002
+        for loop in self._loops:
+            loop.measured = _NOTHING
+            loop.pid.reset()
+            if not self.chained:
+                here = self._begins_here and not self._external
+                state = loop.sensed() if here else _NOTHING
+                for reference, value in zip(loop.references, state, strict=False):
+                    reference.command = value
+
+    def update(self, time_ns: int, seconds: float) -> None:
+        for loop in self._loops:
+            if not self._external:
+                loop.measured = loop.sensed()
+            loop.command(seconds, ahead=self._feeds_forward)
+        if self._state_publisher.wanted:
+            message = zero(_STATE)
+            message.header = header(time_ns, "")
+            message.dof_states = [
+                loop.state_message(name, seconds)
+                for name, loop in zip(self._names, self._loops, strict=True)
+            ]
+            self._state_publisher.publish(message)
+
+    # -- subscriptions and services
+
+    def _on_reference(self, message: Any) -> None:
+        if self.chained:
+            return
+        for loop, values in zip(self._loops, self._ordered(message, "reference"), strict=False):
+            if math.isfinite(values[0]):
+                for reference, value in zip(loop.references, values, strict=False):
+                    reference.command = value
+
+    def _on_measured(self, message: Any) -> None:
+        for loop, state in zip(self._loops, self._ordered(message, "measured state"), strict=False):
+            loop.measured = state
+
+    def _on_feedforward(self, request: Any) -> Any:
+        self._feeds_forward = bool(request.data)
+        return message_class("std_srvs/srv/SetBool_Response")(success=True, message="")
+
+    def _ordered(self, message: Any, what: str) -> list[tuple[float, float]]:
+        """Returns values and their rates of change in the order of our joints; empty if invalid."""
+        names = list(message.dof_names) or self._names
+        values = [float(each) for each in message.values]
+        rates = [float(each) for each in message.values_dot] or [math.nan] * len(names)
+        fits = len(values) == len(rates) == len(names)
+        if not fits or sorted(names) != sorted(self._names):
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"a {what} is ignored because it must contain one value for each joint",
+                hint=f"Joints of the controller: {', '.join(self._names)}.",
+            )
+            return []
+        by_name = dict(zip(names, zip(values, rates, strict=True), strict=True))
+        return [by_name[name] for name in self._names]
+
+
+@dataclass(kw_only=True, slots=True)
+class _Loop:
+    """A joint with its PID."""
+
+    joint: JointHardware
+    """The commanded joint."""
+    state: JointHardware
+    """The measured joint."""
+    references: tuple[Reference, ...]
+    """References of the value and, optionally, of its rate of change."""
+    damps: bool
+    """Whether the derivative damps the joint itself, which the physics integrates implicitly."""
+    forward: float
+    wraps: bool
+    pid: Pid
+    measured: tuple[float, float] = _NOTHING
+    """Measured value and its rate of change; NaN if unknown."""
+
+    def sensed(self) -> tuple[float, float]:
+        """Returns the joint's own state: a value and its rate of change."""
+        match self.references[0].interface:
+            case "position":
+                return self.state.position, self.state.velocity
+            case "velocity":
+                return self.state.velocity, math.nan
+        return self.state.effort, math.nan
+
+    @property
+    def wanted(self) -> tuple[float, float]:
+        """The reference and its rate of change; NaN if not set."""
+        value, *rate = (each.command for each in self.references)
+        return value, rate[0] if rate else math.nan
+
+    @property
+    def error(self) -> float:
+        """Reference minus measured value."""
+        off = self.wanted[0] - self.measured[0]
+        return math.remainder(off, 2 * math.pi) if self.wraps and math.isfinite(off) else off
+
+    def command(self, seconds: float, *, ahead: bool) -> None:
+        """Commands the joint if it has a reference.
+
+        Args:
+            seconds: Time since the last call, s.
+            ahead: Add the feedforward term.
+        """
+        (wanted, rate), (measured, speed), error = self.wanted, self.measured, self.error
+        if not math.isfinite(error):
+            return
+        if self.references[0].interface == "position":
+            law = self.pid.position(
+                error,
+                seconds,
+                target=wanted,
+                rate=rate if math.isfinite(rate) else None,
+                lightness=self.joint.lightness if self.damps else 0.0,
+            )
+        else:
+            law, speed = self.pid.velocity(wanted, measured, seconds), measured
+        speed = speed if math.isfinite(speed) else 0.0
+        law = self.pid.bounded(law, speed)
+        fed = rate if len(self.references) > 1 else wanted
+        if ahead and math.isfinite(fed):
+            law = Law(law.effort + self.forward * fed, law.damping)
+        if self.damps:
+            self.joint.set_effort(law.effort, damping=law.damping)
+        else:
+            self.joint.command = law.effort - law.damping * speed
+
+    def state_message(self, name: str, seconds: float) -> Any:
+        """Returns the state as a message."""
+        return message_class(_ONE_STATE)(
+            name=name,
+            reference=self.wanted[0],
+            feedback=self.measured[0],
+            feedback_dot=self.measured[1],
+            error=self.error,
+            error_dot=self.wanted[1] - self.measured[1],
+            time_step=seconds,
+            output=self.joint.command,
+        )

@@ -1,0 +1,83 @@
+"""``unitree_legged_control``: a leg motor, whose commands contain the gains."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.pid import Gains, Pid
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.messages import zero
+
+_BRAKE, _SERVO = 0x00, 0x0A
+"""Modes of a command. In any other mode the command is ignored."""
+_NO_POSITION, _NO_VELOCITY = 2.146e9, 16000.0
+"""Targets that disable their gain."""
+_BRAKING = 20.0
+"""N m s/rad."""
+
+
+class UnitreeJointController(Controller):
+    """Controls one joint by ``command`` (MotorCmd): position, velocity and torque, with gains.
+
+    The torque is ``Kp (q - position) + Kd (dq - velocity) + tau``, within the joint's limits. The
+    joint brakes until the first command. ``state`` (MotorState) is published at every update.
+    Source: unitree_legged_control.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ("unitree_legged_control/UnitreeJointController",)
+
+    def configure(self, settings: Settings) -> None:
+        self._joint = self.claim(settings.text("joint"), "effort")
+        # The original reads these gains only in a tuning build.
+        settings.ignore("pid")
+        self._command(Gains(p=0.0, d=_BRAKING))
+        self.subscribe("command", "unitree_legged_msgs/msg/MotorCmd", self._on_command)
+        self._publisher = self.advertise("state", "unitree_legged_msgs/msg/MotorState")
+
+    def start(self, time_ns: int) -> None:  # noqa: ARG002
+        self._command(Gains(p=0.0, d=_BRAKING))
+
+    def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        joint = self._joint
+        law = self._pid.position(
+            self._position - joint.position,
+            seconds,
+            target=self._position,
+            rate=self._velocity,
+            lightness=joint.lightness,
+        )
+        joint.set_effort(law.effort + self._torque, damping=law.damping)
+        if self._publisher.wanted:
+            message = zero("unitree_legged_msgs/msg/MotorState")
+            message.q, message.dq, message.tauEst = joint.position, joint.velocity, joint.effort
+            self._publisher.publish(message)
+
+    def _command(
+        self, gains: Gains, *, position: float = 0.0, velocity: float = 0.0, torque: float = 0.0
+    ) -> None:
+        self._pid = Pid(gains)
+        self._position, self._velocity, self._torque = position, velocity, torque
+
+    def _on_command(self, message: Any) -> None:
+        numbers = (message.q, message.dq, message.tau, message.Kp, message.Kd)
+        if not all(math.isfinite(each) for each in numbers):
+            return
+        if message.mode == _BRAKE:
+            self._command(Gains(p=0.0, d=_BRAKING))
+        elif message.mode == _SERVO:
+            position, velocity, torque, p, d = (float(each) for each in numbers)
+            joint = self._joint
+            self._command(
+                Gains(p=0.0 if _is(position, _NO_POSITION) else p,
+                      d=0.0 if _is(velocity, _NO_VELOCITY) else d),
+                position=min(max(position, joint.lower), joint.upper),
+                velocity=min(max(velocity, -joint.velocity_limit), joint.velocity_limit),
+                torque=min(max(torque, -joint.effort_limit), joint.effort_limit),
+            )  # fmt: skip
+
+
+def _is(value: float, mark: float) -> bool:
+    """Whether a 32-bit value is the given marker."""
+    return math.isclose(value, mark, rel_tol=1e-6)

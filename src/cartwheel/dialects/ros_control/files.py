@@ -1,0 +1,319 @@
+"""YAML files with controllers, in the formats of rosparam and ros2_control."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cartwheel import yaml_text
+from cartwheel.codes import devices
+from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
+from cartwheel.dialects.ros_control.settings import Settings, merge
+from cartwheel.dialects.ros_control.substitution import substitute
+from cartwheel.errors import Origin, PluginError
+
+if TYPE_CHECKING:
+    from cartwheel.dialects.ros_control.controller import Controller
+
+_ROS2 = "ros__parameters"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ControllerEntry:
+    """A controller in a file."""
+
+    name: str
+    type: str
+    values: Mapping[str, Any]
+    namespace: str
+    """Namespace in the file, without leading and trailing slashes."""
+    source: str
+    shared: tuple[str, ...] = ()
+    """Parameters that the file gives to all nodes. Unknown ones cause no warning."""
+    remappings: Mapping[str, str] = field(default_factory=dict)
+    """Remapped topic names: new names by old names."""
+
+    def settings(self) -> Settings:
+        """Returns the parameters of the controller."""
+        settings = Settings(self.values, self.name, self.source)
+        settings.ignore("use_sim_time", *self.shared)
+        return settings
+
+
+class ControllerFiles:
+    """The files whose controllers the next robot starts automatically.
+
+    A robot's controller manager takes the files when it is created.
+    """
+
+    def __init__(self) -> None:
+        self.paths: tuple[Path, ...] = ()
+        self.loaded: list[Controller] = []
+        """Controllers that managers have loaded from files."""
+
+    @property
+    def started(self) -> list[Controller]:
+        """The loaded controllers that run. One whose joint is already commanded does not start."""
+        return [controller for controller in self.loaded if controller.running]
+
+    def take(self) -> tuple[Path, ...]:
+        """Returns the files and clears them, so that only one robot uses them."""
+        paths, self.paths = self.paths, ()
+        return paths
+
+
+def read_parameters(path: Path) -> dict[str, Any]:
+    """Reads the controllers of a file, by name.
+
+    A file can contain the parameters of a single controller, which launch files load into a
+    namespace. Its name is the file's stem, or NAME if the path is given as ``NAME=FILE``.
+
+    Raises:
+        PluginError: See `read_yaml`.
+    """
+    name, equals, file = str(path).partition("=")
+    if not equals or path.exists():
+        name, file = "", str(path)
+    content = read_yaml(Path(file))
+    if name or isinstance(content.get("type"), str):
+        return {name or Path(file).stem: content}
+    return content
+
+
+def read_yaml(path: Path) -> dict[str, Any]:
+    """Reads the mapping in a YAML file.
+
+    Raises:
+        PluginError: The file cannot be read, is not valid YAML, or is not a mapping.
+    """
+    # The import is slow, and only robots with controllers need it.
+    import yaml
+
+    origin = Origin(file=str(path))
+    try:
+        text = yaml_text.read(path)
+        loader = yaml_text.loader()(text)
+        node = loader.get_single_node()
+        if node is not None and "ros__parameters" in text:
+            _join(node, set())
+        content = loader.construct_document(node) if node is not None else None
+    except OSError as error:
+        raise _unreadable(f"the file cannot be read: {error.strerror or error}", origin) from None
+    except UnicodeDecodeError:
+        raise _unreadable("the file is not a text file", origin) from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = mark.line + 1 if mark is not None else 0
+        problem = getattr(error, "problem", None)
+        text = f"the file is not valid YAML{f': {problem}' if problem else ''}"
+        place = Origin(file=str(path), line=line)
+        raise _unreadable(text, place) from None
+    if content is None:
+        return {}
+    if not isinstance(content, dict):
+        raise _unreadable("the file is not a mapping of parameters", origin)
+    return content
+
+
+def _unreadable(message: str, origin: Origin) -> PluginError:
+    return PluginError(message, code=devices.CONTROLLERS_FILE_UNREADABLE, origin=origin)
+
+
+def _join(node: Any, seen: set[int]) -> None:
+    """Merges mappings with the same key, as ROS 2 does.
+
+    In YAML, and in ROS 1, the last of them is used.
+    """
+    if node.id == "scalar" or id(node) in seen:
+        return
+    seen.add(id(node))
+    if node.id == "mapping":
+        kept: list[tuple[Any, Any]] = []
+        first: dict[str, Any] = {}
+        for key, value in node.value:
+            before = first.get(str(key.value))
+            if before is not None and before.id == value.id == "mapping":
+                before.value = [*before.value, *value.value]
+            else:
+                kept.append((key, value))
+                first[str(key.value)] = value
+        node.value = kept
+    for each in node.value:
+        _join(each[1] if node.id == "mapping" else each, seen)
+
+
+def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> dict[str, Any]:
+    """Replaces the substitutions in a file, such as ``$(arg name)``, which launch files evaluate.
+
+    Raises:
+        PluginError: See `substitute`.
+    """
+    arguments = launch_arguments(content, robot)
+    filled: dict[str, Any] = substitute(content, path, arguments)
+    return filled
+
+
+def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
+    """Reads a ROS 2 parameter file and replaces its substitutions.
+
+    Args:
+        path: The file.
+        robot: The robot whose arguments are used.
+
+    Raises:
+        PluginError: See `read_yaml` and `for_robot`; or the file is not a ROS 2 parameter file.
+    """
+    content = for_robot(read_yaml(path), path, robot)
+    if content and not is_ros2(content):
+        raise PluginError(
+            "the file has no ros__parameters, but the robot uses ros2_control",
+            code=devices.CONTROLLERS_FILE_MISMATCH,
+            origin=Origin(file=str(path)),
+            hint="Write the parameters below the name of their node and ros__parameters.",
+        )
+    return content
+
+
+def ros1_entries(content: Mapping[str, Any], source: str) -> list[ControllerEntry]:
+    """Returns the controllers in a rosparam file: mappings with a ``type``, nested or not."""
+    return list(_ros1_entries(content, (), source))
+
+
+def _ros1_entries(
+    content: Mapping[str, Any], path: tuple[str, ...], source: str
+) -> Iterator[ControllerEntry]:
+    for key, value in content.items():
+        if not isinstance(value, Mapping):
+            continue
+        parts = tuple(part for part in str(key).split("/") if part)
+        kind = value.get("type")
+        if isinstance(kind, str) and "/" in kind.replace("::", "/"):
+            *space, name = (*path, *parts)
+            yield ControllerEntry(
+                name=name, type=kind, values=value, namespace="/".join(space), source=source
+            )
+        elif len(path) < 4:
+            yield from _ros1_entries(value, (*path, *parts), source)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ros2File:
+    """The parameters in one or more ros2_control files."""
+
+    manager: Mapping[str, Any]
+    """Parameters of the controller manager."""
+    nodes: Mapping[str, Mapping[str, Any]]
+    """Parameters of the other nodes, by name."""
+    shared: Mapping[str, Any]
+    """Parameters of all nodes."""
+    elsewhere: tuple[str, ...]
+    """Names of nodes in other namespaces."""
+
+
+def is_ros2(content: Mapping[str, Any]) -> bool:
+    """Whether a file contains ROS 2 parameters: ``ros__parameters`` below a node name."""
+    return any(
+        isinstance(value, Mapping) and (_ROS2 in value or is_ros2(value))
+        for value in content.values()
+    )
+
+
+def ros2_file(
+    contents: Sequence[Mapping[str, Any]], namespace: str, manager: str = "controller_manager"
+) -> Ros2File:
+    """Combines the parameters in several files, for the nodes of a namespace. Later files win.
+
+    ``/**`` applies to all nodes; ``/ns/node`` and nested names apply to one. Source:
+    rcl_yaml_param_parser.
+
+    Args:
+        contents: Contents of the files.
+        namespace: Namespace of the nodes.
+        manager: Name of the controller manager's node.
+    """
+    shared: dict[str, Any] = {}
+    nodes: dict[str, dict[str, Any]] = {}
+    elsewhere = []
+    wanted = namespace.strip("/")
+    for content in contents:
+        for path, values in _ros2_nodes(content, ()):
+            *space, name = path
+            inside = "/".join(space)
+            if inside and inside != wanted and "**" not in space and "*" not in space:
+                elsewhere.append("/".join(("", *path)))
+            elif name in ("**", "*"):
+                merge(shared, _copy(values))
+            else:
+                merge(nodes.setdefault(name, {}), _copy(values))
+    own = {**shared, **nodes.pop(manager, {})}
+    return Ros2File(manager=own, nodes=nodes, shared=shared, elsewhere=tuple(elsewhere))
+
+
+def _copy(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Copies nested mappings. Lists are shared with the original."""
+    return {key: _copy(one) if isinstance(one, Mapping) else one for key, one in values.items()}
+
+
+def controller_entries(file: Ros2File, namespace: str, source: str) -> list[ControllerEntry]:
+    """Returns the controllers whose type is specified, in the manager's or their own parameters."""
+    manager = Settings(file.manager, "controller_manager", source)
+    return [
+        entry
+        for name in dict.fromkeys((*manager.names(), *file.nodes))
+        if (entry := controller_entry(file, name, namespace, source)).type
+    ]
+
+
+def controller_entry(file: Ros2File, name: str, namespace: str, source: str) -> ControllerEntry:
+    """Returns a controller by its name. Its type is empty if no file specifies it.
+
+    In some files the type is below an additional ``ros__parameters``. ROS 2 does not find it there,
+    and their launch files pass the type to the spawner.
+    """
+    own = file.nodes.get(name, {})
+    listed = Settings(file.manager, "controller_manager", source).raw(name)
+    listed = listed if isinstance(listed, Mapping) else {}
+    deeper = listed.get(_ROS2)
+    if isinstance(deeper, Mapping):
+        listed = {**deeper, **listed}
+    kind = listed.get("type") if isinstance(listed.get("type"), str) else own.get("type")
+    values = _copy(file.shared)
+    merge(values, _copy(own))
+    return ControllerEntry(
+        name=name,
+        type=kind if isinstance(kind, str) else "",
+        values=values,
+        namespace=namespace,
+        source=source,
+        shared=tuple(key for key in file.shared if key not in own),
+        remappings=remappings(listed.get("node_options_args", [])),
+    )
+
+
+def remappings(arguments: Any) -> dict[str, str]:
+    """Returns the remappings (``-r from:=to``) among a node's arguments. Source: rcl."""
+    words = arguments.split() if isinstance(arguments, str) else list(arguments)
+    pairs = [
+        str(word).partition(":=")
+        for flag, word in itertools.pairwise(words)
+        if flag in ("-r", "--remap")
+    ]
+    return {source: target for source, mark, target in pairs if mark}
+
+
+def _ros2_nodes(
+    content: Mapping[str, Any], path: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], Mapping[str, Any]]]:
+    for key, value in content.items():
+        if not isinstance(value, Mapping):
+            continue
+        parts = (*path, *(part for part in str(key).split("/") if part))
+        parameters = value.get(_ROS2)
+        if isinstance(parameters, Mapping):
+            yield parts or ("**",), parameters
+        else:
+            yield from _ros2_nodes(value, parts)

@@ -1,0 +1,271 @@
+"""Joint and sensor interfaces in ``<transmission>`` and ``<ros2_control>`` tags."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from cartwheel.codes import devices
+from cartwheel.description.model import Element, RobotDescription
+from cartwheel.description.numbers import LARGEST, MOST_RATIO
+from cartwheel.dialects.tags import invalid
+from cartwheel.errors import Code, Diagnostic, Origin, Value
+from cartwheel.simulation.limits import FARTHEST
+
+COMMANDS = ("position", "velocity", "effort")
+"""Supported command interfaces of a joint."""
+SYSTEMS = (
+    "gazebo_ros2_control/GazeboSystem",
+    "gz_ros2_control/GazeboSimSystem",
+    "ign_ros2_control/IgnitionSystem",
+)
+"""Hardware plugins of ros2_control that are simulated."""
+_HARDWARE = {
+    "PositionJointInterface": "position",
+    "VelocityJointInterface": "velocity",
+    "EffortJointInterface": "effort",
+    "PosVelJointInterface": "position",
+    "PosVelAccJointInterface": "position",
+}
+_STATES_ONLY = ("JointStateInterface", "ImuSensorInterface", "ForceTorqueSensorInterface")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointInterfaces:
+    """Interfaces of a joint."""
+
+    name: str
+    commands: tuple[str, ...] = ()
+    """Command interfaces, each one of `COMMANDS`."""
+    states: tuple[str, ...] = ("position", "velocity", "effort")
+    initial_position: float | None = None
+    mimic: tuple[str, float] | None = None
+    """The joint that this joint follows, and the multiplier."""
+    by_pid: str = ""
+    """The interface whose commands a PID converts to efforts: ``position`` or ``velocity``."""
+    gains: Mapping[str, float] = field(default_factory=dict)
+    """``pos_kp``, ``vel_ki`` and so on, from the joint's ``<param>`` tags."""
+    origin: Origin
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SensorInterfaces:
+    """A sensor in a ``<ros2_control>`` tag."""
+
+    name: str
+    states: tuple[str, ...]
+    parameters: Mapping[str, str]
+    origin: Origin
+
+
+def transmissions(
+    description: RobotDescription, *, several: bool = False
+) -> tuple[list[JointInterfaces], list[Diagnostic]]:
+    """Reads the joints of all transmissions, as ros_control's robot simulation does.
+
+    Reductions have no effect: they are between motor and joint, and motors are not simulated.
+    Source: transmission_interface, gazebo_ros_control.
+
+    Args:
+        description: The robot.
+        several: Accept transmissions with several joints, such as a wrist's differential. The
+            default simulation ignores them.
+    """
+    by_name: dict[str, JointInterfaces] = {}
+    notes: list[Diagnostic] = []
+
+    def warn(code: Code, element: Element, message: str, **values: Value) -> None:
+        notes.append(code.diagnostic(message, origin=element.origin, values=values))
+
+    for element in description.transmissions:
+        label = f'transmission "{element.attribute("name") or ""}"'
+        joints = list(element.find_all("joint"))
+        kind = element.find("type")
+        if kind is None and element.attribute("type"):
+            # A format older than ros_control, which its parser also ignores.
+            notes.append(
+                devices.TRANSMISSION_IGNORED.diagnostic(
+                    f"{label} uses the PR2 format, so it drives no joint",
+                    severity="info",
+                    origin=element.origin,
+                    values={"transmission": element.attribute("name")},
+                )
+            )
+            continue
+        if not joints or (len(joints) > 1 and not several):
+            text = f"{label} has no effect: it must have exactly one joint (got {len(joints)})"
+            warn(devices.TRANSMISSION_IGNORED, element, text, joints=len(joints))
+            continue
+        for joint in joints:
+            name = joint.attribute("name") or ""
+            written = list(joint.find_all("hardwareInterface"))
+            if not written:
+                written = [
+                    interface
+                    for actuator in element.find_all("actuator")
+                    for interface in actuator.find_all("hardwareInterface")
+                ]
+            commands: list[str] = []
+            for interface in written:
+                short = interface.text.strip().rpartition("/")[2]
+                if short in _HARDWARE:
+                    commands.append(_HARDWARE[short])
+                elif short not in _STATES_ONLY:
+                    text = f'{label}: the hardware interface "{interface.text}" does not exist'
+                    warn(devices.INTERFACE_UNKNOWN, interface, text, interface=interface.text)
+            if not written:
+                text = f"{label} has no <hardwareInterface>, so nothing drives its joint"
+                warn(devices.TRANSMISSION_IGNORED, element, text, joint=name)
+            if not _movable(description, name):
+                text = f'{label}: "{name}" is not a movable joint'
+                warn(devices.TRANSMISSION_JOINT_UNKNOWN, element, text, joint=name)
+                continue
+            before = by_name[name].commands if name in by_name else ()
+            by_name[name] = JointInterfaces(
+                name=name,
+                commands=tuple(dict.fromkeys((*before, *commands))),
+                origin=element.origin,
+            )
+    return list(by_name.values()), notes
+
+
+def hardware_of(system: Element) -> str:
+    """Returns the hardware plugin of a ``<ros2_control>`` tag."""
+    plugin = system.find("hardware/plugin")
+    return plugin.text.strip() if plugin is not None else ""
+
+
+def simulated_systems(description: RobotDescription) -> list[Element]:
+    """Returns the ``<ros2_control>`` tags with simulated hardware; all tags if there are none."""
+    simulated = [each for each in description.ros2_control if hardware_of(each) in SYSTEMS]
+    return simulated or list(description.ros2_control)
+
+
+def ros2_control(
+    description: RobotDescription,
+) -> tuple[list[JointInterfaces], list[SensorInterfaces], list[Diagnostic]]:
+    """Reads the joints and sensors of all ``<ros2_control>`` tags. Source: ros2_control.
+
+    Raises:
+        PluginError: A value is not a number.
+    """
+    joints: dict[str, JointInterfaces] = {}
+    sensors: list[SensorInterfaces] = []
+    notes: list[Diagnostic] = []
+    for system in simulated_systems(description):
+        for element in system.find_all("joint"):
+            name = element.attribute("name") or ""
+            if not _movable(description, name):
+                notes.append(
+                    devices.ROS2_CONTROL_JOINT_UNKNOWN.diagnostic(
+                        f'<ros2_control>: "{name}" is not a movable joint',
+                        origin=element.origin,
+                        values={"joint": name},
+                    )
+                )
+                continue
+            joints[name] = _joint(element, name, notes)
+        sensors += [_sensor(element) for element in system.find_all("sensor")]
+        notes += [
+            devices.HARDWARE_NOT_SIMULATED.diagnostic(
+                f'<gpio name="{element.attribute("name") or ""}"> has no effect: '
+                "general-purpose pins are not simulated",
+                origin=element.origin,
+                values={"gpio": element.attribute("name")},
+            )
+            for element in system.find_all("gpio")
+        ]
+    return list(joints.values()), sensors, notes
+
+
+def _sensor(element: Element) -> SensorInterfaces:
+    return SensorInterfaces(
+        name=element.attribute("name") or "",
+        states=tuple(
+            state.attribute("name") or "" for state in element.find_all("state_interface")
+        ),
+        parameters=_parameters(element),
+        origin=element.origin,
+    )
+
+
+def _joint(element: Element, name: str, notes: list[Diagnostic]) -> JointInterfaces:
+    commands: list[str] = []
+    initial: float | None = None
+    by_pid = ""
+    for interface in element.find_all("command_interface"):
+        written = interface.attribute("name") or ""
+        kind = written.removesuffix("_pid")
+        if kind not in COMMANDS:
+            notes.append(
+                devices.INTERFACE_UNKNOWN.diagnostic(
+                    f'the command interface "{kind}" of joint "{name}" is not simulated',
+                    origin=interface.origin,
+                    hint=f"Supported interfaces: {', '.join(COMMANDS)}.",
+                    values={"joint": name, "interface": kind},
+                )
+            )
+            continue
+        # The tag's min and max have no effect, as in gazebo_ros2_control and gz_ros2_control.
+        commands.append(kind)
+        if written != kind:
+            by_pid = kind
+    states = []
+    for interface in element.find_all("state_interface"):
+        kind = interface.attribute("name") or ""
+        states.append(kind)
+        start = _number(_parameters(interface), "initial_value", interface, FARTHEST)
+        if kind == "position" and start is not None:
+            initial = start
+    values = _parameters(element)
+    mimic = None
+    if values.get("mimic"):
+        multiplier = _number(values, "multiplier", element, MOST_RATIO)
+        mimic = (values["mimic"], 1.0 if multiplier is None else multiplier)
+    return JointInterfaces(
+        name=name,
+        commands=tuple(dict.fromkeys(commands)),
+        states=tuple(states),
+        initial_position=initial,
+        mimic=mimic,
+        by_pid=by_pid,
+        gains={
+            key: number
+            for key in values
+            if key[:4] in ("pos_", "vel_") and (number := _number(values, key, element)) is not None
+        },
+        origin=element.origin,
+    )
+
+
+def _parameters(element: Element) -> dict[str, str]:
+    return {
+        param.attribute("name") or "": param.text.strip() for param in element.find_all("param")
+    }
+
+
+def _number(
+    values: Mapping[str, str], name: str, element: Element, most: float = math.inf
+) -> float | None:
+    """Returns a parameter's number; None if missing or NaN, which ROS 2 uses for "not set"."""
+    text = values.get(name, "")
+    if not text or re.fullmatch(r"[{$].*", text):
+        return None
+    try:
+        number = float(text)
+    except ValueError:
+        raise invalid(f'param name="{name}"', text, "a number", element.origin) from None
+    if math.isnan(number):
+        return None
+    if abs(number) > most or LARGEST < abs(number) < math.inf:
+        most = min(most, LARGEST)
+        wanted = f"a number from {-most:g} to {most:g}"
+        raise invalid(f'param name="{name}"', text, wanted, element.origin)
+    return number
+
+
+def _movable(description: RobotDescription, name: str) -> bool:
+    joint = description.joint(name)
+    return joint is not None and joint.drivable

@@ -1,0 +1,191 @@
+"""``libgazebo_ros_control.so``: ROS 1 controllers for the joints of transmissions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from cartwheel.codes import devices
+from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
+from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
+from cartwheel.dialects.ros_control.controller import Rig
+from cartwheel.dialects.ros_control.files import (
+    ControllerEntry,
+    ControllerFiles,
+    for_robot,
+    is_ros2,
+    read_parameters,
+    ros1_entries,
+)
+from cartwheel.dialects.ros_control.hardware import Hardware
+from cartwheel.dialects.ros_control.interfaces import JointInterfaces, transmissions
+from cartwheel.dialects.ros_control.pid import Gains
+from cartwheel.dialects.ros_control.services import ManagerServices
+from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.tags import tag
+from cartwheel.errors import Origin, PluginError
+
+_PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RosControlParameters:
+    sim_type: str = tag(
+        "robotSimType",
+        "robot_sim_type",
+        default="",
+        doc="Hardware plugin. Only the default, DefaultRobotHWSim, is simulated.",
+    )
+    period: float = tag(
+        "controlPeriod", default=0.0, unit="s", doc="Control period. 0: every step."
+    )
+    legacy: bool = tag(
+        "legacyModeNS",
+        default=True,
+        doc="No effect: PID gains are read from the robot's namespace, or else from the "
+        "global namespace.",
+    )
+    stop_topic: str = tag(
+        "eStopTopic", default="", doc="Topic of a Bool. While it is true, all joints are stopped."
+    )
+
+
+class RosControl(ControlPlugin):
+    """Runs the controllers that are loaded through its controller manager's services.
+
+    Controllers in YAML files that are passed with ``cartwheel run --controllers`` start
+    automatically. If neither the tag nor the spawner specifies a namespace, the controller manager
+    uses the global namespace, as with spawn_model. Original package: ``gazebo_ros_control``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)
+    parameters: ClassVar[type] = RosControlParameters
+
+    def configure(self) -> None:
+        config: RosControlParameters = self.config
+        part = self.part
+        self.check_not_negative("period")
+        plain = config.sim_type.rpartition("::")[2] in _PLAIN
+        if not plain:
+            self.warn(
+                devices.HARDWARE_NOT_SIMULATED,
+                f'<robotSimType> "{config.sim_type}" is not simulated, so joints are driven as '
+                "with DefaultRobotHWSim",
+                values={"hardware": config.sim_type},
+            )
+        if short_name(self.tag.filename) != ROS_CONTROL:
+            self.warn(
+                devices.HARDWARE_NOT_SIMULATED,
+                f'plugin "{self.tag.filename}" is simulated as lib{ROS_CONTROL}.so; '
+                "its additional functions are not supported",
+                values={"hardware": self.tag.filename},
+            )
+        self.namespace = self.namespace.strip("/")
+        contents = [
+            (str(path), for_robot(read_parameters(path), path, part.description))
+            for path in self.shared.get(ControllerFiles).take()
+        ]
+        entries = [entry for path, content in contents for entry in self._load(path, content)]
+        joints, notes = transmissions(part.description, several=not plain)
+        for note in notes:
+            part.report(note)
+        if not joints:
+            self.warn(
+                devices.CONTROL_WITHOUT_JOINTS,
+                "no <transmission> drives a joint, so controllers have no joint to command",
+            )
+        rate = 0.0 if config.period == 0 else 1.0 / config.period
+        stated = self.graph.parameters.get(f"/{self.namespace}/joint_limits")
+        limits = Settings(stated if isinstance(stated, Mapping) else {}, "joint_limits")
+        hardware = Hardware(self, joints, self._gains(joints), limits)
+        self._hardware = hardware
+        manager = self._run(
+            Rig(
+                self,
+                hardware,
+                namespace=self.namespace,
+                ros2=False,
+                sensors=self._sensors(),
+                push=self._push(self._known_types()),
+            ),
+            rate,
+        )
+        if config.stop_topic:
+            self.subscribe(config.stop_topic, "std_msgs/msg/Bool", self._on_stop)
+        ManagerServices(self, manager)
+        self._start([replace(entry, values=self._parameters_of(entry)) for entry in entries])
+
+    def _parameters_of(self, entry: ControllerEntry) -> Mapping[str, Any]:
+        values: Mapping[str, Any] = self.graph.parameters.get(
+            f"/{self.namespace}/{entry.name}", entry.values
+        )
+        return values
+
+    def _known_types(self) -> list[str]:
+        """Returns the types of controllers whose parameters exist already."""
+        values = self.graph.parameters.get(f"/{self.namespace}" if self.namespace else "/")
+        if not isinstance(values, Mapping):
+            return []
+        return [entry.type for entry in ros1_entries(values, "")]
+
+    def _on_stop(self, message: Any) -> None:
+        self._hardware.halted = bool(message.data)
+
+    def _load(self, path: str, content: Mapping[str, Any]) -> list[ControllerEntry]:
+        """Sets a file's parameters in the namespace, as rosparam does; returns its controllers."""
+        if is_ros2(content):
+            raise PluginError(
+                "the file is for ros2_control, but the robot uses gazebo_ros_control",
+                code=devices.CONTROLLERS_FILE_MISMATCH,
+                origin=Origin(file=path),
+                hint="Pass the file that the launch file loads with rosparam.",
+            )
+        entries = ros1_entries(content, path)
+        if not entries:
+            self.warn(
+                devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+                "no parameter specifies a controller type, so no controller starts",
+                at=Origin(file=path),
+            )
+        spaces = {entry.namespace for entry in entries}
+        inner: Any = content
+        if len(spaces) == 1 and (space := spaces.pop()):
+            # A file for the whole parameter server contains the namespace itself.
+            for name in space.split("/"):
+                inner = next(
+                    (value for key, value in inner.items() if str(key).strip("/") == name), inner
+                )
+        for key, value in _below_root(inner):
+            name = f"/{self.namespace}/{key}"
+            before = self.graph.parameters.get(name)
+            if isinstance(before, dict) and isinstance(value, dict):
+                value = {**before, **value}  # noqa: PLW2901
+            self.graph.parameters.set(name, value)
+        return entries
+
+    def _gains(self, joints: list[JointInterfaces]) -> dict[str, tuple[str, Gains]]:
+        """Returns the PID of each joint whose commands a PID converts to efforts."""
+        path = "gazebo_ros_control/pid_gains"
+        parameters = self.graph.parameters
+        listed = parameters.get(f"/{self.namespace}/{path}") or parameters.get(f"/{path}")
+        gains: dict[str, tuple[str, Gains]] = {}
+        if not isinstance(listed, Mapping):
+            return gains
+        for joint in joints:
+            values = listed.get(joint.name)
+            moves = [kind for kind in joint.commands if kind in ("position", "velocity")]
+            if isinstance(values, Mapping) and moves:
+                settings = Settings(values, f"{path}/{joint.name}", f"/{self.namespace}")
+                gains[joint.name] = (moves[0], Gains.read(settings))
+        return gains
+
+
+def _below_root(content: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yields names and values of a mapping. The keys ``/`` and "" do not add a level."""
+    for key, value in content.items():
+        name = str(key).strip("/")
+        if name:
+            yield name, value
+        elif isinstance(value, Mapping):
+            yield from _below_root(value)

@@ -1,0 +1,124 @@
+"""Controller files to suggest for a robot whose controller manager has none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cartwheel.description.check.subject import DRIVE_JOINT_TAGS
+from cartwheel.description.model import PluginTag, RobotDescription
+from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
+from cartwheel.dialects.ros_control.files import (
+    ControllerEntry,
+    controller_entries,
+    is_ros2,
+    read_parameters,
+    ros1_entries,
+    ros2_file,
+)
+from cartwheel.errors import CartwheelError
+
+_ROS2_CONTROL = "gz_ros2_control-system"
+_LEVELS = 4
+"""Number of folders above the robot's file that are searched for its package."""
+_MOST = 400
+"""Maximum number of files to read."""
+
+
+def suggested(robot: RobotDescription) -> list[Path]:
+    """Returns the controller files near a robot whose controller manager has none.
+
+    Returns nothing if the manager's tag contains an existing file. Files with controllers for
+    wheels that a plugin drives are left out, because both would command the wheels.
+    """
+    driven = {
+        part.text.strip()
+        for tag in robot.plugins
+        for part in tag.element.children
+        if part.tag in DRIVE_JOINT_TAGS
+    }
+    joints = [
+        each.name for each in robot.joints if each.type != "fixed" and each.name not in driven
+    ]
+    managers = [tag for tag in robot.plugins if _manager(tag)]
+    if not managers or any(_has_files(tag) for tag in managers):
+        return []
+    ros2 = _manager(managers[0]) != ROS_CONTROL
+    return files_for(Path(robot.origin.file), joints, ros2=ros2)
+
+
+def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list[Path]:
+    """Returns YAML files with controllers for a robot's joints, or for the states of all joints.
+
+    The folders named ``config`` in the robot's package and in the packages beside it are searched.
+
+    Args:
+        robot: File of the robot.
+        joints: Names of the movable joints.
+        ros2: Search for ROS 2 parameter files.
+    """
+    files = []
+    for path in _candidates(robot):
+        try:
+            content = read_parameters(path)
+        except CartwheelError:
+            continue
+        if is_ros2(content) != ros2:
+            continue
+        entries = _entries(content, str(path), ros2=ros2)
+        words = {word for entry in entries for word in _words(entry.values)}
+        named = any(joint in word for joint in joints for word in words)
+        broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
+        if named or broadcasts:
+            files.append(path)
+    return files
+
+
+def _manager(tag: PluginTag) -> str:
+    """Returns which controller manager a plugin is, by its name; empty for other plugins."""
+    plugin = plugin_named(tag.filename)
+    for name in (ROS_CONTROL, _ROS2_CONTROL):
+        if plugin is not None and plugin is plugin_named(name):
+            return name
+    return ""
+
+
+def _has_files(tag: PluginTag) -> bool:
+    return any(Path(each.text.strip()).is_file() for each in tag.element.find_all("parameters"))
+
+
+def _entries(content: Mapping[str, Any], source: str, *, ros2: bool) -> list[ControllerEntry]:
+    if not ros2:
+        return ros1_entries(content, source)
+    return controller_entries(ros2_file([content], ""), "", source)
+
+
+def _candidates(robot: Path) -> Iterator[Path]:
+    package = next(
+        (each for each in robot.resolve().parents[:_LEVELS] if (each / "package.xml").is_file()),
+        None,
+    )
+    if package is None:
+        return
+    seen = 0
+    for folder in sorted(package.parent.iterdir()):
+        if not (folder / "package.xml").is_file():
+            continue
+        for path in sorted(folder.glob("**/config/**/*.y*ml")):
+            seen += 1
+            if seen > _MOST:
+                return
+            yield path
+
+
+def _words(values: Any) -> Iterator[str]:
+    if isinstance(values, str):
+        yield values
+    elif isinstance(values, Mapping):
+        for key, value in values.items():
+            yield str(key)
+            yield from _words(value)
+    elif isinstance(values, list):
+        for value in values:
+            yield from _words(value)

@@ -1,0 +1,98 @@
+"""The ``<plugin>`` tags in worlds: supported, built-in and unsupported plugins."""
+
+from __future__ import annotations
+
+import functools
+
+from cartwheel.codes import devices, running
+from cartwheel.component import Shared
+from cartwheel.description.model import PluginTag
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.gz.sensor_tags import SYSTEMS
+from cartwheel.errors import CartwheelError, Diagnostic, fault
+from cartwheel.simulation import Part
+from cartwheel.simulation.resident import Behaviour
+
+BUILT_IN = {
+    *SYSTEMS,
+    "gz-sim-physics-system",
+    "gz-sim-user-commands-system",
+    "gz-sim-scene-broadcaster-system",
+    "gazebo_ros_init",
+    "gazebo_ros_factory",
+    "gazebo_ros_force_system",
+    "gazebo_ros_state",
+    "gazebo_ros_properties",
+    "gazebo_ros_api_plugin",
+    "gazebo_ros_paths_plugin",
+}
+"""Plugins for physics, spawning, time and sensors, which Cartwheel always provides."""
+
+
+def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
+    """Returns the diagnostic for a plugin or sensor that cannot be created."""
+    return running.PLUGIN_LEFT_OUT.because(
+        f"{_title(tag)} is ignored",
+        error,
+        origin=tag.origin,
+        values={"plugin": tag.filename or tag.name},
+    )
+
+
+def failed(tag: PluginTag, error: Exception) -> Diagnostic:
+    """Returns the diagnostic for a plugin or sensor with an unexpected exception at creation."""
+    return fault(
+        f"{_title(tag)} failed and is ignored",
+        error,
+        tag.origin,
+        code=running.PLUGIN_FAILED,
+        values={"plugin": tag.filename or tag.name},
+    )
+
+
+def _title(tag: PluginTag) -> str:
+    return f'plugin "{tag.filename}"' if tag.filename else f'sensor "{tag.name}"'
+
+
+def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
+    """Creates the plugins of the world and reports those that have no effect.
+
+    A plugin that cannot be created is skipped with a report.
+
+    Args:
+        part: The world's part of the simulation.
+        shared: Objects that all components of the simulation share.
+    """
+    behaviours: list[Behaviour] = []
+    for tag in part.world.plugins:
+        name = short_name(tag.filename)
+        if name in BUILT_IN:
+            continue
+        plugin = plugin_named(tag.filename)
+        if plugin is None:
+            part.report(
+                devices.PLUGIN_UNKNOWN.diagnostic(
+                    f'the world plugin "{tag.filename}" is not supported, so it has no effect',
+                    severity="warning",
+                    origin=tag.origin,
+                    values={"name": tag.filename},
+                    mark=tag.filename,
+                )
+            )
+        elif not plugin.for_world:
+            part.report(
+                devices.PLUGIN_MISPLACED.diagnostic(
+                    f'plugin "{tag.filename}" has no effect here because it belongs inside a '
+                    "<model>",
+                    origin=tag.origin,
+                    values={"name": tag.filename, "place": "model"},
+                )
+            )
+        else:
+            try:
+                behaviours.append(part.made(functools.partial(plugin, part, shared, tag, None)))
+            except CartwheelError as error:
+                part.report(left_out(tag, error))
+            except Exception as error:  # noqa: BLE001 - a plugin's own
+                part.report(failed(tag, error))
+    return behaviours

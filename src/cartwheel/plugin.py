@@ -1,0 +1,11 @@
+"""The interface for plugins in other packages.
+
+A plugin is a subclass of `Plugin` with a dataclass of `tag` fields, found by the entry point group
+``cartwheel.plugins``. Docs: ``docs/how-to/write-a-plugin.md``.
+"""
+
+from cartwheel.component import Component, Scope
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+
+__all__ = ["Component", "Plugin", "Scope", "tag"]
