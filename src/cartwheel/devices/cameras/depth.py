@@ -13,7 +13,7 @@ from cartwheel.devices.cameras.compressed import CompressedDepths
 from cartwheel.devices.cameras.eye import Eye
 from cartwheel.devices.cameras.formats import Pixels
 from cartwheel.devices.cameras.info import INFO
-from cartwheel.dialects.scan_messages import point_cloud2
+from cartwheel.devices.point_clouds import point_cloud2
 from cartwheel.messages import header, message_class
 
 _MILLIMETRES = 1000.0

@@ -7,9 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from cartwheel.devices.point_clouds import point_cloud
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.scan import Scanner
-from cartwheel.dialects.scan_messages import point_cloud
 from cartwheel.dialects.tags import tag
 from cartwheel.messages import header
 

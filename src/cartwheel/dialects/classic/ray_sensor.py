@@ -7,9 +7,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from cartwheel.devices.point_clouds import point_cloud, point_cloud2
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.scan import Scanner
-from cartwheel.dialects.scan_messages import laser_scan, point_cloud, point_cloud2, range_reading
+from cartwheel.dialects.scan_messages import laser_scan, range_reading
 from cartwheel.dialects.tags import invalid, tag
 from cartwheel.messages import header
 

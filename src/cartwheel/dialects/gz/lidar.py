@@ -7,10 +7,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from cartwheel.devices.point_clouds import point_cloud2
 from cartwheel.dialects.gz.sensor_tags import default_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.scan import Scan, Scanner
-from cartwheel.dialects.scan_messages import laser_scan, point_cloud2
+from cartwheel.dialects.scan_messages import laser_scan
 from cartwheel.dialects.tags import tag
 from cartwheel.messages import header
 

@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
+from cartwheel.devices.point_clouds import point_cloud2
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.scan import Scanner
-from cartwheel.dialects.scan_messages import point_cloud2
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
 from cartwheel.messages import header
