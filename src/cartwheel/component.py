@@ -36,6 +36,7 @@ class Closable(Protocol):
 
 K = TypeVar("K", bound=Closable)
 T = TypeVar("T")
+D = TypeVar("D", bound="Component")
 
 
 class Shared:
@@ -123,6 +124,7 @@ class Component:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
         self._open = contextlib.ExitStack()
+        self._devices: list[Component] = []
         self._crowded = False
 
     @property
@@ -157,6 +159,8 @@ class Component:
 
     def reset(self) -> None:
         """Restores the initial state when simulation time is reset to zero."""
+        for device in self._devices:
+            device.reset()
 
     def close(self) -> None:
         """Withdraws all topics and services, when the model is deleted."""
@@ -166,6 +170,11 @@ class Component:
         """Registers an item that is closed with the component, and returns it."""
         self._open.callback(item.close)
         return item
+
+    def add(self, device: D) -> D:
+        """Registers a device that is reset and closed with the component, and returns it."""
+        self._devices.append(device)
+        return self.keep(device)
 
     def resolve(self, name: str) -> str:
         """Returns a topic or service name in the component's namespace, after remapping."""
