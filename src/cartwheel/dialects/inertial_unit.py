@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
+from cartwheel.devices.noise import VectorNoise
 from cartwheel.dialects.geodesy import world_datum
-from cartwheel.dialects.noise import VectorNoise, read_noise
+from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import invalid, vector
 from cartwheel.errors import Origin
 from cartwheel.geometry import (

@@ -9,7 +9,8 @@ import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
-from cartwheel.dialects.noise import Noise, VectorNoise, read_noise
+from cartwheel.devices.noise import Noise, VectorNoise
+from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import number
 from cartwheel.errors import Diagnostic, Origin, PluginError
 from cartwheel.geometry import Array

@@ -7,9 +7,10 @@ from typing import Any, ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Sensor
+from cartwheel.devices.noise import VectorNoise
 from cartwheel.dialects.gz.sensor_tags import frame_tag
-from cartwheel.dialects.noise import VectorNoise, read_noise
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import invalid, tag
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import IDENTITY, matrix_from_quat, quat_conjugate, quat_multiply

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from cartwheel.dialects.noise import DriftingError
+from cartwheel.devices.noise import DriftingError
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.scan import Scanner
 from cartwheel.dialects.scan_messages import range_reading

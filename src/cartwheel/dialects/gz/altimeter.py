@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.devices.noise import VectorNoise
 from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
-from cartwheel.dialects.noise import VectorNoise, read_noise
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import tag
 from cartwheel.messages import header, message_class
 

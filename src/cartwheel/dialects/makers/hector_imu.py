@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.dialects.noise import DriftingError
+from cartwheel.devices.noise import DriftingError
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import (
@@ -232,6 +232,7 @@ class HectorImu(Plugin[HectorImuParameters]):
         self, name: str, drift: tuple[Any, Any, Any], noise: Any, scale: Any
     ) -> DriftingError:
         offset, deviation, frequency = drift
+        # In the original plugin, the standard deviation of the drift depends on the step length.
         return DriftingError(
             self.part,
             f"imu {self.config.topic} {name}",

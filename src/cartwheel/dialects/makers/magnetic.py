@@ -8,10 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from cartwheel.devices.noise import DriftingError, VectorNoise
 from cartwheel.dialects.geodesy import world_datum
 from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
-from cartwheel.dialects.noise import DriftingError, VectorNoise, read_noise
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import quat_conjugate, quat_multiply, rotate
 from cartwheel.messages import header, message_class

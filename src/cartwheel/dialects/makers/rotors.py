@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.devices.noise import DriftingError
 from cartwheel.dialects.classic.imu import ImuBase
 from cartwheel.dialects.makers.motor_model import ACTUATORS, SLOWDOWN
-from cartwheel.dialects.noise import DriftingError
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import Pose

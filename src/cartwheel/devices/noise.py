@@ -1,90 +1,69 @@
-"""Sensor errors: SDF's Gaussian noise with bias, and hector_gazebo_plugins' slow drift."""
+"""Errors of sensors: Gaussian noise with a bias, and a drift that is a Gauss-Markov process."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from cartwheel.codes import devices
-from cartwheel.description.model import Element
-from cartwheel.description.numbers import LARGEST
-from cartwheel.dialects.tags import number
-from cartwheel.errors import Diagnostic, PluginError
 from cartwheel.geometry import Array
 from cartwheel.simulation import Part
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Noise:
-    """SDF's ``<noise>`` on one measured quantity."""
+    """Noise on one measured quantity, in the quantity's unit. The fields have SDF's names."""
 
     mean: float = 0.0
+    """Constant error."""
     stddev: float = 0.0
+    """Standard deviation of the white noise of one measurement."""
     bias_mean: float = 0.0
+    """Mean of the bias, which is drawn once and has a random sign."""
     bias_stddev: float = 0.0
-    walk: float = 0.0
+    """Standard deviation of the bias."""
+    dynamic_bias_stddev: float = 0.0
     """Random walk of the bias: its standard deviation after 1 s, which grows with the square root
     of time."""
-    memory: float = 0.0
+    dynamic_bias_correlation_time: float = 0.0
     """Correlation time of the random walk, s. At 0 the bias is constant."""
     precision: float = 0.0
     """If positive, measurements are rounded to a multiple of this."""
 
 
-_FIELDS = {
-    "mean": "mean",
-    "stddev": "stddev",
-    "bias_mean": "bias_mean",
-    "bias_stddev": "bias_stddev",
-    "dynamic_bias_stddev": "walk",
-    "dynamic_bias_correlation_time": "memory",
-    "precision": "precision",
-}
-"""Fields of `Noise` by SDF tag."""
-_SIGNED = ("mean", "bias_mean")
-
-
-def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) -> Noise:
-    """Reads a ``<noise>`` element.
+def stationary_deviation(density: Array, correlation_time: Array) -> Array:
+    """Returns the standard deviation that a random walk with a correlation time approaches.
 
     Args:
-        element: The element; None: no noise.
-        report: Receives diagnostics about settings without effect.
-
-    Raises:
-        PluginError: The type or a number is not allowed.
+        density: Standard deviation of the walk after 1 s.
+        correlation_time: Seconds.
     """
-    if element is None:
-        return Noise()
-    kind = element.find("type")
-    name = (kind.text if kind is not None else element.attribute("type") or "gaussian").strip()
-    if name in ("none", ""):
-        return Noise()
-    if name not in ("gaussian", "gaussian_quantized"):
-        raise PluginError(
-            f'noise of type "{name}" is not supported',
-            code=devices.PLUGIN_PARAMETER_INVALID,
-            origin=element.origin,
-            hint="Supported types: none, gaussian, gaussian_quantized.",
-            values={"parameter": "noise", "value": name},
-        )
-    values = {}
-    for tag, field in _FIELDS.items():
-        child = element.find(tag)
-        least = -LARGEST if tag in _SIGNED else 0.0
-        values[field] = number(child, least=least) if child is not None else 0.0
-    noise = Noise(**values)
-    idle = ""
-    if noise.precision and name != "gaussian_quantized":
-        noise = replace(noise, precision=0.0)
-        idle = "<precision> has an effect only with noise of type gaussian_quantized"
-    elif noise.walk and not noise.memory:
-        idle = "<dynamic_bias_stddev> has an effect only with <dynamic_bias_correlation_time>"
-    if idle:
-        report(devices.SENSOR_SETTING_IGNORED.diagnostic(idle, origin=element.origin))
-    return noise
+    deviation: Array = density * np.sqrt(correlation_time / 2)
+    return deviation
+
+
+def gauss_markov_step(deviation: Array, frequency: Array, period_ns: int) -> tuple[Array, Array]:
+    """Returns the factors of a Gauss-Markov process for steps of a fixed length.
+
+    Args:
+        deviation: Stationary standard deviation.
+        frequency: Inverse of the time constant, 1/s.
+        period_ns: Length of a step, ns.
+
+    Returns:
+        The factor on the previous value, and the standard deviation of the random number that is
+        added to it.
+    """
+    kept: Array = np.exp(-frequency * period_ns * 1e-9)
+    added: Array = deviation * np.sqrt(1.0 - kept**2)
+    return kept, added
+
+
+def quantize(values: Array, step: Array | float) -> Array:
+    """Rounds values to multiples of a positive step."""
+    rounded: Array = np.round(values / step) * step
+    return rounded
 
 
 class _Drift:
@@ -112,8 +91,7 @@ class _Drift:
         self._part, self._name, self._settled = part, name, settled
         self._period_ns = part.period_ns(rate)
         self._deviation = deviation
-        self._keep = np.exp(-frequency * self._period_ns * 1e-9)
-        self._grow = deviation * np.sqrt(1.0 - self._keep**2)
+        self._kept, self._added = gauss_markov_step(deviation, frequency, self._period_ns)
         self.restart()
 
     def restart(self) -> None:
@@ -138,7 +116,7 @@ class _Drift:
         self._updated_ns += steps * self._period_ns
         if self._deviation.any():
             for _ in range(steps):
-                self._value = self._keep * self._value + self._random.normal(0.0, self._grow)
+                self._value = self._kept * self._value + self._random.normal(0.0, self._added)
         return self._value
 
 
@@ -166,15 +144,14 @@ class VectorNoise:
         )
         # As in Gazebo, the sign of the bias is random.
         self._fixed = self._mean + np.where(random.random(len(noises)) < 0.5, bias, -bias)
-        memory = np.array([noise.memory for noise in noises])
-        walk = np.where(memory > 0, [noise.walk for noise in noises], 0.0)
+        time = np.array([noise.dynamic_bias_correlation_time for noise in noises])
+        walk = np.where(time > 0, [noise.dynamic_bias_stddev for noise in noises], 0.0)
         self._drift = _Drift(
             part,
             name,
             rate=rate,
-            # Stationary deviation of a random walk with this density and correlation time.
-            deviation=walk * np.sqrt(memory / 2),
-            frequency=1.0 / np.where(memory > 0, memory, 1.0),
+            deviation=stationary_deviation(walk, time),
+            frequency=1.0 / np.where(time > 0, time, 1.0),
             settled=False,
         )
         self._none = not (
@@ -195,16 +172,16 @@ class VectorNoise:
         measured += self._part.random(self._name).normal(0.0, self._stddev)
         if self._rounds.any():
             step = np.where(self._rounds, self._precision, 1.0)
-            measured = np.where(self._rounds, np.round(measured / step) * step, measured)
+            measured = np.where(self._rounds, quantize(measured, step), measured)
         result: list[float] = measured.tolist()
         return result
 
 
 class DriftingError:
-    """The error model of hector_gazebo_plugins: scale factor, offset, slow drift and noise.
+    """Scale factor, offset, drift and white noise on quantities that are measured together.
 
-    The drift is a Gauss-Markov process with a constant standard deviation. (In the original plugin,
-    the drift grows with the step length.) Its value depends only on time, not on subscribers.
+    The drift is a Gauss-Markov process with a constant standard deviation. Its value depends only
+    on time, not on subscribers.
 
     Args:
         part: Provides the seed and the time.

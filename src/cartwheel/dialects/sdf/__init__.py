@@ -1,0 +1,1 @@
+"""Elements of SDF that all dialects share: sensor noise and scans."""

@@ -1,0 +1,57 @@
+"""SDF's ``<noise>`` element."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+
+from cartwheel.codes import devices
+from cartwheel.description.model import Element
+from cartwheel.description.numbers import LARGEST
+from cartwheel.devices.noise import Noise
+from cartwheel.dialects.tags import number
+from cartwheel.errors import Diagnostic, PluginError
+
+_SIGNED = ("mean", "bias_mean")
+
+
+def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) -> Noise:
+    """Reads a ``<noise>`` element.
+
+    Args:
+        element: The element; None: no noise.
+        report: Receives diagnostics about settings without effect.
+
+    Raises:
+        PluginError: The type or a number is not allowed.
+    """
+    if element is None:
+        return Noise()
+    kind = element.find("type")
+    name = (kind.text if kind is not None else element.attribute("type") or "gaussian").strip()
+    if name in ("none", ""):
+        return Noise()
+    if name not in ("gaussian", "gaussian_quantized"):
+        raise PluginError(
+            f'noise of type "{name}" is not supported',
+            code=devices.PLUGIN_PARAMETER_INVALID,
+            origin=element.origin,
+            hint="Supported types: none, gaussian, gaussian_quantized.",
+            values={"parameter": "noise", "value": name},
+        )
+    values = {}
+    # The fields have the names of the tags.
+    for tag in (field.name for field in fields(Noise)):
+        child = element.find(tag)
+        least = -LARGEST if tag in _SIGNED else 0.0
+        values[tag] = number(child, least=least) if child is not None else 0.0
+    noise = Noise(**values)
+    idle = ""
+    if noise.precision and name != "gaussian_quantized":
+        noise = replace(noise, precision=0.0)
+        idle = "<precision> has an effect only with noise of type gaussian_quantized"
+    elif noise.dynamic_bias_stddev and not noise.dynamic_bias_correlation_time:
+        idle = "<dynamic_bias_stddev> has an effect only with <dynamic_bias_correlation_time>"
+    if idle:
+        report(devices.SENSOR_SETTING_IGNORED.diagnostic(idle, origin=element.origin))
+    return noise
