@@ -67,5 +67,5 @@ def test_tags_without_effect_are_reported(tags, expected):
 def test_an_invalid_noise_is_an_error_at_its_line(element):
     with pytest.raises(PluginError) as raised:
         read_noise(element, pytest.fail)
-    assert raised.value.diagnostic.code == devices.PLUGIN_PARAMETER_INVALID
-    assert raised.value.diagnostic.origin == PLACE
+    assert raised.value.diagnostic().code == devices.PLUGIN_PARAMETER_INVALID
+    assert raised.value.origin == PLACE
