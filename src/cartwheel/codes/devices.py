@@ -60,7 +60,7 @@ PLUGIN_PARAMETER_OBSOLETE = Code(
     "CW416",
     "plugin-parameter-obsolete",
     "warning",
-    "Gazebo 11 ignores a parameter of older versions",
+    "Gazebo 11 ignores a plugin parameter of older Gazebo versions",
 )
 PLUGIN_JOINT_UNKNOWN = Code(
     "CW417", "plugin-joint-unknown", "error", "a plugin refers to a joint that does not exist"
@@ -147,7 +147,7 @@ PLUGIN_PARAMETER_UNSUPPORTED = Code(
     "CW459",
     "plugin-parameter-unsupported",
     "error",
-    "a plugin does not support a value that Gazebo supports",
+    "a parameter value is valid in Gazebo, but not supported by Cartwheel",
 )
 PLUGIN_RANGE_REVERSED = Code(
     "CW460",
@@ -190,7 +190,7 @@ COORDINATES_MISSING = Code(
     "CW470",
     "coordinates-missing",
     "info",
-    "a GPS sensor is in a world without geographic coordinates",
+    "a world with a GPS sensor has no geographic coordinates",
 )
 CONTROLLERS_FILE_MISMATCH = Code(
     "CW471",
@@ -226,14 +226,14 @@ EFFORT_LIMIT_TOO_LOW = Code(
     "CW477",
     "effort-limit-too-low",
     "warning",
-    "a joint's effort limit is too low to hold its load",
+    "a joint's effort limit is too low to hold the joint against gravity",
 )
 BRIDGE_FILE_INVALID = Code(
     "CW478",
     "bridge-file-invalid",
     "error",
-    "the configuration file of ros_gz_bridge cannot be used",
+    "a ros_gz_bridge configuration file is missing or invalid",
 )
 BRIDGE_ENTRY_IGNORED = Code(
-    "CW479", "bridge-entry-ignored", "warning", "an entry of ros_gz_bridge has no effect"
+    "CW479", "bridge-entry-ignored", "warning", "an entry in a ros_gz_bridge configuration file has no effect"
 )

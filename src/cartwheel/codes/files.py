@@ -114,7 +114,7 @@ XACRO_MESSAGE = Code(
     "CW119",
     "xacro-message",
     "warning",
-    "xacro reports a problem, or the description prints a message",
+    "xacro or the description prints a message",
 )
 XACRO_DEPRECATED = Code(
     "CW120",

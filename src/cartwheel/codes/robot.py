@@ -60,7 +60,7 @@ AXIS_NOT_NORMALIZED = Code(
     "CW218", "axis-not-normalized", "warning", "the axis of a joint is not a unit vector"
 )
 INERTIA_MISSING = Code(
-    "CW219", "inertia-missing", "warning", "a moving link has no <inertial>, so Gazebo ignores it"
+    "CW219", "inertia-missing", "warning", "a moving link has no <inertial>, so Gazebo ignores the link"
 )
 INERTIA_IMPOSSIBLE = Code(
     "CW220", "inertia-impossible", "warning", "no rigid body can have this inertia"
@@ -78,7 +78,7 @@ CENTER_OF_MASS_OUTSIDE = Code(
     "CW223",
     "center-of-mass-outside",
     "warning",
-    "a center of mass is far outside the geometry of its link",
+    "a centre of mass is far outside the geometry of its link",
 )
 MASS_IN_GRAMS = Code(
     "CW224", "mass-in-grams", "warning", "a link is denser than any metal; its mass may be in grams"
@@ -139,7 +139,7 @@ WHEELS_OFF_GROUND = Code(
     "CW237",
     "wheels-off-ground",
     "warning",
-    "a collision shape reaches lower than the driven wheels",
+    "a link is lower than the driven wheels, so the wheels do not touch the ground",
 )
 OVERLAPPING_COLLISIONS = Code(
     "CW238",

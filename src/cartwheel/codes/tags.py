@@ -102,13 +102,13 @@ DEFAULT_USED = Code(
     "CW317",
     "default-used",
     "warning",
-    "a tag is missing, and its default is unlikely to be intended",
+    "a tag is missing, and its default value is probably not intended",
 )
 ELEMENT_LEFT_OUT = Code(
     "CW318",
     "element-left-out",
     "warning",
-    "an element is ignored because another one is missing or conflicts with it",
+    "an element is ignored because it needs a missing element or conflicts with another one",
 )
 MODEL_EMPTY = Code(
     "CW319",

@@ -227,13 +227,13 @@ def mass_outside(subject: Subject) -> Iterator[Diagnostic]:
             node = robot.node_at(inertial.origin)
             origin = nodes.child(node, "origin")
             yield robot_codes.CENTER_OF_MASS_OUTSIDE.diagnostic(
-                message=f'the center of mass of link "{link.name}" is {away:.3g} m outside its '
+                message=f'the centre of mass of link "{link.name}" is {away:.3g} m outside its '
                 f"geometry, which is {across:.3g} m across",
                 values={"link": link.name, "distance": away, "size": across},
                 origin=origin.origin if origin is not None else inertial.origin,
                 instead=f"<pose>{xyz} 0 0 0</pose>" if in_sdf else f'<origin xyz="{xyz}"/>',
                 place="" if in_sdf else "element" if origin is not None else "inside",
-                hint="The suggestion is the center of the geometry.",
+                hint="The suggestion is the centre of the geometry.",
                 mark="xyz",
             )
 

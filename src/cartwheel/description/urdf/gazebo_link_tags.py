@@ -27,7 +27,7 @@ LINK_TAGS = (
 )  # fmt: skip
 
 _IDLE = {
-    "canonicalBody": "the canonical body is always the root link",
+    "canonicalBody": "the canonical link is always the root link",
     "projector": "projectors are not supported",
     "audio_source": "audio is not supported",
     "audio_sink": "audio is not supported",

@@ -36,11 +36,11 @@ ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide", *INSERTED)
 
 _ROBOT_IDLE = {
     "gripper": "grippers are not supported: use libgazebo_grasp_fix.so",
-    "allow_auto_disable": "bodies at rest sleep automatically",
+    "allow_auto_disable": "bodies at rest are put to sleep automatically",
     "enable_wind": "wind is not simulated",
     "pose": "the pose is set when the robot is spawned",
     "model": "models inside a URDF are not supported",
-    "verbose": "Gazebo ignores it too",
+    "verbose": "Gazebo ignores this tag too",
 }
 
 
