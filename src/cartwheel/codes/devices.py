@@ -235,5 +235,8 @@ BRIDGE_FILE_INVALID = Code(
     "a ros_gz_bridge configuration file is missing or invalid",
 )
 BRIDGE_ENTRY_IGNORED = Code(
-    "CW479", "bridge-entry-ignored", "warning", "an entry in a ros_gz_bridge configuration file has no effect"
+    "CW479",
+    "bridge-entry-ignored",
+    "warning",
+    "an entry in a ros_gz_bridge configuration file has no effect",
 )

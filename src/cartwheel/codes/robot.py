@@ -60,7 +60,10 @@ AXIS_NOT_NORMALIZED = Code(
     "CW218", "axis-not-normalized", "warning", "the axis of a joint is not a unit vector"
 )
 INERTIA_MISSING = Code(
-    "CW219", "inertia-missing", "warning", "a moving link has no <inertial>, so Gazebo ignores the link"
+    "CW219",
+    "inertia-missing",
+    "warning",
+    "a moving link has no <inertial>, so Gazebo ignores the link",
 )
 INERTIA_IMPOSSIBLE = Code(
     "CW220", "inertia-impossible", "warning", "no rigid body can have this inertia"
