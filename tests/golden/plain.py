@@ -13,21 +13,23 @@ import numpy as np
 from .adapter import tree
 from .subjects import CORPUS, ROOT
 
-_PLACES = {str(CORPUS): "<corpus>", str(ROOT): "<here>", str(tree()): "<here>"}
+PLACES = {str(CORPUS): "<corpus>", str(ROOT): "<here>", str(tree()): "<here>"}
+"""Folders of this machine, and what replaces them."""
 _MEASURED = (
-    (re.compile(r"\bin \d+(\.\d+)? s\b"), "in # s"),
+    (re.compile(r"\bin \d+(\.\d+)? ?s\b"), "in # s"),
+    (re.compile(r"(?<![\w.])\d+(\.\d+)?(e\+?\d+)?x(?!\w)"), "#x"),
     (re.compile(r"\d+(\.\d+)? times real time"), "# times real time"),
     (re.compile(r"(?<=:)\d{4,5}\b(?!\.\d)"), "#"),
     (re.compile(r"\d+(\.\d+)? ?([kM]i?B)\b"), r"# \2"),
     (re.compile(r"\bpid \d+"), "pid #"),
     (re.compile(r"\d{4}-\d\d-\d\d[T_ -]\d\d[:-]\d\d[:-]\d\d(\.\d+)?"), "<date>"),
 )
-_NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(e[-+]?\d+)?(?![\w])")
+_NUMBER = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(e[-+]?\d+)?")
 
 
 def path(text: str, places: Mapping[str, str] | None = None) -> str:
     """A text in which the folders of this machine are replaced."""
-    known = {**(places or {}), **_PLACES}
+    known = {**(places or {}), **PLACES}
     for place in sorted(known, key=len, reverse=True):
         text = text.replace(place, known[place])
     return text

@@ -7,6 +7,7 @@ import pytest
 
 from .comparing import differences
 from .expected import FILE, brief, subjects
+from .plain import output
 
 EXPECTED = json.loads(FILE.read_text())
 SUBJECTS = {each.key: each for each in subjects()}
@@ -69,3 +70,24 @@ def test_differences_are_named_by_kind(change, kind):
 def test_a_subject_of_one_record_only_is_a_difference():
     empty = {"subjects": {}}
     assert [each[:2] for each in differences(record(), empty)] == [("cart", "subject")]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "live"),
+    [
+        ("1 passed in 9.95s", "1 passed in 12s", False),
+        ("simulated 5.000 s in 0.5 s", "simulated 5.000 s in 1.25 s", False),
+        ("cart  yes  695x  2", "cart yes 1.2e+03x 2", False),
+        ("open http://localhost:8080", "open http://localhost:41231", False),
+        ("min: 0.030s window: 10", "min: 0.031s window: 9", True),
+        ("in /somewhere/a.urdf", "in <folder>/a.urdf", False),
+    ],
+)
+def test_times_ports_and_folders_are_no_differences(one, other, live):
+    places = {"/somewhere": "<folder>"}
+    assert output(one, places, live=live) == output(other, places, live=live)
+
+
+def test_other_numbers_are_differences():
+    assert output("mass 7.2 kg", {}, live=False) != output("mass 7.3 kg", {}, live=False)
+    assert output("state: on", {}, live=True) != output("state: off", {}, live=True)

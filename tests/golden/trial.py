@@ -27,8 +27,8 @@ from .adapter import (
     to_dict,
 )
 from .commanding import PERIOD, Commands
-from .plain import diagnostic, digest, error, numbers, path, value
-from .subjects import Subject
+from .plain import PLACES, diagnostic, digest, error, numbers, path, value
+from .subjects import ROBOTS, Subject
 
 IMAGES = 3
 """Messages of an image topic: rendering in software takes long."""
@@ -62,13 +62,12 @@ def _files(subject: Subject) -> Iterator[tuple[Path | None, Path | None]]:
     before, mark, rest = text.rpartition('filename="')
     assert mark, source
     text = before + mark + subject.filename + rest[rest.index('"') :]
-    # Beside the source, so that packages are found.
-    with tempfile.NamedTemporaryFile(
-        "w", dir=source.parent, prefix=".alias-", suffix=source.suffix
-    ) as file:
-        file.write(text)
-        file.flush()
-        made = Path(file.name)
+    with tempfile.TemporaryDirectory(prefix="golden") as folder:
+        # The package that the robots name lies beside them.
+        Path(folder, "my_robot").symlink_to(ROBOTS / "my_robot")
+        made = Path(folder, f"renamed{source.suffix}")
+        made.write_text(text)
+        PLACES[folder] = "<folder>"
         yield (None, made) if subject.world else (made, None)
 
 
