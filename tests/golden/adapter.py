@@ -10,9 +10,14 @@ import cartwheel
 from cartwheel import CartwheelError, Pose, World, check
 from cartwheel.corpus import robots_in
 from cartwheel.description import load_robot
-from cartwheel.dialects.ros_control.files import for_robot, read_parameters
-from cartwheel.dialects.ros_control.suggestion import suggested
 from cartwheel.messages import encode_cdr, message_class, service_classes, to_dict, zero
+
+try:
+    from cartwheel.dialects.ros_control.files import for_robot, read_parameters
+    from cartwheel.dialects.ros_control.suggestion import suggested
+except ModuleNotFoundError:  # a source tree from before these packages were named
+    from cartwheel.plugins.control.files import for_robot, read_parameters
+    from cartwheel.plugins.control.suggestion import suggested
 
 __all__ = [
     "CartwheelError",
