@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 _SHOWN = 8
@@ -29,7 +30,10 @@ def _between(one: Any, other: Any, place: str) -> Iterator[str]:
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         if "hex" in one and "hex" in other:
             if one["hex"] != other["hex"]:
-                yield f"{place}: {_short(one['decimal'])} -> {_short(other['decimal'])}"
+                yield (
+                    f"{place}: differs by up to {_largest(one['hex'], other['hex']):.3g}: "
+                    f"{_short(one['decimal'])} -> {_short(other['decimal'])}"
+                )
             return
         for key in {**one, **other}:
             inside = f"{place} > {key}" if place else str(key)
@@ -52,6 +56,14 @@ def _between(one: Any, other: Any, place: str) -> Iterator[str]:
             )
         else:
             yield f"{place}: {_short(one)} -> {_short(other)}"
+
+
+def _largest(one: Sequence[str], other: Sequence[str]) -> float:
+    """The largest difference of numbers in hexadecimal; infinite if there are more or fewer."""
+    if len(one) != len(other):
+        return math.inf
+    pairs = zip(one, other, strict=True)
+    return max(abs(float.fromhex(a) - float.fromhex(b)) for a, b in pairs if a != b)
 
 
 def _short(value: Any) -> str:
