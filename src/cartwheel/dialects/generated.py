@@ -78,7 +78,7 @@ PLUGINS = {
     "gz-sim-multicopter-motor-model-system": "makers.motor_model",
     "gz-sim-odometry-publisher-system": "classic.p3d",
     "gz-sim-pose-publisher-system": "gz.pose_publisher",
-    "gz-sim-velocity-control-system": "classic.planar_move",
+    "gz-sim-velocity-control-system": "gz.velocity_control",
     "gz-sim-wheel-slip-system": "classic.wheel_slip",
     "gz_ros2_control-system": "ros2_control.plugin",
     "hector_gazebo_ros_baro": "makers.hector_baro",

@@ -1,22 +1,13 @@
-"""``libgazebo_ros_planar_move.so``, ``gz-sim-velocity-control-system``: drives without wheels."""
+"""``libgazebo_ros_planar_move.so``: a drive without wheels."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import (
-    NO_COVARIANCE,
-    Odometry,
-    planar_covariance,
-    planar_motion,
-)
-from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.devices.drives.planar import PlanarDrive, PlanarDriveConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.errors import PluginError
-from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -85,111 +76,22 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 
     def configure(self) -> None:
         config = self.config
-        part = self.part
-        self._base = self.link_or_root(config.base_frame)
-        self._drive = part.body_drive(origin=self.tag.origin)
+        variances = (config.covariance_x, config.covariance_y, config.covariance_yaw)
+        # The ROS 1 plugin leaves the covariance of the twist at zero.
         ros2 = self.tag.element.find("ros") is not None
-        covariance = planar_covariance(
-            config.covariance_x, config.covariance_y, config.covariance_yaw
-        )
-        publishes = config.rate > 0
-        self._odometry = self.keep(
-            Odometry(
-                self,
-                topic=config.odometry_topic if publishes and config.publish_odom else None,
-                frame=config.odometry_frame,
-                base=config.base_frame,
-                rate=config.rate,
-                transform=publishes and config.publish_odom_tf,
-                pose_covariance=covariance,
-                twist_covariance=covariance if ros2 else NO_COVARIANCE,
+        self.add(
+            PlanarDrive(
+                self.scope,
+                PlanarDriveConfig(
+                    command_topic=config.command_topic,
+                    timeout=config.timeout if config.timeout >= 0 else None,
+                    odometry_topic=config.odometry_topic if config.publish_odom else None,
+                    odometry_frame=config.odometry_frame,
+                    base=config.base_frame,
+                    rate=config.rate,
+                    transform=config.publish_odom_tf,
+                    pose_variances=variances,
+                    twist_variances=variances if ros2 else None,
+                ),
             )
         )
-        self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
-        if config.timeout >= 0:
-            part.schedule(0, before=self._watch)
-        if publishes:
-            part.schedule(config.rate, after=self._publish, active=self._odometry.wanted)
-        self.reset()
-
-    def reset(self) -> None:
-        self._heard_ns: int | None = None
-        self._drive.command((0.0, 0.0, None), (None, None, 0.0))
-
-    def _on_command(self, message: Any) -> None:
-        linear, angular = message.linear, message.angular
-        self._heard_ns = self.part.time_ns
-        self._drive.command(
-            (float(linear.x), float(linear.y), None), (None, None, float(angular.z))
-        )
-
-    def _watch(self) -> None:
-        if self._heard_ns is None:
-            return
-        if (self.part.time_ns - self._heard_ns) * 1e-9 > self.config.timeout:
-            self._heard_ns = None
-            self._drive.command((0.0, 0.0, None), (None, None, 0.0))
-
-    def _publish(self) -> None:
-        self._odometry.publish(self.part.time_ns, *planar_motion(self._base))
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class VelocityControlParameters:
-    topic: str = tag(
-        "topic",
-        default="",
-        doc="Topic of the Twist commands. Default: `/model/<model>/cmd_vel`.",
-    )
-    initial_linear: tuple[float, float, float] | None = tag(
-        "initial_linear",
-        default=None,
-        unit="m/s",
-        most=FARTHEST,
-        doc="Initial linear velocity.",
-    )
-    initial_angular: tuple[float, float, float] | None = tag(
-        "initial_angular",
-        default=None,
-        unit="rad/s",
-        most=FARTHEST,
-        doc="Initial angular velocity.",
-    )
-
-
-class VelocityControl(Plugin[VelocityControlParameters]):
-    """Holds the model at the commanded linear and angular velocity, expressed in the model frame.
-
-    All six degrees of freedom are controlled. Without an initial velocity, the model moves freely
-    until the first command. Original plugin: ``VelocityControl`` in gz-sim.
-    """
-
-    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-velocity-control-system",)
-    parameters: ClassVar[type] = VelocityControlParameters
-
-    def configure(self) -> None:
-        if self.tag.element.find("link_name"):
-            raise PluginError(
-                "<link_name> is not supported because only whole models are moved",
-                code=devices.PLUGIN_PARAMETER_UNSUPPORTED,
-                origin=self.place_of("link_name"),
-                values={"parameter": "link_name"},
-            )
-        self._drive = self.part.body_drive(origin=self.tag.origin)
-        topic = gz_name(self, self.config.topic, "cmd_vel")
-        self.subscribe(topic, "geometry_msgs/msg/Twist", self._on_command)
-        self.reset()
-
-    def reset(self) -> None:
-        linear, angular = self.config.initial_linear, self.config.initial_angular
-        if linear is None and angular is None:
-            self._drive.release()
-        else:
-            self._hold(linear or (0.0, 0.0, 0.0), angular or (0.0, 0.0, 0.0))
-
-    def _on_command(self, message: Any) -> None:
-        linear, angular = message.linear, message.angular
-        self._hold((linear.x, linear.y, linear.z), (angular.x, angular.y, angular.z))
-
-    def _hold(self, linear: tuple[float, ...], angular: tuple[float, ...]) -> None:
-        self._drive.command(linear, angular, level=False)
