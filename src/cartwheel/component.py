@@ -82,6 +82,9 @@ class Scope:
     """New names of topics and services by their names before the remapping."""
     owner: object | None = None
     """The plugin that fails if a callback raises an exception; None: the simulation reports it."""
+    holder: Component | None = field(default=None, init=False)
+    """The first component of the scope. It holds the resources of the others, even if one of them
+    cannot be created completely."""
 
     def resolve(self, name: str) -> str:
         """Returns a topic or service name in the namespace, after remapping."""
@@ -124,6 +127,10 @@ class Component:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
         self._open = contextlib.ExitStack()
+        if scope.holder is None:
+            scope.holder = self
+        else:
+            scope.holder._open.callback(self._open.close)
         self._devices: list[Component] = []
         self._crowded = False
 

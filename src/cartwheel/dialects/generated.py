@@ -85,7 +85,7 @@ PLUGINS = {
     "hector_gazebo_ros_gps": "makers.gps",
     "hector_gazebo_ros_imu": "makers.hector_imu",
     "hector_gazebo_ros_magnetic": "makers.magnetic",
-    "hector_gazebo_ros_sonar": "classic.range",
+    "hector_gazebo_ros_sonar": "makers.hector_sonar",
     "ign_ros2_control-system": "ros2_control.plugin",
     "leo_gazebo_differential_plugin": "makers.mimic_joint",
     "realsense_gazebo_plugin": "makers.realsense",

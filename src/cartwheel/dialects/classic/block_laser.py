@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
-from cartwheel.devices.point_clouds import point_cloud
+from cartwheel.devices.rays.lidar import Lidar, LidarConfig
+from cartwheel.devices.rays.outputs import PointCloudOutput
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.scan import Scanner
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -60,20 +58,9 @@ class BlockLaser(Plugin[BlockLaserParameters]):
     def configure(self) -> None:
         assert self.sensor is not None
         self.check_not_negative("noise")
-        self._scanner = Scanner(self.part, self.sensor)
-        self._frame = self.frame(self.config.frame or self.sensor.link)
-        rate = self.sensor.update_rate
-        self._publisher = self.advertise(
-            self.config.topic, "sensor_msgs/msg/PointCloud", rate=rate or None, qos="sensor"
+        config = LidarConfig(
+            scanner=read_scanner(self.sensor, self.part.report),
+            frame=self.config.frame or self.sensor.link,
+            outputs=(PointCloudOutput(topic=self.config.topic, noise=self.config.noise),),
         )
-        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _publish(self) -> None:
-        scan = self._scanner.measure()
-        hit = np.isfinite(scan.ranges)
-        points = scan.points(self._scanner.directions)
-        if self.config.noise > 0:
-            random = self._scanner.random("points")
-            points = points + random.normal(0.0, self.config.noise, points.shape)
-        moment = header(self.part.time_ns, self._frame)
-        self._publisher.publish(point_cloud(moment, points[hit], scan.intensities[hit]))
+        self.add(Lidar(self.scope, config))

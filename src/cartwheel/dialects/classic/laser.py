@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
+from cartwheel.devices.rays.lidar import Lidar, LidarConfig
+from cartwheel.devices.rays.outputs import LaserScanOutput
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.scan import Scanner
-from cartwheel.dialects.scan_messages import laser_scan
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -54,22 +54,17 @@ class Laser(Plugin[LaserParameters]):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        self._scanner = Scanner(self.part, self.sensor)
-        rows = self._scanner.pattern.vertical.count
+        scanner = read_scanner(self.sensor, self.part.report)
+        rows = scanner.pattern.vertical.count
         if rows > 1:
             self.warn(
                 devices.SENSOR_SETTING_IGNORED,
                 f"a LaserScan has a single row, so only the middle row of {rows} is published",
                 values={"setting": "vertical", "rows": rows},
             )
-        self._frame = self.frame(self.config.frame or self.sensor.link)
-        rate = self.sensor.update_rate
-        self._publisher = self.advertise(
-            self.config.topic, "sensor_msgs/msg/LaserScan", rate=rate or None, qos="sensor"
+        config = LidarConfig(
+            scanner=scanner,
+            frame=self.config.frame or self.sensor.link,
+            outputs=(LaserScanOutput(topic=self.config.topic),),
         )
-        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _publish(self) -> None:
-        moment = header(self.part.time_ns, self._frame)
-        scan = self._scanner.measure()
-        self._publisher.publish(laser_scan(moment, self._scanner.pattern, scan))
+        self.add(Lidar(self.scope, config))

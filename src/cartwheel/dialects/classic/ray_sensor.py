@@ -5,16 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-import numpy as np
-
-from cartwheel.devices.point_clouds import point_cloud, point_cloud2
+from cartwheel.devices.rays.lidar import Lidar, LidarConfig
+from cartwheel.devices.rays.outputs import (
+    LaserScanOutput,
+    Output,
+    PointCloud2Output,
+    PointCloudOutput,
+    RangeOutput,
+)
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.scan import Scanner
-from cartwheel.dialects.scan_messages import laser_scan, range_reading
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import invalid, tag
-from cartwheel.messages import header
 
-_POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4")])
 _OUTPUTS = ("LaserScan", "PointCloud", "PointCloud2", "Range")
 
 
@@ -80,49 +82,23 @@ class RaySensor(Plugin[RaySensorParameters]):
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
         assert sensor is not None
-        self._scanner = Scanner(self.part, sensor)
-        self._output = config.output_type.rsplit("/", 1)[-1]
-        if self._output not in _OUTPUTS:
-            wanted = f"one of {', '.join(f'sensor_msgs/{name}' for name in _OUTPUTS)}"
-            place = self.place_of("output_type")
-            raise invalid("output_type", config.output_type, wanted, place)
-        self._frame = self.frame(config.frame or sensor.link)
-        topic = config.topic or f"{self.tag.name}/out"
-        rate = sensor.update_rate
-        self._publisher = self.advertise(
-            "out" if self.remaps("out") else topic,
-            f"sensor_msgs/msg/{self._output}",
-            rate=rate or None,
-            qos="sensor",
+        scanner = read_scanner(sensor, self.part.report)
+        device = LidarConfig(
+            scanner=scanner, frame=config.frame or sensor.link, outputs=(self._output(),)
         )
-        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
+        self.add(Lidar(self.scope, device))
 
-    def _publish(self) -> None:
-        moment = header(self.part.time_ns, self._frame)
-        pattern, scan = self._scanner.pattern, self._scanner.measure()
-        floor = self.config.min_intensity
-        if self._output == "LaserScan":
-            self._publisher.publish(laser_scan(moment, pattern, scan, floor=floor))
-            return
-        if self._output == "Range":
-            self._publisher.publish(
-                range_reading(
-                    moment,
-                    pattern,
-                    float(scan.ranges.min()),
-                    fov=max(pattern.field_of_view),
-                    infrared=self.config.radiation != "ultrasound",
-                )
-            )
-            return
-        hit = np.isfinite(scan.ranges)
-        points = scan.points(self._scanner.directions)[hit]
-        intensities = np.maximum(scan.intensities[hit], floor)
-        if self._output == "PointCloud":
-            self._publisher.publish(point_cloud(moment, points, intensities))
-            return
-        cloud = np.empty(len(points), dtype=_POINT)
-        for index, name in enumerate("xyz"):
-            cloud[name] = points[:, index]
-        cloud["intensity"] = intensities
-        self._publisher.publish(point_cloud2(moment, cloud, dense=True))
+    def _output(self) -> Output:
+        config, floor = self.config, self.config.min_intensity
+        topic = "out" if self.remaps("out") else config.topic or f"{self.tag.name}/out"
+        match config.output_type.rsplit("/", 1)[-1]:
+            case "LaserScan":
+                return LaserScanOutput(topic=topic, intensity_floor=floor)
+            case "PointCloud":
+                return PointCloudOutput(topic=topic, intensity_floor=floor)
+            case "PointCloud2":
+                return PointCloud2Output(topic=topic, intensity_floor=floor)
+            case "Range":
+                return RangeOutput(topic=topic, infrared=config.radiation != "ultrasound")
+        wanted = f"one of {', '.join(f'sensor_msgs/{name}' for name in _OUTPUTS)}"
+        raise invalid("output_type", config.output_type, wanted, self.place_of("output_type"))

@@ -7,13 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from cartwheel.devices.point_clouds import point_cloud2
+from cartwheel.devices.rays.lidar import Lidar, LidarConfig
+from cartwheel.devices.rays.outputs import LaserScanOutput, PointCloud2Output
 from cartwheel.dialects.gz.sensor_tags import default_topic
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.scan import Scan, Scanner
-from cartwheel.dialects.scan_messages import laser_scan
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header
 
 _POINT = np.dtype(
     {
@@ -64,39 +63,14 @@ class GzLidar(Plugin[GzLidarParameters]):
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
         assert sensor is not None
-        self._scanner = Scanner(self.part, sensor)
-        self._frame = self.frame(config.frame or sensor.link)
+        scanner = read_scanner(sensor, self.part.report)
         topic = config.topic or default_topic(self.part, sensor, "scan")
-        rate = sensor.update_rate
-        listed_rate = rate or None
-        self._scan = self.advertise(
-            topic, "sensor_msgs/msg/LaserScan", rate=listed_rate, qos="sensor"
+        device = LidarConfig(
+            scanner=scanner,
+            frame=config.frame or sensor.link,
+            outputs=(
+                LaserScanOutput(topic=topic),
+                PointCloud2Output(topic=f"{topic}/points", layout=_POINT, missing="inf"),
+            ),
         )
-        self._points = self.advertise(
-            f"{topic}/points", "sensor_msgs/msg/PointCloud2", rate=listed_rate, qos="sensor"
-        )
-        self.part.schedule(
-            rate,
-            after=self._publish,
-            active=lambda: self._scan.wanted or self._points.wanted,
-        )
-
-    def _publish(self) -> None:
-        moment = header(self.part.time_ns, self._frame)
-        scan = self._scanner.measure()
-        if self._scan.wanted:
-            self._scan.publish(laser_scan(moment, self._scanner.pattern, scan))
-        if self._points.wanted:
-            cloud = self._cloud(scan)
-            dense = bool(np.isfinite(scan.ranges).all())
-            self._points.publish(point_cloud2(moment, cloud, dense=dense))
-
-    def _cloud(self, scan: Scan) -> np.ndarray[tuple[int, int], np.dtype[np.void]]:
-        rows, columns = scan.ranges.shape
-        cloud = np.zeros((rows, columns), dtype=_POINT)
-        places = scan.points(self._scanner.directions)
-        for index, name in enumerate("xyz"):
-            cloud[name] = places[..., index]
-        cloud["intensity"] = scan.intensities
-        cloud["ring"] = np.arange(rows)[:, None]
-        return cloud
+        self.add(Lidar(self.scope, device))

@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
+from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.classic.bumper import watched_collisions
 from cartwheel.dialects.classic.imu import ImuBase
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.scan import Scanner
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
 from cartwheel.geometry import quat_conjugate, rotate
@@ -114,7 +115,7 @@ class Create3Cliff(_Hazard):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        self._scanner = Scanner(self.part, self.sensor)
+        self._scanner = Scanner(self.part, read_scanner(self.sensor, self.part.report))
         self._watch(self.sensor.update_rate)
 
     def _look(self) -> None:
@@ -146,7 +147,7 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
         sensor = self.sensor
         assert sensor is not None
         kind = "irobot_create_msgs/msg/IrIntensity"
-        self._scanner = Scanner(self.part, sensor)
+        self._scanner = Scanner(self.part, read_scanner(sensor, self.part.report))
         if math.isinf(self._scanner.pattern.maximum):
             raise PluginError(
                 "the <max> of the <range> must be finite",

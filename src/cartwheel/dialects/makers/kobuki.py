@@ -12,9 +12,10 @@ from cartwheel.codes import running
 from cartwheel.description.model import Sensor
 from cartwheel.devices.drives.odometry import Odometry
 from cartwheel.devices.drives.wheel_states import JointStates
+from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.classic.bumper import watched_collisions
 from cartwheel.dialects.inertial_unit import InertialUnit
-from cartwheel.dialects.scan import Scanner
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
 from cartwheel.errors import UnknownNameError
@@ -146,7 +147,7 @@ class Kobuki(WheelDrive):
     def _take_sensors(self, config: KobukiParameters) -> None:
         rays = (config.cliff_left, config.cliff_center, config.cliff_right)
         self._floors = {
-            side: Scanner(self.part, self._sensor(name))
+            side: Scanner(self.part, read_scanner(self._sensor(name), self.part.report))
             for side, name in zip(_SIDES, rays, strict=True)
         }
         self._bumper = watched_collisions(self, self._sensor(config.bumper))

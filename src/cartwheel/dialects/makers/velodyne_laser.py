@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
-from cartwheel.devices.point_clouds import point_cloud2
+from cartwheel.devices.rays.lidar import Lidar, LidarConfig
+from cartwheel.devices.rays.outputs import PointCloud2Output
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.scan import Scanner
+from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
-from cartwheel.messages import header
 
 _POINT = np.dtype(
     [
@@ -96,47 +96,27 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
         sensor, config = self.sensor, self.config
         assert sensor is not None
         self.check_not_negative("noise")
-        self._scanner = Scanner(self.part, sensor)
-        pattern = self._scanner.pattern
-        self._near = max(config.min_range, pattern.minimum)
-        self._far = min(config.max_range, pattern.maximum)
-        if self._near >= self._far:
+        scanner = read_scanner(sensor, self.part.report)
+        nearest = max(config.min_range, scanner.pattern.minimum)
+        furthest = min(config.max_range, scanner.pattern.maximum)
+        if nearest >= furthest:
             raise PluginError(
-                f"the minimum range of {self._near:g} m must be below the maximum range of "
-                f"{self._far:g} m",
+                f"the minimum range of {nearest:g} m must be below the maximum range of "
+                f"{furthest:g} m",
                 code=devices.PLUGIN_RANGE_REVERSED,
                 origin=self.tag.origin,
-                values={"parameter": "min_range", "value": self._near, "most": self._far},
+                values={"parameter": "min_range", "value": nearest, "most": furthest},
                 hint="Choose <min_range> and <max_range> within the sensor's <range>.",
             )
-        self._frame = self.frame(config.frame or sensor.link)
-        rate = sensor.update_rate
-        self._publisher = self.advertise(
-            "out" if self.remaps("out") else config.topic,
-            "sensor_msgs/msg/PointCloud2",
-            rate=rate or None,
-            qos="sensor",
+        output = PointCloud2Output(
+            topic="out" if self.remaps("out") else config.topic,
+            layout=_POINT,
+            missing="nan" if config.organize else "omit",
+            by_column=True,
+            nearest=nearest,
+            furthest=furthest,
+            least_intensity=config.min_intensity,
+            noise=config.noise,
         )
-        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _publish(self) -> None:
-        config = self.config
-        scan = self._scanner.measure()
-        ranges = scan.ranges
-        kept = (ranges > self._near) & (ranges < self._far)
-        if config.min_intensity is not None:
-            kept &= scan.intensities >= config.min_intensity
-        if config.noise > 0:
-            ranges = ranges + self._scanner.random("points").normal(0.0, config.noise, ranges.shape)
-            kept &= (ranges > self._near) & (ranges < self._far)
-        rows, columns = ranges.shape
-        places = self._scanner.directions * np.where(kept, ranges, np.nan)[..., None]
-        cloud = np.zeros((columns, rows), dtype=_POINT)
-        for index, name in enumerate("xyz"):
-            cloud[name] = places[..., index].T
-        cloud["intensity"] = np.where(kept, scan.intensities, np.nan).T
-        cloud["ring"] = np.arange(rows)
-        if not config.organize:
-            cloud = cloud[kept.T]
-        moment = header(self.part.time_ns, self._frame)
-        self._publisher.publish(point_cloud2(moment, cloud, dense=not config.organize))
+        device = LidarConfig(scanner=scanner, frame=config.frame or sensor.link, outputs=(output,))
+        self.add(Lidar(self.scope, device))

@@ -1,74 +1,32 @@
-"""Shared parts of ray sensor plugins: pattern, measurement and noise of a scan."""
+"""SDF's ``<ray>`` and ``<lidar>`` elements: the pattern of a ray sensor."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-
-import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
-from cartwheel.devices.noise import Noise, VectorNoise
+from cartwheel.devices.rays.scan import LEVEL, ScannerConfig, ScanPattern, Sweep
 from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import number
 from cartwheel.errors import Diagnostic, Origin, PluginError
-from cartwheel.geometry import Array
-from cartwheel.simulation import Part
 
 _MOST_RAYS = 1_000_000
 """Maximum number of rays. The densest real sensors have about 300,000; a ray needs 200 bytes."""
 _GPU_TYPES = {"gpu_ray", "gpu_lidar"}
+"""Types that detect visuals instead of collisions, as in Gazebo."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Sweep:
-    """Evenly spaced angles from first to last. If last is smaller than first, they decrease."""
-
-    count: int
-    first: float
-    last: float
-    """rad."""
-
-    @property
-    def step(self) -> float:
-        """Angle between neighbours, rad; 0 for a single angle."""
-        return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
-
-    def angles(self) -> Array:
-        """All angles, rad, shape (count,)."""
-        return np.linspace(self.first, self.last, self.count)
-
-
-_LEVEL = Sweep(count=1, first=0.0, last=0.0)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ScanPattern:
-    """Directions, limits and noise of a ray sensor. Source: SDF, ``<ray>`` and ``<lidar>``."""
-
-    horizontal: Sweep
-    vertical: Sweep
-    minimum: float
-    maximum: float
-    """m."""
-    noise: Noise
-
-    @property
-    def field_of_view(self) -> tuple[float, float]:
-        """Horizontal and vertical, rad."""
-        return (
-            abs(self.horizontal.last - self.horizontal.first),
-            abs(self.vertical.last - self.vertical.first),
-        )
-
-    def directions(self) -> Array:
-        """Unit vectors, x forward, z up, shape (rows, columns, 3), starting with the lowest row."""
-        azimuth, elevation = np.meshgrid(self.horizontal.angles(), self.vertical.angles())
-        level = np.cos(elevation)
-        return np.stack(
-            [level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)], axis=-1
-        )
+def read_scanner(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScannerConfig:
+    """Reads a ray sensor; see `read_pattern`."""
+    return ScannerConfig(
+        name=f"{sensor.link} {sensor.name}",
+        link=sensor.link,
+        pose=sensor.pose,
+        pattern=read_pattern(sensor, report),
+        visuals=sensor.type in _GPU_TYPES,
+        rate=sensor.update_rate,
+    )
 
 
 def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPattern:
@@ -99,7 +57,7 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
         )
     horizontal = _sweep(across, report, samples=640)
     upright = ray.find("scan/vertical")
-    vertical = _sweep(upright, report, samples=1) if upright is not None else _LEVEL
+    vertical = _sweep(upright, report, samples=1) if upright is not None else LEVEL
     if horizontal.count * vertical.count > _MOST_RAYS:
         raise PluginError(
             f"a scan must have at most {_MOST_RAYS:,} rays "
@@ -192,80 +150,3 @@ def _place(element: Element, tag: str) -> Origin:
 def _number(element: Element | None, tag: str, default: float, *, endless: bool = False) -> float:
     child = element.find(tag) if element is not None else None
     return number(child, endless=endless) if child is not None else default
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Scan:
-    """One measurement, row by row, starting with the lowest row."""
-
-    ranges: Array
-    """Ranges in m, shape (rows, columns): -inf below the minimum range, inf if nothing is within
-    the maximum range (REP 117)."""
-    intensities: Array
-    """The laser_retro of the objects hit, shape (rows, columns)."""
-
-    def points(self, directions: Array) -> Array:
-        """Points hit in the sensor frame, m, shape (rows, columns, 3).
-
-        Points without a finite range are infinite.
-        """
-        # An infinite range times a direction of 0 would be NaN.
-        missing = ~np.isfinite(self.ranges)
-        places: Array = directions * np.where(missing, 1.0, self.ranges)[..., None]
-        places[missing] = np.inf
-        return places
-
-
-class Scanner:
-    """Measures the scans of a ray sensor.
-
-    Args:
-        part: The model's part of the simulation.
-        sensor: Sensor with a ``<ray>`` or ``<lidar>``. GPU types detect visuals instead of
-            collisions, as in Gazebo.
-
-    Raises:
-        PluginError: See `read_pattern`.
-    """
-
-    def __init__(self, part: Part, sensor: Sensor) -> None:
-        self.pattern = read_pattern(sensor, part.report)
-        self._part = part
-        self._name = f"scan {sensor.link} {sensor.name}"
-        self.directions = self.pattern.directions()
-        self._rays = part.rays(
-            sensor.link,
-            sensor.pose,
-            self.directions.reshape(-1, 3),
-            minimum=self.pattern.minimum,
-            maximum=self.pattern.maximum,
-            visuals=sensor.type in _GPU_TYPES,
-        )
-        self.error = VectorNoise(part, self._name, [self.pattern.noise], rate=sensor.update_rate)
-        """Error of a single range. All rays share its mean and bias."""
-
-    def measure(self, *, noisy: bool = True) -> Scan:
-        """Measures a scan, with the sensor's own noise if `noisy`."""
-        ranges, intensities = self._rays.cast()
-        if noisy:
-            self._blur(ranges)
-        shape = self.directions.shape[:2]
-        return Scan(ranges=ranges.reshape(shape), intensities=intensities.reshape(shape))
-
-    def random(self, purpose: str) -> np.random.Generator:
-        """Random generator for the current time and a purpose."""
-        return self._part.random(f"{self._name} {purpose}")
-
-    def _blur(self, ranges: Array) -> None:
-        noise, precision = self.pattern.noise, self.pattern.noise.precision
-        if noise == Noise():
-            return
-        measured = np.isfinite(ranges)
-        blurred = ranges + self.error.offset
-        if noise.stddev > 0:
-            # One number per ray, so that a hit does not change the noise on other rays.
-            blurred += self.random("noise").normal(0.0, noise.stddev, ranges.shape)
-        if precision > 0:
-            blurred = np.round(blurred / precision) * precision
-        np.clip(blurred, self.pattern.minimum, self.pattern.maximum, out=blurred)
-        ranges[measured] = blurred[measured]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.dialects.scan import Scan, ScanPattern
+from cartwheel.devices.rays.scan import Scan, ScanPattern
 from cartwheel.messages import message_class
 
 
@@ -35,7 +35,7 @@ def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 
     )
 
 
-def range_reading(
+def range_message(
     moment: Any, pattern: ScanPattern, value: float, *, fov: float, infrared: bool
 ) -> Any:
     """Returns a Range message.

@@ -1,0 +1,1 @@
+"""Sensors that measure distances along rays: lidars and range finders."""

@@ -1,0 +1,90 @@
+"""Range finders: the distance to the nearest object in a cone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cartwheel.component import Component, Scope
+from cartwheel.devices.noise import DriftingError
+from cartwheel.devices.rays.messages import range_message
+from cartwheel.devices.rays.scan import Scanner, ScannerConfig
+from cartwheel.messages import header
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RangeFinderConfig:
+    """Configuration of a `RangeFinder`."""
+
+    scanner: ScannerConfig
+    """The rays."""
+    topic: str
+    """Topic of the Range messages."""
+    frame: str
+    """Frame ID of the messages, without the robot's prefix."""
+    rate: float
+    """Publish rate, Hz; 0: every step."""
+    fov: float
+    """Field of view in the messages, rad."""
+    infrared: bool
+    """Set the radiation type to infrared instead of ultrasound."""
+    noise: float | None = None
+    """Standard deviation of the noise, m; None: the noise of the scanner's pattern."""
+    offset: float = 0.0
+    """Constant error, m."""
+    drift: float = 0.0
+    """Standard deviation of a slow drift, m."""
+    drift_frequency: float = 0.0
+    """Inverse of the drift's time constant, 1/s."""
+
+
+class RangeFinder(Component):
+    """Publishes the smallest range of a scan, or the maximum range if nothing is hit.
+
+    The noise is that of one range: the minimum over rays with noise of their own would be too
+    small.
+
+    Args:
+        scope: The range finder's model and names.
+        config: Rays, topic and errors.
+    """
+
+    def __init__(self, scope: Scope, config: RangeFinderConfig) -> None:
+        super().__init__(scope)
+        self._config = config
+        self._scanner = Scanner(self.part, config.scanner)
+        self._frame = self.frame(config.frame)
+        self._error = DriftingError(
+            self.part,
+            f"range {config.scanner.name}",
+            rate=config.rate,
+            offset=[config.offset],
+            drift=[config.drift],
+            frequency=[config.drift_frequency],
+            noise=[config.noise or 0.0],
+            scale=[1.0],
+        )
+        self._publisher = self.advertise(
+            config.topic, "sensor_msgs/msg/Range", rate=config.rate or None, qos="sensor"
+        )
+        self.part.schedule(config.rate, after=self._publish, active=lambda: self._publisher.wanted)
+
+    def reset(self) -> None:
+        """Starts a new drift."""
+        super().reset()
+        self._error.restart()
+
+    def _publish(self) -> None:
+        config, pattern = self._config, self._scanner.pattern
+        ranges = self._scanner.measure(noisy=False).ranges
+        value = float(np.clip(ranges.min(), pattern.minimum, pattern.maximum))
+        if value < pattern.maximum:
+            if config.noise is None:
+                (value,) = self._scanner.error.add([value])
+            value = float(self._error.add([value])[0])
+            value = min(max(value, pattern.minimum), pattern.maximum)
+        moment = header(self.part.time_ns, self._frame)
+        self._publisher.publish(
+            range_message(moment, pattern, value, fov=config.fov, infrared=config.infrared)
+        )
