@@ -100,9 +100,8 @@ def test_flat_fields_whose_own_names_hold_underscores(make):
 def test_a_field_that_is_none_is_named(make, rosbots):
     world = make.world()
     world.spawn(rosbots, z=0.05)
-    with raises(FIELD_UNKNOWN, field="liner_x") as caught:
+    with raises(FIELD_UNKNOWN, field="liner_x", meant="linear"):
         world.publish("/part2_cmr/cmd_vel", liner_x=0.5)
-    assert "linear" in caught.value.hint
     with raises(FIELD_UNKNOWN, field="linear.w"):
         world.publish("/part2_cmr/cmd_vel", linear_w=0.5)
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.control.server import ControlServer
 from cartwheel.description.model import (
     Box,
@@ -34,7 +35,13 @@ def box(name: str = "box") -> RobotDescription:
 def load(path: Path, arguments: dict[str, str], _: list[Path]) -> RobotDescription:
     """Stands in for reading a file: its name decides what comes."""
     if path.name == "bad.urdf":
-        raise DescriptionError("it is bad", origin=Origin(file=str(path), line=7), hint="Mend it.")
+        raise DescriptionError(
+            "it is bad",
+            code=VALUE_INVALID,
+            origin=Origin(file=str(path), line=7),
+            hint="Mend it.",
+            values={"name": "mass"},
+        )
     if path.name == "broken.urdf":
         raise ZeroDivisionError("a fault of ours")
     return box(arguments.get("name", path.stem))

@@ -21,9 +21,8 @@ from .conftest import load
 
 def test_none(runtime_folder):
     assert running() == []
-    with raises(SIMULATION_NOT_RUNNING) as caught:
+    with raises(SIMULATION_NOT_RUNNING):
         find()
-    assert "cartwheel run" in caught.value.hint
     assert stat.S_IMODE(runtime_folder.stat().st_mode) == 0o700
 
 
@@ -40,10 +39,8 @@ def test_of_several_one_must_be_named(server, session, monkeypatch):
     second = ControlServer(session, title="second", load=load)
     entry = json.loads(second.entry.path.with_suffix(".json").read_text())
     second.entry.path.with_suffix(".json").write_text(json.dumps({**entry, "pid": 17}))
-    with raises(SIMULATION_AMBIGUOUS) as caught:
+    with raises(SIMULATION_AMBIGUOUS, pids=(17, os.getpid())):
         find()
-    assert f"{os.getpid()}: nothing in test_world" in str(caught.value)
-    assert "17: second" in str(caught.value)
     assert find(17).title == "second"
     monkeypatch.setenv("CARTWHEEL_SIM", "17")
     assert find().title == "second"

@@ -19,6 +19,7 @@ from cartwheel.codes.graph import (
     TOPIC_TYPE_MISMATCH,
     TOPIC_UNKNOWN,
 )
+from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.codes.world import MODEL_NAME_TAKEN, UNKNOWN_MODEL
 from cartwheel.control import ControlClient
 from cartwheel.errors import ControlError
@@ -87,14 +88,21 @@ def test_spawn_list_delete(client, tmp_path):
 
 
 def test_what_is_wrong_with_a_file_comes_back_in_full(client):
-    with pytest.raises(ControlError) as caught:
+    with raises(VALUE_INVALID, ControlError, name="mass") as caught:
         client.request("spawn", file="/tmp/bad.urdf")
-    assert str(caught.value) == "/tmp/bad.urdf:7: it is bad\n  Mend it."
+    assert str(caught.value.origin) == "/tmp/bad.urdf:7"
     with raises(INTERNAL_FAULT, ControlError):
         client.request("spawn", file="/tmp/broken.urdf")
     with raises(CONTROL_REQUEST_INVALID):
         client.request("spawn", file="crate.urdf")
     assert client.request("status")["models"] == []
+
+
+@pytest.mark.wording
+def test_what_is_wrong_with_a_file_comes_back_in_the_same_words(client):
+    with raises(VALUE_INVALID, ControlError) as caught:
+        client.request("spawn", file="/tmp/bad.urdf")
+    assert str(caught.value) == "/tmp/bad.urdf:7: it is bad\n  Mend it."
 
 
 def test_topics(client, commands):

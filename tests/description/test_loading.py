@@ -103,12 +103,23 @@ def test_other_files(folder, content, error):
 
 def test_missing_file_suggests_near_names(folder):
     write(folder / "robots" / "cart.urdf", URDF)
-    assert hint("robots/crt.urdf") == 'Did you mean "cart.urdf"?'
-    assert "does not exist either" in hint("robot/cart.urdf")
+    assert failure("robots/crt.urdf") == "robots/crt.urdf file-missing cart.urdf"
+    assert failure("robot/cart.urdf") == "robot/cart.urdf file-missing"
+    write(folder / "cart.urdf", URDF)
+    assert failure("cart.udf") == "cart.udf file-missing cart.urdf"
+    assert failure("robots.xacro") == "robots.xacro file-missing rosbots.xacro"
+    assert failure("zzzzz") == "zzzzz file-missing"
+
+
+@pytest.mark.wording
+def test_missing_file_says_what_is_there(folder):
     write(folder / "cart.urdf", URDF)
     assert hint("cart.udf") == 'Did you mean "cart.urdf"?'
-    assert 'Did you mean "rosbots.xacro"?' in hint("robots.xacro")
+    assert hint("robot/cart.urdf") == 'The folder "robot" does not exist either.'
     assert "Bundled descriptions:" in hint("zzzzz")
+    write(folder / "several" / "a.urdf", URDF)
+    write(folder / "several" / "b.urdf", URDF)
+    assert hint("several") == "Pass one of: a.urdf, b.urdf."
 
 
 @pytest.mark.parametrize("name", ["a\0b", "x" * 5000, "", "."])
@@ -129,8 +140,8 @@ def test_folders(folder):
     assert load("single").name == "r"
     write(folder / "several" / "a.urdf", URDF)
     write(folder / "several" / "b.urdf", URDF)
-    assert failure("several") == "several not-a-description"
-    assert hint("several") == "Pass one of: a.urdf, b.urdf."
+    with raises(files.NOT_A_DESCRIPTION, found=("a.urdf", "b.urdf")):
+        load("several")
     (folder / "none").mkdir()
     assert failure("none") == "none not-a-description"
     write(folder / "broken" / "model.config", "<model><sdf>x.sdf</sdf></model>")

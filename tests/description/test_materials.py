@@ -46,4 +46,10 @@ def test_likely_names():
     ):
         diagnostic = unknown_material(name, place)
         assert diagnostic.values == {"name": name, "meant": meant}
-        assert (meant in diagnostic.hint) if meant else not diagnostic.hint
+        assert bool(diagnostic.hint) == bool(meant)
+
+
+@pytest.mark.wording
+def test_a_hint_names_the_likely_material():
+    hint = unknown_material("skyblue", Origin(file="r.urdf", line=1)).hint
+    assert "Gazebo/SkyBlue" in hint

@@ -1,7 +1,9 @@
 """A package that is not there: the others that are not there either, and how to get them."""
 
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.files import FILE_MISSING
 from cartwheel.description import load_robot
 from cartwheel.errors import DescriptionError
 
@@ -20,14 +22,17 @@ def workspace(tmp_path, monkeypatch):
     return tmp_path / "src"
 
 
-def hint_of(workspace, *includes):
+def missing(workspace, *includes, more=""):
+    """The error for a robot that first includes a file of the package laser_x."""
     file = workspace / "mine" / "urdf" / "robot.xacro"
-    file.write_text(XACRO.format("".join(INCLUDE.format(each) for each in includes)))
-    with pytest.raises(DescriptionError) as caught:
+    file.write_text(XACRO.format("".join(INCLUDE.format(each) for each in includes) + more))
+    with raises(FILE_MISSING, DescriptionError, kind="package", name="laser_x") as caught:
         load_robot(file)
-    assert caught.value.code.name == "file-missing"
-    assert caught.value.values["name"] == "laser_x"
-    return caught.value.hint
+    return caught.value
+
+
+def others(workspace, *includes, more=""):
+    return missing(workspace, *includes, more=more).values.get("others", ())
 
 
 def test_all_are_named_at_once(workspace):
@@ -37,30 +42,30 @@ def test_all_are_named_at_once(workspace):
     (workspace / "mine" / "urdf" / "base.xacro").write_text(
         XACRO.format(INCLUDE.format("$(find imu_z)/imu.xacro"))
     )
-    hint = hint_of(
+    found = others(
         workspace,
         "$(find laser_x)/laser.xacro",
         "$(find yours)/urdf/arm.xacro",
         "base.xacro",
     )
-    assert "Also missing: imu_z, grip_y. Get them with apt" in hint
+    assert found == ("imu_z", "grip_y")
 
 
 def test_what_stands_in_a_comment_is_not_named(workspace):
-    file = workspace / "mine" / "urdf" / "robot.xacro"
-    file.write_text(
-        XACRO.format(INCLUDE.format("$(find laser_x)/a.xacro") + "<!-- $(find grip_y) -->")
-    )
-    with pytest.raises(DescriptionError) as caught:
-        load_robot(file)
-    assert "grip_y" not in str(caught.value)
-    assert "Get it with apt" in str(caught.value)
+    comment = "<!-- $(find grip_y) -->"
+    assert others(workspace, "$(find laser_x)/a.xacro", more=comment) == ()
 
 
-def test_with_a_sourced_ros_the_command_is_ready(workspace, monkeypatch):
+@pytest.mark.wording
+def test_the_hint_names_them_and_how_to_get_them(workspace, monkeypatch):
+    one = missing(workspace, "$(find laser_x)/a.xacro").hint
+    assert "Get it with apt" in one
+    assert "Also missing" not in one
+    both = ("$(find laser_x)/a.xacro", "$(find grip_y)/b.xacro")
+    assert "Also missing: grip_y. Get them with apt" in missing(workspace, *both).hint
     monkeypatch.setenv("ROS_DISTRO", "noetic")
-    hint = hint_of(workspace, "$(find laser_x)/a.xacro", "$(find grip_y)/b.xacro")
-    assert "sudo apt install ros-noetic-laser-x ros-noetic-grip-y; or" in hint
+    command = "sudo apt install ros-noetic-laser-x ros-noetic-grip-y; or"
+    assert command in missing(workspace, *both).hint
 
 
 def test_files_that_include_each_other_end_the_search(workspace):
@@ -68,5 +73,4 @@ def test_files_that_include_each_other_end_the_search(workspace):
         (workspace / "mine" / "urdf" / f"{one}.xacro").write_text(
             XACRO.format(INCLUDE.format(f"{other}.xacro"))
         )
-    hint = hint_of(workspace, "$(find laser_x)/l.xacro", "a.xacro")
-    assert "Also missing" not in hint
+    assert others(workspace, "$(find laser_x)/l.xacro", "a.xacro") == ()

@@ -91,11 +91,18 @@ def test_folder_without_manifest_is_the_second_choice(tmp_path):
     assert packages(file).find("my_robot") == true
 
 
-def test_missing_package_says_where_it_was_searched_and_what_may_be_meant(tmp_path):
+def test_missing_package_says_which_may_be_meant(tmp_path):
     own = package(tmp_path / "ws" / "src" / "my_robot")
     with raises(files.FILE_MISSING, kind="package", name="my_robt", meant="my_robot") as caught:
         packages(robot(own)).find("my_robt", HERE)
     assert caught.value.origin is HERE
+
+
+@pytest.mark.wording
+def test_missing_package_says_where_it_was_searched(tmp_path):
+    own = package(tmp_path / "ws" / "src" / "my_robot")
+    with raises(files.FILE_MISSING) as caught:
+        packages(robot(own)).find("my_robt", HERE)
     assert str(own.parent) in caught.value.hint
 
 

@@ -51,7 +51,15 @@ def test_a_picture_that_is_too_large_is_refused_before_it_is_decoded(tmp_path, s
     path.write_bytes(png(*size))
     with raises(files.PICTURE_UNREADABLE):
         thumbnail(path, 100)
-    with raises(files.PICTURE_UNREADABLE, kind="heightmap") as error:
+    with raises(files.PICTURE_UNREADABLE, kind="heightmap"):
+        heights_of(Heightmap(path=path, size=(1, 1, 1)))
+
+
+@pytest.mark.wording
+def test_the_limit_of_a_picture_is_shown(tmp_path):
+    path = tmp_path / "bomb.png"
+    path.write_bytes(png(13_000, 13_000))
+    with raises(files.PICTURE_UNREADABLE) as error:
         heights_of(Heightmap(path=path, size=(1, 1, 1)))
     assert f"{MOST_PIXELS // 1_000_000} million" in error.value.hint
 

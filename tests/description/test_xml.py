@@ -103,6 +103,7 @@ def test_what_is_no_number(text, message):
     assert str(caught.value) == message
 
 
+@pytest.mark.wording
 def test_expression_outside_of_xacro_says_what_is_missing():
     with pytest.raises(DescriptionError, match="xmlns:xacro"):
         numbers.number("${width}", "mass", HERE)
@@ -164,9 +165,8 @@ def test_missing_attribute_names_the_likely_meant_one():
 
 def test_missing_child_names_the_likely_meant_one():
     root = xml.parse('<link name="a"><inertail/></link>')
-    with raises(tags.TAG_MISSING) as caught:
+    with raises(tags.TAG_MISSING, missing="inertial", meant="inertail"):
         root.require_child("inertial")
-    assert "<inertail>" in str(caught.value)
 
 
 def test_unread_parts_are_told_with_place_and_likely_meaning():
@@ -212,8 +212,7 @@ def test_a_file_that_is_not_there(tmp_path):
     (tmp_path / "robot.urdf").write_text("<robot/>")
     with pytest.raises(DescriptionError) as caught:
         xml.read_file(tmp_path / "robt.urdf")
-    assert named(caught.value) == "file-missing"
-    assert caught.value.hint == 'Did you mean "robot.urdf"?'
+    assert named(caught.value) == "file-missing robot.urdf"
     with pytest.raises(DescriptionError) as caught:
         xml.read_file(tmp_path)
     assert named(caught.value) == "file-unreadable"
@@ -232,12 +231,20 @@ def test_a_declaration_after_a_comment_is_read_as_gazebo_reads_it():
         assert (root.tag, root.origin.line, root.children[0].origin.line) == ("a", 4, 5)
 
 
-def test_bytes_that_are_not_utf_8_are_named_with_the_remedy():
+LATIN = '<?xml version="1.0" encoding="ISO-8859-1"?>'
+
+
+@pytest.mark.wording
+def test_bytes_that_are_not_utf_8_have_a_remedy():
+    with raises(files.XML_MALFORMED) as got:
+        xml.parse("<a>ü</a>".encode("latin-1"))
+    assert LATIN in got.value.hint
+
+
+def test_bytes_that_are_not_utf_8_are_named():
     text = '<robot name="r">\n<link name="Tür"/></robot>'
     with raises(files.XML_MALFORMED, byte=0xFC, column=14) as got:
         xml.parse(text.encode("latin-1"), "r.urdf")
     assert str(got.value.origin) == "r.urdf:2"
-    declared = '<?xml version="1.0" encoding="ISO-8859-1"?>'
-    assert declared in (got.value.hint or "")
-    for encoding, head in (("utf-8", ""), ("latin-1", declared)):
+    for encoding, head in (("utf-8", ""), ("latin-1", LATIN)):
         assert xml.parse((head + text).encode(encoding)).children[0].require("name") == "Tür"

@@ -203,6 +203,7 @@ def test_a_wrong_collision_is_told_with_the_likely_one(make, rosbots):
     assert told.origin is not None
 
 
+@pytest.mark.wording
 def test_the_hint_and_the_values_name_the_same_collision(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots, "base_collide"), pose=Pose((0, 0, 0.05)))

@@ -135,8 +135,14 @@ def test_ros_2_s_services_answer_with_a_message(make, ask):
     world.run(0.5)
     assert world.model("load").pose.z < 0.9
     wrong = ask(world, "/DETACHLINK", **(request | {"model2_name": "lod"}))
-    assert not wrong.success
-    assert 'Did you mean "load"' in wrong.message
+    assert not wrong.success and wrong.message
+
+
+@pytest.mark.wording
+def test_ros_2_s_services_answer_with_the_likely_name(make, ask):
+    world = world_of(make, "libgazebo_link_attacher.so", *pair(make))
+    request = {"model1_name": "post", "link1_name": "link", "model2_name": "lod"}
+    assert 'Did you mean "load"' in ask(world, "/ATTACHLINK", **request).message
 
 
 def test_inside_a_model_it_is_told_where_it_belongs(make):

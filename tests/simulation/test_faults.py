@@ -194,8 +194,14 @@ def test_strict_ends_with_the_first_fault(cart, when):
             play()
         assert got.value.code is running.PLUGIN_FAILED
         assert got.value.values["cause"] == "ZeroDivisionError"
-        assert "--strict" in got.value.hint
         assert str(got.value.origin).endswith("cart.urdf:10")
+
+
+@pytest.mark.wording
+def test_strict_is_named_as_the_reason_of_the_end(cart):
+    with cw.World("empty", strict=True) as world, pytest.raises(CartwheelError) as got:
+        world.spawn(cart("configure"))
+    assert "--strict" in got.value.hint
 
 
 def test_what_a_callback_raises_comes_out_of_run_and_time_goes_on(make):
@@ -314,7 +320,7 @@ def test_a_broken_package_fails_only_who_names_it(make, cart, installed, rosbots
     assert found.code is devices.PLUGIN_UNKNOWN
     assert found.values["name"] == "libbroken.so"
     assert len(found.values["broken"]) == 1
-    assert 'The plugin "broken" of the installed package "broken:Plugin"' in found.hint
+    assert "broken:Plugin" in found.values["broken"][0]
 
 
 _PACKAGE = """

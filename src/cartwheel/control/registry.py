@@ -132,7 +132,7 @@ def find(pid: int | None = None) -> Running:
             f"{len(known)} simulations are running; select one with --sim PID",
             code=SIMULATION_AMBIGUOUS,
             hint=_listing(known),
-            values={"count": len(known)},
+            values={"pids": tuple(sorted(entry.pid for entry in known))},
         )
     return known[0]
 

@@ -9,6 +9,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from cartwheel.description.regular import read_regular_text
 
@@ -18,6 +19,16 @@ _SHOWN = 8
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _NAMED = re.compile(r"(?:\$\(find(?:-pkg-share)?\s+|package://)([A-Za-z]\w*)\)?(/[^\s\"'<>]*)?")
 _INCLUDED = re.compile(r"""filename\s*=\s*["']([^"'$:]+\.xacro)["']""")
+
+
+class Advice(NamedTuple):
+    """What to do about a missing file, package or model."""
+
+    meant: str
+    """The likely name, or an empty string."""
+    hint: str
+    others: tuple[str, ...] = ()
+    """Other missing packages."""
 
 
 def also_missing(

@@ -93,11 +93,12 @@ class Node:
         """The first child with this tag, which is required."""
         found = self.child(tag)
         if found is None:
+            near = numbers.likely(tag, [child.tag for child in self.children])
             raise self.fail(
                 f"{self._label()} has no <{tag}>",
-                self._near_tag(tag),
+                f"Is <{near}> a misspelling of <{tag}>?" if near else None,
                 code=codes.TAG_MISSING,
-                values={"missing": tag},
+                values={"missing": tag, "meant": near or ""},
             )
         return found
 
@@ -285,10 +286,6 @@ class Node:
 
     def _attribute_label(self, name: str) -> str:
         return self.tag if name == "value" else f"{self.tag} {name}"
-
-    def _near_tag(self, tag: str) -> str | None:
-        near = numbers.likely(tag, [child.tag for child in self.children])
-        return f"Is <{near}> a misspelling of <{tag}>?" if near else None
 
 
 def to_element(node: Node) -> Element:

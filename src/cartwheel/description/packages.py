@@ -18,7 +18,7 @@ from cartwheel.codes import files as codes
 from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.description import fuel, numbers
 from cartwheel.description.installed import source_of
-from cartwheel.description.missing import advice, also_missing
+from cartwheel.description.missing import Advice, advice, also_missing
 from cartwheel.description.reach import (
     NAME_IT,
     Reach,
@@ -88,9 +88,9 @@ class Packages:
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
         self._found: dict[str, Path | None] = {}
-        self._lacking: dict[str, tuple[str, str]] = {}
-        """Suggested model and hint, by model: a world may refer to one many times."""
-        self._hints: dict[str, tuple[str, str]] = {}
+        self._lacking: dict[str, Advice] = {}
+        """By model: a world may refer to one many times."""
+        self._hints: dict[str, Advice] = {}
         """The same for packages."""
 
     @property
@@ -375,31 +375,31 @@ class Packages:
     def _workspaces(self) -> Iterator[Path]:
         yield from self._ancestors()
 
-    def _missing(self, name: str) -> tuple[str, str]:
-        """The suggested package, or empty, and the hint."""
+    def _missing(self, name: str) -> Advice:
         if name not in self._hints:
             self._hints[name] = self._hint(name)
         return self._hints[name]
 
-    def _hint(self, name: str) -> tuple[str, str]:
+    def _hint(self, name: str) -> Advice:
         roots = [*self.package_path, *self._ancestors(), *self._environment_roots()]
         known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
         near = numbers.likely(name, known, 0.85)
         hint = f'Did you mean "{near}"? ' if near else ""
         others = () if near else also_missing([self.file] if self.file else [], name, self._known)
-        return near or "", (
+        text = (
             f"{hint}Searched: {_listed([*roots, share() / 'robots'])}. "
             f"Source its workspace, or add its folder to the package path."
             f" {advice(name, others, self._environment)}"
         )
+        return Advice(near or "", text, others)
 
-    def _without_model(self, name: str) -> tuple[str, str]:
+    def _without_model(self, name: str) -> Advice:
         folders = self.model_folders()
         near = numbers.likely(name, {entry.name for each in folders for entry in _folders(each)})
         hint = f'Did you mean "{near}"? ' if near else ""
         hint += "Searched: " + _listed(folders)
         hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
-        return near or "", hint
+        return Advice(near or "", hint)
 
     def _known(self, name: str) -> Path | None:
         if name not in self._found:
@@ -547,7 +547,7 @@ def _is_special(path: Path) -> bool:
 
 
 def _missing(
-    kind: str, name: str, message: str, origin: Origin | None, advice: tuple[str, str]
+    kind: str, name: str, message: str, origin: Origin | None, advice: Advice
 ) -> DescriptionError:
     """The error for a file, package or model that does not exist.
 
@@ -556,20 +556,20 @@ def _missing(
         name: The name in the file.
         message: The error's message.
         origin: The element with the name.
-        advice: The suggested name, or empty, and the hint.
+        advice: What to do.
     """
-    meant, hint = advice
+    more = {"others": advice.others} if advice.others else {}
     return DescriptionError(
         message,
         code=codes.FILE_MISSING,
         origin=origin,
-        hint=hint,
-        values={"kind": kind, "name": name, "meant": meant},
+        hint=advice.hint,
+        values={"kind": kind, "name": name, "meant": advice.meant, **more},
     )
 
 
-def _absent(candidates: Sequence[Path]) -> tuple[str, str]:
-    """The suggested file name, or empty; and a hint with the searched locations."""
+def _absent(candidates: Sequence[Path]) -> Advice:
+    """The likely file name, and a hint with the searched locations."""
     for path in candidates:
         try:
             names = [
@@ -579,8 +579,8 @@ def _absent(candidates: Sequence[Path]) -> tuple[str, str]:
             continue
         near = numbers.likely(path.name, names)
         if near:
-            return near, f'Did you mean "{near}"? Searched: {_listed(candidates)}.'
-    return "", f"Searched: {_listed(candidates)}."
+            return Advice(near, f'Did you mean "{near}"? Searched: {_listed(candidates)}.')
+    return Advice("", f"Searched: {_listed(candidates)}.")
 
 
 def _listed(paths: Iterable[Path]) -> str:

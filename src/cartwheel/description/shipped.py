@@ -12,6 +12,8 @@ from cartwheel.description.packages import Packages, share
 from cartwheel.errors import DescriptionError, Origin
 
 SUFFIXES = (".urdf.xacro", ".xacro", ".urdf", ".sdf", ".world")
+_LISTED = 8
+"""Maximum number of descriptions to list in a hint."""
 
 
 def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Path:
@@ -51,12 +53,13 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
         found_shipped = _shipped(given.name)
         if found_shipped is not None:
             return found_shipped
+    meant, hint = _meant(given)
     raise DescriptionError(
         "the file does not exist",
         code=codes.FILE_MISSING,
         origin=Origin(file=text),
-        hint=_meant(given),
-        values={"kind": "file", "name": text},
+        hint=hint,
+        values={"kind": "file", "name": text, "meant": meant},
     )
 
 
@@ -127,16 +130,20 @@ def _in_folder(folder: Path) -> Path:
     same = [path for path in found if path.name.partition(".")[0] == folder.name]
     if len(found) == 1 or len(same) == 1:
         return (same or found)[0]
-    names = ", ".join(str(path.relative_to(folder)) for path in found[:8])
+    names = tuple(str(path.relative_to(folder)) for path in found)
     raise DescriptionError(
         f"the folder contains {'several descriptions' if found else 'no description'}",
         code=codes.NOT_A_DESCRIPTION,
         origin=origin,
-        hint=f"Pass one of: {names}." if found else "Add a model.sdf or a .urdf file to it.",
+        hint=f"Pass one of: {', '.join(names[:_LISTED])}."
+        if found
+        else "Add a model.sdf or a .urdf file to it.",
+        values={"found": names},
     )
 
 
-def _meant(given: Path) -> str | None:
+def _meant(given: Path) -> tuple[str, str]:
+    """The likely file, or an empty string, and the hint."""
     if len(given.parts) != 1:
         return xml.near_files(given)
     shipped = {path.name for path in shipped_descriptions()}
@@ -146,5 +153,5 @@ def _meant(given: Path) -> str | None:
         here = set()
     near = numbers.likely(given.name, here | shipped)
     if near:
-        return f'Did you mean "{near}"?'
-    return (f"Bundled descriptions: {', '.join(sorted(shipped))}.") if shipped else None
+        return near, f'Did you mean "{near}"?'
+    return "", f"Bundled descriptions: {', '.join(sorted(shipped))}." if shipped else ""

@@ -66,8 +66,9 @@ def explain(failure: Failure) -> DescriptionError:
         )
     if isinstance(inner, FileNotFoundError):
         message = f'the included file "{inner.filename}" does not exist'
-        hint = near_files(Path(str(inner.filename)))
-        code, values = codes.FILE_MISSING, {"kind": "file", "name": str(inner.filename)}
+        near, hint = near_files(Path(str(inner.filename)))
+        code = codes.FILE_MISSING
+        values = {"kind": "file", "name": str(inner.filename), "meant": near}
     elif match := _MACRO.search(text):
         message = f'the macro "xacro:{match[1]}" is not defined'
         hint, near = _meant(f"xacro:{match[1]}", [f"xacro:{name}" for name in failure.macros])

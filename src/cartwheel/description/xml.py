@@ -57,12 +57,13 @@ def read_bytes(path: Path) -> bytes:
             raise _unreadable(f"the file is larger than {MAX_BYTES >> 20} MiB", origin)
         content = path.read_bytes()
     except FileNotFoundError:
+        meant, hint = near_files(path)
         raise DescriptionError(
             "the file does not exist",
             code=codes.FILE_MISSING,
             origin=origin,
-            hint=near_files(path),
-            values={"kind": "file", "name": str(path)},
+            hint=hint,
+            values={"kind": "file", "name": str(path), "meant": meant},
         ) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
@@ -82,16 +83,14 @@ def _unreadable(message: str, origin: Origin, hint: str | None = None) -> Descri
     return DescriptionError(message, code=codes.FILE_UNREADABLE, origin=origin, hint=hint)
 
 
-def near_files(path: Path) -> str | None:
-    """A sentence that suggests a file for a path that does not exist."""
+def near_files(path: Path) -> tuple[str, str]:
+    """The likely name of a file that does not exist, or an empty string, and the hint."""
     try:
         names = [entry.name for _, entry in zip(range(2000), path.parent.iterdir(), strict=False)]
     except OSError:
-        return f'The folder "{path.parent}" does not exist either.'
+        return "", f'The folder "{path.parent}" does not exist either.'
     near = numbers.likely(path.name, names)
-    if near:
-        return f'Did you mean "{near}"?'
-    return None
+    return near or "", f'Did you mean "{near}"?' if near else ""
 
 
 def read_file(path: Path) -> Node:

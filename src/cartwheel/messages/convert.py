@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID
-from cartwheel.errors import GraphError, suggestion
+from cartwheel.errors import GraphError, meant, suggestion
 from cartwheel.messages.fields import FILLER, Field, fields
 from cartwheel.messages.store import message_class
 
@@ -85,11 +85,13 @@ def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str,
         rest = name.removeprefix(f"{longest.name}_")
         return _split(longest.type, rest, (*outer, longest.name))
     written = f'"{"_".join((*outer, name))}": ' if outer else ""
+    names = [field.name for field in known]
+    path = ".".join((*outer, name))
     raise GraphError(
-        f"""{written}{type_name} has no field "{".".join((*outer, name))}\"""",
+        f'{written}{type_name} has no field "{path}"',
         code=FIELD_UNKNOWN,
-        hint=suggestion(name, [field.name for field in known]),
-        values={"type": type_name, "field": ".".join((*outer, name))},
+        hint=suggestion(name, names),
+        values={"type": type_name, "field": path, "meant": meant(name, names)},
     )
 
 
@@ -174,7 +176,11 @@ def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
                     f'{type_name} has no field "{path}{key}"',
                     code=FIELD_UNKNOWN,
                     hint=suggestion(str(key), names),
-                    values={"type": type_name, "field": f"{path}{key}"},
+                    values={
+                        "type": type_name,
+                        "field": f"{path}{key}",
+                        "meant": meant(str(key), names),
+                    },
                 )
             result[name] = value
         return result

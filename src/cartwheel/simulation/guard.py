@@ -104,12 +104,18 @@ class Guard:
         """The error, with the file of the last states if it was written."""
         body = self._culprit()
         name = mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_BODY, body) or "world"
+        smallest = _smallest(self._model, body)
         return DivergedError(
             f'the simulation diverged at {self._data.time:.3f} s, first at "{name}"',
             code=world_codes.SIMULATION_DIVERGED,
-            values={"body": name, "time": float(self._data.time), "states": states},
+            values={
+                "body": name,
+                "time": float(self._data.time),
+                "states": states,
+                "inertia": _inertia(self._model, smallest),
+            },
             origin=place_of(name),
-            hint=_likely(self._model, body)
+            hint=_likely(self._model, smallest)
             + (f" The last states were saved to {states}." if states else ""),
         )
 
@@ -127,19 +133,29 @@ class Guard:
         return int(model.dof_bodyid[dof])
 
 
-def _likely(model: Any, body: int) -> str:
+def _smallest(model: Any, body: int) -> int:
+    """The body with the smallest moment of inertia in the model of a body; 0 for the world."""
     tree = [
         other
         for other in range(model.nbody)
         if model.body_rootid[other] == model.body_rootid[body] and model.body_mass[other] > 0
     ]
     if not body or not tree:
+        return 0
+    return min(tree, key=lambda other: _inertia(model, other))
+
+
+def _inertia(model: Any, body: int) -> float:
+    """The smallest principal moment of inertia of a body, kg m²."""
+    return float(np.min(model.body_inertia[body]))
+
+
+def _likely(model: Any, body: int) -> str:
+    if not body:
         return "The most common cause is a very large effort or speed."
-    smallest = min(tree, key=lambda other: float(np.min(model.body_inertia[other])))
-    name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, smallest)
-    inertia, mass = float(np.min(model.body_inertia[smallest])), model.body_mass[smallest]
+    name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body)
     return (
-        f'The smallest moment of inertia in the model is {inertia:.3g} kg m² (link "{name}", '
-        f"{mass:.3g} kg). The most common causes are an inertia that is far too small for the size "
-        "of the link, and a very large effort or damping."
+        f"The smallest moment of inertia in the model is {_inertia(model, body):.3g} kg m² (link "
+        f'"{name}", {model.body_mass[body]:.3g} kg). The most common causes are an inertia that is '
+        "far too small for the size of the link, and a very large effort or damping."
     )

@@ -22,7 +22,7 @@ from typing import Any, ClassVar
 from cartwheel.codes import world as world_codes
 from cartwheel.errors import SimulationError
 
-_PACKAGES = "libegl1 libgl1 libgl1-mesa-dri"
+_PACKAGES = ("libegl1", "libgl1", "libgl1-mesa-dri")
 _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 
 
@@ -132,8 +132,9 @@ def _open(width: int, height: int) -> Any:
             return context
     raise NoOpenGLError(
         f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
-        hint=f"On Debian or Ubuntu: sudo apt-get install {_PACKAGES}. Only camera images require "
-        "OpenGL.",
+        hint=f"On Debian or Ubuntu: sudo apt-get install {' '.join(_PACKAGES)}. Only camera images "
+        "require OpenGL.",
+        values={"packages": _PACKAGES},
     )
 
 

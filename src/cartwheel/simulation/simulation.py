@@ -694,13 +694,13 @@ class Simulation(Run):
                 values={"name": name},
             )
         if name in self._residents:
+            free = free_name(name, self._residents)
             raise WorldError(
                 f'a model named "{name}" is already in the world',
                 code=world_codes.MODEL_NAME_TAKEN,
                 origin=description.origin,
-                hint="Give it another name with --model, such as "
-                f'"{free_name(name, self._residents)}".',
-                values={"name": name},
+                hint=f'Give it another name with --model, such as "{free}".',
+                values={"name": name, "free": free},
             )
         entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
         part = Part(self.engine, entry, namespace=namespace, frame_prefix=frame_prefix)

@@ -31,7 +31,7 @@ def contact_collision_unknown(subject: Subject) -> Iterator[Diagnostic]:
         yield devices_codes.CONTACT_COLLISION_UNKNOWN.diagnostic(
             message=f'contact sensor "{sensor.name}" refers to the collision "{name}", which does '
             "not exist, so it never reports a contact",
-            values={"sensor": sensor.name, "collision": name},
+            values={"sensor": sensor.name, "collision": name, "meant": near},
             origin=asked.origin,
             instead=nodes.written("collision", {}, near) if near else "",
             place="element" if near else "",

@@ -47,6 +47,7 @@ def view_blocked(subject: Subject) -> Iterator[Diagnostic]:
                     values={
                         "sensor": sensor.name,
                         "link": block.link,
+                        "within": block.within,
                         "share": block.share,
                         "distance": block.distance,
                     },

@@ -97,5 +97,5 @@ def _unknown_collisions(sensor: Sensor, link: Link, known: set[str]) -> Iterable
             origin=sensor.origin,
             hint=suggestion(name, sorted(known) if near else own),
             severity="warning",
-            values={"sensor": sensor.name, "name": asked, "meant": near},
+            values={"sensor": sensor.name, "collision": asked, "meant": near},
         )
