@@ -52,6 +52,7 @@ settings.load_profile("cartwheel")
 
 def pytest_configure() -> None:
     if os.environ.get("CARTWHEEL_CODES_ONLY"):
+        sitecustomize.install_services()
         folder = str(Path(sitecustomize.__file__).parent)
         os.environ["PYTHONPATH"] = os.pathsep.join(
             filter(None, (folder, os.environ.get("PYTHONPATH", "")))

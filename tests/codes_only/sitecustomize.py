@@ -1,8 +1,8 @@
 """Replaces the text of every diagnostic by its code: nothing may depend on its words.
 
-The message becomes the code's number, and a hint and a note of a service become a single word.
-`CARTWHEEL_CODES_ONLY=1 pytest` uses it in the tests' own process and, through PYTHONPATH, in all
-programs that they start. Tests of wording have the mark `wording` and are left out there.
+The message becomes the code's number, and the hint a single word. `CARTWHEEL_CODES_ONLY=1 pytest`
+uses it in the tests' own process and, through PYTHONPATH, in all programs that they start. Tests of
+wording have the mark `wording` and are left out there.
 """
 
 import contextlib
@@ -32,6 +32,19 @@ def _install() -> None:
 
     errors.Diagnostic.__init__ = diagnostic
     errors.CartwheelError.__init__ = error
+
+
+def install_services() -> None:
+    """Replaces the notes of answers. Only for the tests' own process: it imports much."""
+    from cartwheel.gazebo import requests
+
+    make_answer = requests.Answer.__init__
+
+    @functools.wraps(make_answer)
+    def answer(self, status="", fields=None, notes=()):
+        make_answer(self, status, fields or {}, tuple("note" for _ in notes))
+
+    requests.Answer.__init__ = answer
 
 
 # Other programs' Python has no Cartwheel.

@@ -3,8 +3,11 @@
 import threading
 
 import pytest
+from tests.coded import coded
 
-from cartwheel.gazebo import GazeboApi
+from cartwheel.codes.graph import SERVICE_FAILED
+from cartwheel.errors import one_line
+from cartwheel.gazebo import GazeboApi, requests, resources, results, simulation_interfaces
 from cartwheel.messages import encode_cdr, from_dict
 
 # As a Gazebo 11 lists them, types in ROS 2's spelling.
@@ -94,6 +97,33 @@ class Gazebo:
         assert answer.success, answer.status_message
         return answer
 
+    def fails(self, name, code, /, values=None, **fields):
+        """A call that must fail with an error of this code, and these values among its own.
+
+        The answer must contain the error's text, or the error must be reported.
+        """
+        errors = []
+
+        def recorded(error):
+            errors.append(error)
+            return one_line(error)
+
+        with pytest.MonkeyPatch.context() as patch:
+            for module in (requests, resources, results, simulation_interfaces):
+                patch.setattr(module, "one_line", recorded)
+            answer = self(name, **fields)
+        (error,) = errors
+        assert error.code is code, repr(error)
+        assert {**error.values, **(values or {})} == dict(error.values)
+        if hasattr(answer, "result"):
+            assert one_line(error) in answer.result.error_message
+            return
+        assert not answer.success
+        if hasattr(answer, "status_message"):
+            assert answer.status_message.endswith(one_line(error))
+        else:
+            assert coded(self.world, SERVICE_FAILED, cause=code.number, **(values or {}))
+
     def refused(self, name, /, **fields):
         """The message of a call that must fail, and changes nothing."""
         before = self.simulation.data.qpos.copy(), self.simulation.data.qvel.copy()
@@ -104,6 +134,11 @@ class Gazebo:
         assert (self.simulation.data.qpos == before[0]).all()
         assert (self.simulation.data.qvel == before[1]).all()
         return answer.status_message
+
+
+def notes(answer):
+    """What a successful answer says besides Gazebo's own status."""
+    return answer.status_message.split("; ")[1:]
 
 
 @pytest.fixture

@@ -46,24 +46,16 @@ def gz(world):
 def test_xacro_in_a_text_is_not_expanded(api, name):
     with raises(files.XACRO_NOT_EXPANDED) as refused:
         load_plain(XACRO[name], file="<x>", reach=Reach(folders=()))
-    reason = refused.value.message
+    why = refused.value.code, refused.value.values
     gazebo = Gazebo(api)
     for service in ("spawn_urdf_model", "spawn_sdf_model"):
-        told = gazebo(service, model_name="x", model_xml=XACRO[name])
-        assert not told.success
-        assert reason in told.status_message
+        gazebo.fails(service, *why, model_name="x", model_xml=XACRO[name])
     ros2 = gz(api)
-    told = ros2("spawn_entity", name="x", xml=XACRO[name])
-    assert not told.success
-    assert reason in told.status_message
-    told = ros2(
-        "gz_server/spawn_entity", name="x", entity_resource={"resource_string": XACRO[name]}
-    )
-    assert reason in told.result.error_message
-    told = ros2(
-        f"world/{api.session.simulation.world.name}/create", entity_factory={"sdf": XACRO[name]}
-    )
-    assert not told.success
+    ros2.fails("spawn_entity", *why, name="x", xml=XACRO[name])
+    resource = {"resource_string": XACRO[name]}
+    ros2.fails("gz_server/spawn_entity", *why, name="x", entity_resource=resource)
+    create = f"world/{api.session.simulation.world.name}/create"
+    ros2.fails(create, *why, entity_factory={"sdf": XACRO[name]})
     assert "x" not in api.session.simulation.models
 
 
@@ -110,11 +102,10 @@ def test_files_outside_are_refused_whether_they_exist_or_not(api, tmp_path, uri)
     (allowed / ".hidden").mkdir()
     (allowed / ".hidden" / "secret.sdf").write_text(SDF)
     uri = uri.format(secret=secret, allowed=allowed, root=tmp_path)
-    ros2 = gz(api)
-    told = ros2("gz_server/spawn_entity", name="x", entity_resource={"uri": uri})
-    assert "--allow-path" in told.result.error_message
+    ros2, code = gz(api), files.FILE_NOT_ALLOWED
+    ros2.fails("gz_server/spawn_entity", code, name="x", entity_resource={"uri": uri})
     create = f"world/{api.session.simulation.world.name}/create"
-    assert not ros2(create, entity_factory={"name": "x", "sdf_filename": uri}).success
+    ros2.fails(create, code, entity_factory={"name": "x", "sdf_filename": uri})
     assert "x" not in api.session.simulation.models
 
 
@@ -133,10 +124,14 @@ def test_files_in_allowed_folders_of_the_run_and_of_packages_are_read(api, tmp_p
 
 
 def test_sources_outside_are_named(api, tmp_path):
-    ros2 = gz(api)
-    told = ros2("gz_server/get_spawnables", sources=[str(tmp_path)])
-    assert "--allow-path" in told.result.error_message
-    told = ros2("gz_server/get_available_worlds", additional_sources=["/etc"])
+    ros2, code = gz(api), files.FILE_NOT_ALLOWED
+    ros2.fails("gz_server/get_spawnables", code, sources=[str(tmp_path)])
+    ros2.fails("gz_server/get_available_worlds", code, additional_sources=["/etc"])
+
+
+@pytest.mark.wording
+def test_the_option_that_allows_a_folder_is_named(api):
+    told = gz(api)("gz_server/get_available_worlds", additional_sources=["/etc"])
     assert "--allow-path" in told.result.error_message
 
 
@@ -147,9 +142,7 @@ def test_controllers_files_of_a_text_lie_in_packages_too(api, path):
         '<gazebo><plugin name="c" filename="libgz_ros2_control-system.so">'
         f"<parameters>{path}</parameters></plugin></gazebo></robot>",
     )
-    told = gz(api)("spawn_entity", name="x", xml=text)
-    assert not told.success
-    assert "--allow-path" in told.status_message
+    gz(api).fails("spawn_entity", files.FILE_NOT_ALLOWED, name="x", xml=text)
 
 
 @pytest.mark.parametrize("uri", ["{secret}", "file://{secret}", "../secret.stl", "/etc/passwd"])

@@ -7,7 +7,7 @@ from tests.coded import coded
 from tests.gazebo.conftest import Gazebo
 
 import cartwheel as cw
-from cartwheel.codes.graph import SERVICE_FAILED
+from cartwheel.codes.graph import ENTITY_UNKNOWN, SERVICE_FAILED
 from cartwheel.description import load_text
 from cartwheel.description.model import Light
 from cartwheel.errors import Origin
@@ -125,8 +125,9 @@ def test_a_wrench_acts_until_it_is_cleared(make):
     api.world.run(1.0)
     twist = api.done("get_entity_state", name="cube").state.twist
     assert twist.linear.x == pytest.approx(3.0 * 1.0 / 2.0, rel=1e-9)
-    refused = api.refused("apply_link_wrench", link_name="cube::lnk", wrench={"force": {"x": 1.0}})
-    assert 'Did you mean "cube::link"?' in refused
+    meant = {"kind": "link", "name": "cube::lnk", "meant": "cube::link"}
+    wrench = {"force": {"x": 1.0}}
+    api.fails("apply_link_wrench", ENTITY_UNKNOWN, meant, link_name="cube::lnk", wrench=wrench)
     api("clear_link_wrenches", link_name="nobody")
     assert coded(api.world.diagnostics, SERVICE_FAILED, name="nobody")
 
@@ -183,7 +184,8 @@ def test_a_light_keeps_what_ros2_does_not_set(make):
     assert changed.attenuation == (0.5, 0.0, 0.0)
     assert (changed.pose, changed.specular) == (LAMP.pose, LAMP.specular)
     assert (changed.direction, changed.cast_shadows) == (LAMP.direction, LAMP.cast_shadows)
-    assert "lamp" in api.refused("set_light_properties", light_name="lump")
+    meant = {"kind": "light", "name": "lump", "meant": "lamp"}
+    api.fails("set_light_properties", ENTITY_UNKNOWN, meant, light_name="lump")
 
 
 STOPPED, PLAYING, PAUSED = range(3)
