@@ -73,8 +73,17 @@ def test_a_missing_file(cart):
     (cart.folder / "robot.urdf").write_text(BOX)
     for command in (("run", "--headless"), ("spawn",), ("convert", "--to", "urdf"), ("view",)):
         done = cart(*command, "robt.urdf", status=2)
-        assert done.stderr.startswith("robt.urdf: error: ")
-        assert 'Did you mean "robot.urdf"?' in done.stderr
+        first = done.stderr.splitlines()[0]
+        assert first.startswith("robt.urdf: error: ") and first.endswith(f"[{FILE_MISSING}]")
+
+
+@pytest.mark.wording
+def test_likely_names_are_shown(cart):
+    (cart.folder / "robot.urdf").write_text(BOX)
+    assert 'Did you mean "robot.urdf"?' in cart("spawn", "robt.urdf", status=2).stderr
+    cart("spawn", "robot.urdf", "-x", "9")
+    assert "box_1" in cart("spawn", "robot.urdf", "-x", "9", status=2).stderr
+    cart("delete", "box")
 
 
 def test_a_name_used_twice(cart):
@@ -82,7 +91,6 @@ def test_a_name_used_twice(cart):
     cart("spawn", "box.urdf", "-x", "9")
     done = cart("spawn", "box.urdf", "-x", "9", status=2)
     assert f"[{MODEL_NAME_TAKEN}]" in done.stderr
-    assert "box_1" in done.stderr
     cart("delete", "box")
 
 

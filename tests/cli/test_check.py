@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from cartwheel.codes.command import UNKNOWN_CODE
 from cartwheel.description.check import REPORTED, RULES
 from cartwheel.errors import UNCLASSIFIED
 
@@ -159,6 +160,13 @@ def test_the_same_of_several_lines_is_shown_once(checked):
 def test_a_rule_can_be_ignored_and_a_wrong_name_is_told(checked, program, tmp_path):
     out = checked(ERROR, "--ignore", "inertia-impossible", status=0)
     assert "1 ignored" in out
+    done = program("check", tmp_path / "bar.urdf", "--ignore", "inertia-imposible", status=2)
+    assert f"[{UNKNOWN_CODE}]" in done.stderr
+
+
+@pytest.mark.wording
+def test_the_rule_that_was_meant_is_named(program, tmp_path):
+    (tmp_path / "bar.urdf").write_text(GOOD)
     done = program("check", tmp_path / "bar.urdf", "--ignore", "inertia-imposible", status=2)
     assert 'Did you mean "inertia-impossible"?' in done.stderr
 

@@ -6,6 +6,8 @@ import subprocess
 import pytest
 from tests.cli.conftest import PROGRAM
 
+from cartwheel.codes.command import INTERNAL_FAULT, SYSTEM_LIMIT
+
 RUN = ("run", "--headless", "--for", "0.2", "--speed", "max")
 
 
@@ -31,12 +33,24 @@ def test_missing_streams_are_nobodys(program, numbers):
     assert "/clock" in info
 
 
-def test_a_limit_of_the_system_is_named_with_its_remedy(program):
-    def limited():
+@pytest.fixture
+def limited(program):
+    """What is said by a run that may open too few files."""
+
+    def limit():
         resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16))
 
-    process = program.start(*RUN, "--ros2", "--record", "a.mcap", preexec_fn=limited)
+    process = program.start(*RUN, "--ros2", "--record", "a.mcap", preexec_fn=limit)
     _, said = process.communicate(timeout=200)
     assert process.returncode == 2
-    assert "ulimit -n" in said
-    assert "CW033" not in said
+    return said
+
+
+def test_a_limit_of_the_system_is_named(limited):
+    assert f"[{SYSTEM_LIMIT}]" in limited
+    assert INTERNAL_FAULT.number not in limited
+
+
+@pytest.mark.wording
+def test_a_limit_of_the_system_comes_with_its_remedy(limited):
+    assert "ulimit -n" in limited

@@ -74,10 +74,20 @@ def test_two_runs_of_one_ros2_domain_stay_apart(pair: tuple[Program, int, int]) 
     assert _stamps(program, first, 20)[-1] > before
 
 
-def test_a_port_of_foxglove_that_another_run_uses_is_named(program: Program) -> None:
+@pytest.fixture
+def refused(program: Program) -> tuple[str, str]:
+    """A port that is in use, and what a run says that is to use it for Foxglove."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         options = ("--headless", "--foxglove", "--foxglove-port", port)
-        done = program("run", "empty.world", *options, status=2)
-    assert f"[{ADDRESS_UNAVAILABLE}]" in done.stderr
-    assert port in done.stderr and "--foxglove-port" in done.stderr
+        return port, program("run", "empty.world", *options, status=2).stderr
+
+
+def test_a_port_of_foxglove_that_another_run_uses_is_refused(refused: tuple[str, str]) -> None:
+    assert f"[{ADDRESS_UNAVAILABLE}]" in refused[1]
+
+
+@pytest.mark.wording
+def test_a_port_of_foxglove_that_another_run_uses_is_named(refused: tuple[str, str]) -> None:
+    port, said = refused
+    assert port in said and "--foxglove-port" in said

@@ -39,8 +39,9 @@ def test_of_several_one_must_be_named(server, session, monkeypatch):
     second = ControlServer(session, title="second", load=load)
     entry = json.loads(second.entry.path.with_suffix(".json").read_text())
     second.entry.path.with_suffix(".json").write_text(json.dumps({**entry, "pid": 17}))
-    with raises(SIMULATION_AMBIGUOUS, pids=(17, os.getpid())):
+    with raises(SIMULATION_AMBIGUOUS, pids=(17, os.getpid())) as caught:
         find()
+    assert caught.value.hint
     assert find(17).title == "second"
     monkeypatch.setenv("CARTWHEEL_SIM", "17")
     assert find().title == "second"

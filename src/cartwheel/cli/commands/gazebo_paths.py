@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 from cartwheel.codes.command import WORLD_NOT_FOUND
 from cartwheel.description.packages import share
-from cartwheel.errors import CartwheelError, likely
+from cartwheel.errors import CartwheelError, meant_one
 
 _LEVELS = 4
 """Maximum number of folders between a workspace's source folder and a package."""
@@ -48,16 +48,17 @@ def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
             f"the world {name} does not exist", code=WORLD_NOT_FOUND, values={"world": name}
         )
     shipped = sorted(f"worlds/{path.name}" for path in (share() / "worlds").glob("*.world"))
-    near = likely(name, shipped)
+    near = meant_one(name, shipped)
+    known = f'Did you mean "{near}"?' if near else f"Cartwheel includes: {', '.join(shipped)}."
     searched = ", ".join(str(folder) for folder in folders[:-1])
     raise CartwheelError(
         f'the world "{name}" was not found',
         code=WORLD_NOT_FOUND,
         hint=(
-            f"{near or 'Cartwheel includes: ' + ', '.join(shipped) + '.'} Searched: {searched}. "
+            f"{known} Searched: {searched}. "
             "Add its folder to GAZEBO_RESOURCE_PATH, or pass the full path."
         ),
-        values={"world": name},
+        values={"world": name, "meant": near},
     )
 
 
