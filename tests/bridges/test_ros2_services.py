@@ -9,11 +9,15 @@ from typing import Any
 import pytest
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
-from tests.coded import coded
+from tests.coded import coded, raises
 
 from cartwheel.cli.commands.ros2 import node_parameters
+from cartwheel.codes.graph import ENTITY_NAME_TAKEN
 from cartwheel.codes.wires import MALFORMED_MESSAGE
+from cartwheel.codes.world import UNKNOWN_MODEL
+from cartwheel.errors import one_line
 from cartwheel.gazebo.ros2_api import Ros2Api
+from cartwheel.geometry import Pose
 from cartwheel.messages.ros2_types import ros2_type
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
@@ -57,6 +61,14 @@ def position(bridged: Ros2Bridged, name: str) -> tuple[float, float, float]:
     return bridged.simulation.call(lambda: bridged.simulation.pose(name)).result().position
 
 
+def unknown(bridged: Ros2Bridged, name: str) -> str:
+    """What is answered for a model that does not exist."""
+    simulation = bridged.simulation
+    with raises(UNKNOWN_MODEL, name=name) as caught:
+        simulation.call(lambda: simulation.delete(name)).result()
+    return one_line(caught.value)
+
+
 def parameter(name: str, kind: int, **value: Any) -> dict[str, Any]:
     return {"name": name, "value": {"type": kind, **value}}
 
@@ -71,13 +83,18 @@ def test_models_are_spawned_listed_and_deleted(bridged: Ros2Bridged, peer: Peer)
     assert position(bridged, "crate")[0] == pytest.approx(3.0, abs=1e-6)
     again = peer.call("/spawn_entity", "gazebo_msgs/srv/SpawnEntity", {"name": "crate", "xml": BOX})
     assert not again.success
-    assert again.status_message
+    with raises(ENTITY_NAME_TAKEN, name="crate", free="crate_1") as taken:
+        bridged.prepared._spawning.spawn_text(
+            BOX, name="crate", where=Pose(), reference_frame="", namespace=""
+        )
+    assert again.status_message == one_line(taken.value)
     listed = peer.call("/get_model_list", "gazebo_msgs/srv/GetModelList", {})
     assert {"rosbots", "crate"} <= set(listed.model_names)
     assert peer.call("/delete_entity", "gazebo_msgs/srv/DeleteEntity", {"name": "crate"}).success
     assert "crate" not in bridged.simulation.models
     gone = peer.call("/delete_entity", "gazebo_msgs/srv/DeleteEntity", {"name": "crate"})
-    assert (gone.success, "crate" in gone.status_message) == (False, True)
+    assert not gone.success
+    assert gone.status_message == unknown(bridged, "crate")
 
 
 def test_a_description_larger_than_a_datagram_arrives(bridged: Ros2Bridged, peer: Peer) -> None:
@@ -258,7 +275,7 @@ def test_entities_come_and_go_by_simulation_interfaces(bridged: Ros2Bridged, pee
     assert told.state.pose.position.x == pytest.approx(7.0, abs=1e-2)
     nobody = peer.call("/gz_server/delete_entity", f"{package}/DeleteEntity", {"entity": "nobody"})
     assert nobody.result.result == 2  # RESULT_NOT_FOUND
-    assert "nobody" in nobody.result.error_message
+    assert nobody.result.error_message == unknown(bridged, "nobody")
     spawned = peer.call("/gz_server/reset_simulation", f"{package}/ResetSimulation", {"scope": 4})
     assert spawned.result.result == 1
     assert bridged.simulation.models == tuple(

@@ -88,6 +88,11 @@ def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
     assert not verdict.good
     (reason,) = verdict.reasons
     assert "robot.urdf:1: warning: " in reason and f"[{WHEEL_DIAMETER_MISMATCH}]" in reason
+
+
+@pytest.mark.wording
+def test_how_much_too_slowly_a_robot_drives_is_said(tried):
+    (reason,) = tried(cart(0.2)).reasons
     assert "50% too slowly" in reason
 
 

@@ -24,6 +24,7 @@ from .pages import PAGES, ROOT, Command, blocks, commands
 START_SECONDS = 60.0
 PATIENCE = 120.0
 """s in which what a simulation says must have become what the page shows."""
+_MESSAGE = re.compile(r"\b(?:error|warning|info): ")
 _DECIMAL = re.compile(r"-?\d+\.\d+")
 _PARTS = re.compile(r"(\.\.\.|(?<![\w.])-?\d+\.\d+(?![\w.]))")
 
@@ -209,7 +210,21 @@ def reader(tmp_path: Path, runtime_folder: Path) -> Iterator[Reader]:
 WITH_COMMANDS = [page for page in PAGES if page.is_file() and commands(page)]
 
 
-@pytest.mark.parametrize("page", WITH_COMMANDS, ids=lambda page: str(page.relative_to(ROOT)))
+def _shows_messages(page: Path) -> bool:
+    return any(_MESSAGE.search(command.expected) for command in commands(page))
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(
+            page,
+            id=str(page.relative_to(ROOT)),
+            marks=[pytest.mark.wording] if _shows_messages(page) else [],
+        )
+        for page in WITH_COMMANDS
+    ],
+)
 def test_the_commands_of_a_page_do_what_it_says(page: Path, reader: Reader) -> None:
     for command in commands(page):
         reader.follow(command)

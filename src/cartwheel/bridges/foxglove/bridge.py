@@ -465,5 +465,5 @@ def require() -> None:
             f"--foxglove needs the package foxglove-sdk: {error}",
             code=PACKAGE_MISSING,
             hint='pip install "cartwheel[foxglove]"',
-            values={"package": "foxglove-sdk"},
+            values={"package": "foxglove-sdk", "extra": "foxglove"},
         ) from None

@@ -66,7 +66,7 @@ class Zenoh:
                 "--rmw zenoh requires Zenoh, which is not installed",
                 code=PACKAGE_MISSING,
                 hint=_INSTALL,
-                values={"package": "eclipse-zenoh"},
+                values={"package": "eclipse-zenoh", "extra": "ros2"},
             ) from None
         self._zenoh = zenoh
         self.loop = loop
