@@ -122,7 +122,7 @@ def test_it_may_be_early(ros, spawn, gazebo):
     program = ros.overlay.program("gazebo_ros", "spawn_model")
     early = ros.start(program, "-urdf", "-file", "r.urdf", "-model", "m")
     lines = iter(early.stdout.readline, "")
-    assert any("nobody offers it yet" in line for line in lines)
+    assert any("which is not available yet" in line for line in lines)
     taking = gazebo()
     assert taking.next()[0] == "urdf"
     assert early.wait(timeout=60) == 0
@@ -133,7 +133,7 @@ def test_a_bond_deletes_the_model_when_it_is_interrupted(ros, spawn, gazebo):
     program = ros.overlay.program("gazebo_ros", "spawn_model")
     bound = ros.start(program, "-urdf", "-file", "r.urdf", "-model", "m", "-b")
     assert taking.next()[0] == "urdf"
-    assert any("Staying" in line for line in iter(bound.stdout.readline, ""))
+    assert any("Press Ctrl-C to delete m" in line for line in iter(bound.stdout.readline, ""))
     bound.send_signal(signal.SIGINT)
     assert taking.next() == ("delete", "m")
     assert bound.wait(timeout=60) == 0
@@ -145,8 +145,8 @@ def test_a_bond_deletes_the_model_when_it_is_interrupted(ros, spawn, gazebo):
         ("-file none.urdf", "", "none.urdf: no such file in "),
         ("-file .", "", ": Is a directory"),
         ("-file f", "", "f is empty"),
-        ("-file f", "<robot>\n <link>\n</robot>", "f:3:3: this is no XML"),
-        ("-param nothing", "", "there is no parameter /nothing"),
+        ("-file f", "<robot>\n <link>\n</robot>", "f:3:3: invalid XML"),
+        ("-param nothing", "", "the parameter /nothing does not exist"),
         (
             "-file f",
             '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arm/></robot>',

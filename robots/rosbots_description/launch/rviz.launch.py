@@ -1,6 +1,6 @@
-"""The robot in rviz, driven by a running simulation.
+"""Shows the robot of a running simulation in RViz.
 
-The sliders of joint_state_publisher_gui take the simulation's place when there is none:
+Without a simulation, move the joints with the sliders of joint_state_publisher_gui:
 ros2 launch rosbots_description rviz.launch.py sliders:=true
 """
 
@@ -31,20 +31,20 @@ def generate_launch_description() -> LaunchDescription:
                 "rvizconfig",
                 default_value=PathJoinSubstitution([share, "rviz", "rosbots_ros2.rviz"]),
             ),
-            # A simulation publishes the wheels' joint states; two publishers would contradict.
+            # Only without a simulation, which publishes the joint states of the wheels itself.
             Node(
                 package="joint_state_publisher_gui",
                 executable="joint_state_publisher_gui",
                 condition=IfCondition(sliders),
             ),
-            # Without a simulation there is no odometry: odom then stands where the robot stands.
+            # Without a simulation, there is no odometry, so odom is placed at the robot.
             Node(
                 package="tf2_ros",
                 executable="static_transform_publisher",
                 arguments=["--frame-id", "odom", "--child-frame-id", "base_footprint"],
                 condition=IfCondition(sliders),
             ),
-            # Cartwheel makes way where another node does this.
+            # While this node runs, Cartwheel does not publish the description and transforms.
             Node(
                 package="robot_state_publisher",
                 executable="robot_state_publisher",

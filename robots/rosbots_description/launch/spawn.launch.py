@@ -1,7 +1,7 @@
-"""The robot into a running simulation: cartwheel run world empty --ros2, or Gazebo with gazebo_ros.
+"""Spawns the robot in a running simulation: Cartwheel with --ros2, or Gazebo with gazebo_ros.
 
-Calls /spawn_entity with ROS 2's own tool, so that no gazebo_ros needs to be installed but its
-messages.
+The launch file calls /spawn_entity with `ros2 service call`, which requires gazebo_msgs but not
+gazebo_ros.
 """
 
 import json
@@ -31,7 +31,7 @@ def spawn(context: LaunchContext) -> list[ExecuteProcess]:
                 "call",
                 "/spawn_entity",
                 "gazebo_msgs/srv/SpawnEntity",
-                # JSON is YAML, and has no line of its own.
+                # JSON is valid YAML on a single line.
                 json.dumps(request),
             ],
             output="screen",

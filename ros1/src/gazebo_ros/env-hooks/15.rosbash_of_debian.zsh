@@ -1,4 +1,4 @@
-# roscd and its like are functions, which Debian keeps where only the completion of words finds them.
+# Debian defines functions such as roscd in a file that only shell completion loads.
 if ! type roscd >/dev/null 2>&1 && [ -r /usr/share/zsh/vendor-completions/roszsh ]; then
     . /usr/share/zsh/vendor-completions/roszsh
 fi

@@ -1,6 +1,6 @@
 """The program controller_group: switches between groups of controllers.
 
-Groups are the parameter ``controller_groups``: a name, and the controllers that run in it.
+The parameter ``controller_groups`` contains the names of the groups and their controllers.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from controller_manager.services import Manager, ManagerError, join_ros, own_arg
 
 USAGE = """\
 Commands:
-    list                 groups, and the one that runs
-    spawn <group>        load the controllers of all groups, and start those of one
-    switch <group>       stop the controllers of the other groups, and start those of one"""
+    list                 list the groups, and mark the running group
+    spawn <group>        load the controllers of all groups, and start those of this group
+    switch <group>       stop the controllers of the other groups, and start those of this group"""
 
 
 def main() -> int:
@@ -51,7 +51,7 @@ def main() -> int:
 
 
 def switch(manager: Manager, groups: dict[str, list[str]], group: str) -> int:
-    """Lets the controllers of one group run, and of the other groups none."""
+    """Starts the controllers of one group, and stops those of the other groups."""
     running = set(manager.running())
     wanted = groups[group]
     others = {name for members in groups.values() for name in members} - set(wanted)

@@ -1,4 +1,4 @@
-"""The program controller_manager: one call to a controller manager."""
+"""The program controller_manager: sends one command to a controller manager."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ Commands:
     stop <name>          stop a running controller
     spawn <name>         load and start a controller
     kill <name>          stop and unload a controller
-    list                 controllers that are loaded
-    list-types           types that can be loaded
+    list                 list the loaded controllers
+    list-types           list the supported controller types
     reload-libraries     unload all controllers; --restore loads and starts them again"""
 _SHORT = {"lt": "list-types", "lc": "list", "sp": "spawn", "kl": "kill"}
 _STEPS = {
@@ -58,7 +58,7 @@ def main() -> int:
 
 
 def act(manager: Manager, step: str, names: list[str]) -> bool:
-    """Does one thing with each of some controllers; whether all went well."""
+    """Applies one step to each controller. Returns whether all steps succeeded."""
     well = True
     for name in names:
         if step == "load":
@@ -73,7 +73,7 @@ def act(manager: Manager, step: str, names: list[str]) -> bool:
 
 
 def show(manager: Manager) -> None:
-    """Prints what is loaded."""
+    """Prints the loaded controllers."""
     found = manager.controllers()
     if not found:
         print("No controllers are loaded in mechanism control")
@@ -83,7 +83,7 @@ def show(manager: Manager) -> None:
 
 
 def reload(manager: Manager, *, restore: bool) -> int:
-    """Unloads all controllers, and loads them again where wanted."""
+    """Unloads all controllers, and optionally loads and starts them again."""
     before = manager.controllers()
     if not manager.reload(force=True):
         print("Error: could not reload the libraries")

@@ -1,4 +1,4 @@
-"""The services of a controller manager, as the programs call them."""
+"""Calls the services of a controller manager."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ NAMES = ("load_controller", "unload_controller", "switch_controller", "list_cont
 
 
 class ManagerError(Exception):
-    """What a controller manager refuses, or that it is not there."""
+    """The controller manager is not available, or a call failed."""
 
 
 class Manager:
     """Calls the services of one controller manager.
 
     Args:
-        namespace: Of the robot; "" is that of the node.
+        namespace: Namespace of the robot; "" for the namespace of the node.
     """
 
     def __init__(self, namespace: str = "") -> None:
@@ -26,10 +26,10 @@ class Manager:
         self._prefix = f"{prefix}controller_manager/"
 
     def wait(self, timeout: float | None) -> None:
-        """Waits until the services are there, in s of the wall clock; None is endless.
+        """Waits for the services, up to `timeout` s of wall time. None means no limit.
 
         Raises:
-            ManagerError: They are not there in time.
+            ManagerError: The services are not available in time.
         """
         import rospy
 
@@ -46,24 +46,24 @@ class Manager:
                         raise ManagerError("interrupted") from None
                     if end is not None and time.monotonic() >= end:
                         raise ManagerError(
-                            f"there is no service {service} after {timeout:g} s: the robot has "
-                            "no controller manager in this namespace, or is not spawned yet"
+                            f"the service {service} is not available after {timeout:g} s: the "
+                            "robot has no controller manager in this namespace, or is not spawned"
                         ) from None
 
     def load(self, name: str) -> bool:
-        """Whether it is loaded now and was not before."""
+        """Loads a controller. Returns False if it fails or if the controller is already loaded."""
         from controller_manager_msgs.srv import LoadController
 
         return bool(self._call("load_controller", LoadController, name=name).ok)
 
     def unload(self, name: str) -> bool:
-        """Whether it is gone now."""
+        """Unloads a controller. Returns whether it succeeded."""
         from controller_manager_msgs.srv import UnloadController
 
         return bool(self._call("unload_controller", UnloadController, name=name).ok)
 
     def switch(self, start: list[str], stop: list[str]) -> bool:
-        """Whether all of these were started and stopped."""
+        """Starts and stops controllers. Returns whether all were started and stopped."""
         from controller_manager_msgs.srv import SwitchController
 
         return bool(
@@ -79,24 +79,24 @@ class Manager:
         )
 
     def controllers(self) -> list[Any]:
-        """``ControllerState`` of each that is loaded."""
+        """Returns the ``ControllerState`` of each loaded controller."""
         from controller_manager_msgs.srv import ListControllers
 
         return list(self._call("list_controllers", ListControllers).controller)
 
     def running(self) -> list[str]:
-        """Names of the controllers that run."""
+        """Returns the names of the running controllers."""
         return [each.name for each in self.controllers() if each.state == "running"]
 
     def types(self) -> list[tuple[str, str]]:
-        """Each type that can be loaded, with its base class."""
+        """Returns each supported type with its base class."""
         from controller_manager_msgs.srv import ListControllerTypes
 
         found = self._call("list_controller_types", ListControllerTypes)
         return list(zip(found.types, found.base_classes, strict=True))
 
     def reload(self, *, force: bool) -> bool:
-        """Unloads all controllers; whether it did."""
+        """Unloads all controllers. Returns whether it succeeded."""
         from controller_manager_msgs.srv import ReloadControllerLibraries
 
         answer = self._call(
@@ -114,14 +114,14 @@ class Manager:
 
 
 def own_arguments() -> list[str]:
-    """This program's arguments without those of ROS; known before ROS is loaded."""
+    """Returns the program's arguments without remappings. Does not import rospy."""
     return [word for word in sys.argv[1:] if ":=" not in word]
 
 
 def join_ros(name: str) -> None:
-    """Makes this program a node."""
+    """Initializes the ROS node of the program."""
     import rospy
 
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
-    # Its times are those of the wall: it must not wait for a clock that stands still.
+    # Use wall time, because simulation time may be paused.
     rospy.init_node(name, anonymous=True, disable_rostime=True)

@@ -1,4 +1,4 @@
-"""The program spawner: loads and starts controllers, and takes them away when it ends."""
+"""The program spawner: loads and starts controllers, and unloads them at its end."""
 
 from __future__ import annotations
 
@@ -29,40 +29,44 @@ def main() -> int:
         if not rospy.is_shutdown():
             rospy.logerr(str(error))
         return 1
-    # Services can still be called then, and no longer when `spin` has returned.
+    # Services can be called at shutdown, but not after `spin` has returned.
     rospy.on_shutdown(lambda: leave(manager, loaded))
     rospy.spin()
     return 0
 
 
 def parse(words: list[str]) -> argparse.Namespace:
-    """The arguments; exits with 2 where they make no sense."""
+    """Parses the arguments. Exits with status 2 if they are invalid."""
     parser = argparse.ArgumentParser(
-        prog="spawner", description="Loads and starts controllers until it is interrupted."
+        prog="spawner", description="Loads and starts controllers. Ctrl-C unloads them."
     )
-    parser.add_argument("--stopped", action="store_true", help="load them, but do not start them")
-    parser.add_argument("--wait-for", metavar="TOPIC", help="load them when this Bool is true")
+    parser.add_argument(
+        "--stopped", action="store_true", help="load the controllers, but do not start them"
+    )
+    parser.add_argument(
+        "--wait-for", metavar="TOPIC", help="wait for true on this Bool topic before loading"
+    )
     parser.add_argument("--namespace", metavar="NS", help="namespace of the controller manager")
     parser.add_argument(
         "--timeout",
         metavar="SECONDS",
         type=float,
         default=30.0,
-        help="how long to wait for the controller manager, 30 s; 0 and less is endless",
+        help="maximum time to wait for the controller manager (default: 30); 0 means no limit",
     )
-    parser.add_argument("--no-timeout", action="store_true", help="wait endlessly")
-    parser.add_argument("--shutdown-timeout", metavar="SECONDS", help="of no effect")
+    parser.add_argument("--no-timeout", action="store_true", help="wait without a time limit")
+    parser.add_argument("--shutdown-timeout", metavar="SECONDS", help="has no effect")
     parser.add_argument(
         "controllers",
         metavar="CONTROLLER",
         nargs="+",
-        help="a name, or a YAML file whose top-level names are taken after it was loaded",
+        help="name of a controller, or YAML file with the parameters of controllers",
     )
     return parser.parse_args(words)
 
 
 def names_of(words: list[str]) -> list[str]:
-    """The controllers; a YAML file among the words is put onto the parameter server."""
+    """Returns the controller names, and loads YAML files into the parameter server."""
     import rosparam
     import yaml
 
@@ -78,7 +82,7 @@ def names_of(words: list[str]) -> list[str]:
 
 
 def heard(topic: str) -> bool:
-    """Waits for a true message; false where the program is ended before."""
+    """Waits for a true message. Returns False if the program is stopped before."""
     import rospy
     from std_msgs.msg import Bool
 
@@ -92,7 +96,7 @@ def heard(topic: str) -> bool:
 
 
 def load(manager: Manager, names: list[str]) -> list[str]:
-    """Loads controllers; returns those that were."""
+    """Loads controllers. Returns the names of those that were loaded."""
     import rospy
 
     loaded = []
@@ -101,27 +105,29 @@ def load(manager: Manager, names: list[str]) -> list[str]:
         if manager.load(name):
             loaded.append(name)
         else:
-            rospy.logerr(f"Failed to load {name}: the simulation says why")
+            rospy.logerr(f"Failed to load {name}. The simulation prints the reason.")
     return loaded
 
 
 def start(manager: Manager, names: list[str]) -> None:
-    """Starts controllers, all or none."""
+    """Starts all controllers, or none if one cannot be started."""
     import rospy
 
     if manager.switch(names, []):
         rospy.loginfo(f"Started controllers: {', '.join(names)}")
     else:
-        rospy.logerr(f"Failed to start controllers: {', '.join(names)}: the simulation says why")
+        rospy.logerr(
+            f"Failed to start controllers: {', '.join(names)}. The simulation prints the reason."
+        )
 
 
 def leave(manager: Manager, names: list[str]) -> None:
-    """Stops and unloads what was loaded, where the simulation is still there."""
+    """Stops and unloads the controllers, if the simulation is still running."""
     try:
         running = manager.running()
         manager.switch([], [name for name in names if name in running])
         for name in reversed(names):
             manager.unload(name)
     except ManagerError:
-        # Often the whole launch ends, and the simulation was faster.
+        # Usually, roslaunch stops all nodes, and the simulation has stopped first.
         return

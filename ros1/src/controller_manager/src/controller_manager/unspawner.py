@@ -1,4 +1,4 @@
-"""The program unspawner: stops running controllers, and starts them again when it ends."""
+"""The program unspawner: stops running controllers, and starts them again at its end."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def main() -> int:
         if not rospy.is_shutdown():
             rospy.logerr(str(error))
         return 1
-    # Services can still be called then, and no longer when `spin` has returned.
+    # Services can be called at shutdown, but not after `spin` has returned.
     rospy.on_shutdown(lambda: go_on(manager, stopped))
     rospy.spin()
     return 0
 
 
 def go_on(manager: Manager, names: list[str]) -> None:
-    """Starts controllers again, where the simulation is still there."""
+    """Starts the controllers again, if the simulation is still running."""
     try:
         manager.switch(names, [])
     except ManagerError:
@@ -41,13 +41,17 @@ def go_on(manager: Manager, names: list[str]) -> None:
 
 
 def parse(words: list[str]) -> argparse.Namespace:
-    """The arguments; exits with 2 where they make no sense."""
+    """Parses the arguments. Exits with status 2 if they are invalid."""
     parser = argparse.ArgumentParser(
-        prog="unspawner", description="Stops controllers until it is interrupted."
+        prog="unspawner", description="Stops controllers. Ctrl-C starts them again."
     )
     parser.add_argument("--namespace", metavar="NS", help="namespace of the controller manager")
     parser.add_argument(
-        "--timeout", metavar="SECONDS", type=float, default=30.0, help="of waiting; 0 is endless"
+        "--timeout",
+        metavar="SECONDS",
+        type=float,
+        default=30.0,
+        help="maximum time to wait for the controller manager (default: 30); 0 means no limit",
     )
     parser.add_argument("controllers", metavar="CONTROLLER", nargs="+")
     return parser.parse_args(words)

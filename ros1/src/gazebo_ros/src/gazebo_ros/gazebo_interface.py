@@ -1,6 +1,6 @@
-"""Calls of a simulation's services, as other packages import them.
+"""Functions that call a simulation's services, for other packages.
 
-Each function waits for its service and returns whether it succeeded; what went wrong is logged.
+Each function waits for its service and returns whether the call succeeded. Errors are logged.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = [
 ]
 
 PATIENCE = 2.0
-"""s of wall time to wait for a service before saying so."""
+"""Wall time in s to wait for a service before a message is logged."""
 
 
 def spawn_urdf_model_client(
@@ -28,15 +28,15 @@ def spawn_urdf_model_client(
     reference_frame: str,
     gazebo_namespace: str,
 ) -> bool:
-    """Spawns a model from the text of a URDF.
+    """Spawns a model from URDF text.
 
     Args:
-        model_name: Its name in the world.
-        model_xml: The text.
-        robot_namespace: Before the names of its topics.
+        model_name: Name of the model in the world.
+        model_xml: URDF text.
+        robot_namespace: Namespace of the model's topics.
         initial_pose: A geometry_msgs/Pose in `reference_frame`.
-        reference_frame: A model or a link of one; empty is the world.
-        gazebo_namespace: Of the services, mostly ``/gazebo``.
+        reference_frame: Name of a model or link; empty for the world.
+        gazebo_namespace: Namespace of the services, usually ``/gazebo``.
     """
     request = (model_name, model_xml, robot_namespace, initial_pose, reference_frame)
     return _spawn(gazebo_namespace + "/spawn_urdf_model", request)
@@ -50,7 +50,7 @@ def spawn_sdf_model_client(
     reference_frame: str,
     gazebo_namespace: str,
 ) -> bool:
-    """Spawns a model from the text of an SDF; the arguments of `spawn_urdf_model_client`."""
+    """Spawns a model from SDF text. The arguments are those of `spawn_urdf_model_client`."""
     request = (model_name, model_xml, robot_namespace, initial_pose, reference_frame)
     return _spawn(gazebo_namespace + "/spawn_sdf_model", request)
 
@@ -62,16 +62,16 @@ def set_model_configuration_client(
     joint_positions: list[float],
     gazebo_namespace: str,
 ) -> bool:
-    """Puts joints of a model into positions, in rad or m.
+    """Sets the positions of a model's joints.
 
     Args:
-        model_name: The model.
-        model_param_name: A parameter with its URDF; may be empty.
-        joint_names: The joints.
-        joint_positions: One for each.
-        gazebo_namespace: Of the services, mostly ``/gazebo``.
+        model_name: Name of the model.
+        model_param_name: ROS parameter with the model's URDF; can be empty.
+        joint_names: Names of the joints.
+        joint_positions: Position of each joint in rad or m.
+        gazebo_namespace: Namespace of the services, usually ``/gazebo``.
     """
-    # The package's __init__ imports each of its services, which takes as long as a spawn.
+    # Importing gazebo_msgs.srv would import all its services, which takes as long as a spawn.
     from gazebo_msgs.srv._SetModelConfiguration import SetModelConfiguration
 
     answer = call(
@@ -86,17 +86,17 @@ def set_model_configuration_client(
 
 
 def call(service: str, kind: Any, request: tuple[Any, ...] = ()) -> Any:
-    """The answer of a service that may not be there yet; None where the call fails."""
+    """Waits for a service and calls it. Returns None if the call fails."""
     wait(service)
     try:
         return rospy.ServiceProxy(service, kind)(*request)
     except rospy.ServiceException as error:
-        rospy.logerr(f"The call of {service} failed: {error}")
+        rospy.logerr(f"The call to {service} failed: {error}")
         return None
 
 
 def wait(service: str) -> None:
-    """Waits for a service, and says so where it takes a while."""
+    """Waits for a service, and logs a message if the service is not available soon."""
     service = rospy.resolve_name(service)
     try:
         rospy.wait_for_service(service, timeout=PATIENCE)
@@ -104,8 +104,8 @@ def wait(service: str) -> None:
         raise
     except rospy.ROSException:
         rospy.loginfo(
-            f"Waiting for the service {service}: nobody offers it yet. "
-            "A simulation does: roslaunch gazebo_ros empty_world.launch"
+            f"Waiting for the service {service}, which is not available yet. "
+            "To start a simulation, run: roslaunch gazebo_ros empty_world.launch"
         )
         rospy.wait_for_service(service)
 

@@ -1,4 +1,4 @@
-"""The program spawn_model: puts a model from a file, a parameter or a pipe into the simulation."""
+"""The program spawn_model: spawns a model from a file, a ROS parameter or standard input."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 from xml.etree import ElementTree
 
 XACRO = "xacro"
-"""Found in the namespace of each element that xacro must still expand."""
+"""Part of the XML namespace of xacro elements."""
 
 DATABASE_SDF = """\
 <?xml version="1.0"?>
@@ -29,19 +29,19 @@ DATABASE_SDF = """\
 
 
 class SpawnError(Exception):
-    """What keeps the model from being spawned."""
+    """The model cannot be spawned."""
 
 
 def main() -> int:
     """Runs the program; returns its exit status."""
-    # Before ROS is loaded, so that a wrong option is told at once.
+    # Before rospy is imported, which takes long, so that an invalid option is reported immediately.
     arguments = parse([word for word in sys.argv[1:] if ":=" not in word])
     import rospy
 
-    # Each line at once, also to whoever reads it from a pipe.
+    # Flush each line, also to a pipe.
     sys.stdout.reconfigure(line_buffering=True)
-    # Its times are those of the wall: it must not wait for a clock that stands still. Nor may
-    # rospy's handler of signals end it: what that logs waits for whoever it interrupted.
+    # Use wall time, because simulation time may be paused. Do not use rospy's signal handler: its
+    # log call waits for a lock that the interrupted thread may hold.
     rospy.init_node("spawn_model", anonymous=True, disable_rostime=True, disable_signals=True)
     signal.signal(signal.SIGTERM, _interrupt)
     signal.signal(signal.SIGINT, _interrupt)
@@ -51,7 +51,7 @@ def main() -> int:
         rospy.logfatal(str(failure))
         return 1
     except (rospy.ROSInterruptException, KeyboardInterrupt):
-        print("spawn_model was interrupted before it was done", file=sys.stderr)
+        print("spawn_model was interrupted before the model was spawned", file=sys.stderr)
         return 1
     return 0
 
@@ -61,41 +61,52 @@ def _interrupt(_number: int, _frame: FrameType | None) -> None:
 
 
 def parse(words: list[str]) -> argparse.Namespace:
-    """The arguments, those of Gazebo's own program; exits with 2 where they make no sense."""
+    """Parses the same arguments as Gazebo's program. Exits with status 2 if they are invalid."""
     parser = argparse.ArgumentParser(
         prog="spawn_model",
-        description="Puts a model into the running simulation.",
+        description="Spawns a model in the running simulation.",
         allow_abbrev=False,
     )
     kind = parser.add_mutually_exclusive_group(required=True)
-    kind.add_argument("-urdf", action="store_true", help="the text is URDF")
-    kind.add_argument("-sdf", action="store_true", help="the text is SDF")
+    kind.add_argument("-urdf", action="store_true", help="spawn a URDF model")
+    kind.add_argument("-sdf", action="store_true", help="spawn an SDF model")
     source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("-file", metavar="FILE", help="take the text from a file")
-    source.add_argument("-param", metavar="NAME", help="take it from a ROS parameter")
+    source.add_argument("-file", metavar="FILE", help="read the model from a file")
+    source.add_argument("-param", metavar="NAME", help="read the model from a ROS parameter")
     source.add_argument(
         "-database",
         metavar="MODEL",
-        help="take a model from the folders in GAZEBO_MODEL_PATH, or one that comes with "
-        "Cartwheel; nothing is downloaded",
+        help="spawn a model from the folders in GAZEBO_MODEL_PATH, or a model that is included "
+        "with Cartwheel; nothing is downloaded",
     )
-    source.add_argument("-stdin", action="store_true", help="take the text from standard input")
+    source.add_argument("-stdin", action="store_true", help="read the model from standard input")
     add = parser.add_argument
-    add("-model", required=True, metavar="NAME", help="its name in the world")
-    add("-reference_frame", default="", metavar="NAME", help="the model or link that the place is"
-        " relative to; else the world")  # fmt: skip
-    add("-gazebo_namespace", default="/gazebo", metavar="NAME", help="of the simulation's services")
-    add("-robot_namespace", metavar="NAME", help="before the names of its topics; else the node's")
-    add("-unpause", action="store_true", help="let time go on when the model is there")
-    add("-wait", metavar="MODEL", help="wait until that model is there")
-    for name, what in (("x", "place, in m"), ("y", None), ("z", None)):
+    add("-model", required=True, metavar="NAME", help="name of the model in the world")
+    add("-reference_frame", default="", metavar="NAME", help="model or link that the pose is"
+        " relative to (default: the world)")  # fmt: skip
+    add("-gazebo_namespace", default="/gazebo", metavar="NAME", help="namespace of the services")
+    add(
+        "-robot_namespace",
+        metavar="NAME",
+        help="namespace of the topics (default: that of the node)",
+    )
+    add("-unpause", action="store_true", help="resume the simulation after the model is spawned")
+    add("-wait", metavar="MODEL", help="wait until this model is in the world")
+    for name, what in (("x", "position in m"), ("y", None), ("z", None)):
         add("-" + name, type=_number, default=0.0, metavar="M", help=what)
-    for name, what in (("R", "roll, in rad"), ("P", "pitch"), ("Y", "yaw")):
+    for name, what in (("R", "roll in rad"), ("P", "pitch in rad"), ("Y", "yaw in rad")):
         add("-" + name, type=_number, default=0.0, metavar="RAD", help=what)
     add("-J", dest="joints", nargs=2, action="append", default=[], metavar=("JOINT", "POSITION"),
-        help="put a joint into a position, in rad or m; may be given again")  # fmt: skip
-    add("-package_to_model", action="store_true", help="write model:// for package:// in meshes")
-    add("-b", dest="bond", action="store_true", help="stay, and delete the model when interrupted")
+        help="set a joint to a position in rad or m; can be repeated")  # fmt: skip
+    add(
+        "-package_to_model", action="store_true", help="replace package:// by model:// in mesh URIs"
+    )
+    add(
+        "-b",
+        dest="bond",
+        action="store_true",
+        help="keep running, and delete the model when interrupted",
+    )
     arguments = parser.parse_args(words)
     try:
         arguments.joints = [(name, _number(position)) for name, position in arguments.joints]
@@ -105,10 +116,10 @@ def parse(words: list[str]) -> argparse.Namespace:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Does what the arguments say, on an initialised node.
+    """Spawns the model. The node must be initialized.
 
     Raises:
-        SpawnError: It could not be done.
+        SpawnError: The model cannot be spawned.
     """
     import rospy
 
@@ -131,13 +142,13 @@ def run(arguments: argparse.Namespace) -> None:
     if not spawn(
         arguments.model, text, namespace, _pose(arguments), arguments.reference_frame, gazebo
     ):
-        told = f"{arguments.model} was not spawned"
+        message = f"{arguments.model} was not spawned"
         if arguments.database:
-            told += (
-                ". -database takes models from the folders in the simulation's GAZEBO_MODEL_PATH "
-                "and those that come with Cartwheel; nothing is downloaded"
+            message += (
+                ". -database searches the folders in the simulation's GAZEBO_MODEL_PATH and the "
+                "models that are included with Cartwheel; nothing is downloaded"
             )
-        raise SpawnError(told)
+        raise SpawnError(message)
     if arguments.joints:
         names, positions = zip(*arguments.joints, strict=False)
         if not gazebo_interface.set_model_configuration_client(
@@ -147,26 +158,26 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.unpause:
         from std_srvs.srv._Empty import Empty
 
-        rospy.loginfo("Letting time go on")
+        rospy.loginfo("Resuming the simulation")
         if gazebo_interface.call(gazebo + "/unpause_physics", Empty) is None:
-            raise SpawnError(f"{arguments.model} was spawned, but time was not let go on")
+            raise SpawnError(f"{arguments.model} was spawned, but the simulation was not resumed")
     if arguments.bond:
         rospy.on_shutdown(lambda: _delete(gazebo, arguments.model))
         with contextlib.suppress(KeyboardInterrupt):
-            rospy.loginfo(f"Staying until I am interrupted; then {arguments.model} is deleted")
+            rospy.loginfo(f"Press Ctrl-C to delete {arguments.model}")
             rospy.spin()
         rospy.signal_shutdown("interrupted")
 
 
 def checked(text: str, place: str) -> str:
-    """The text, where it is a description.
+    """Returns the text of a description unchanged.
 
     Args:
-        text: Of the description.
-        place: What errors call it.
+        text: Text of the description.
+        place: File or source of the text, for error messages.
 
     Raises:
-        SpawnError: It is none.
+        SpawnError: The text is empty, is not valid XML, or contains xacro elements.
     """
     if not text.strip():
         raise SpawnError(f"{place} is empty")
@@ -174,7 +185,7 @@ def checked(text: str, place: str) -> str:
         root = _parsed(text)
     except ElementTree.ParseError as error:
         line, column = error.position
-        raise SpawnError(f"{place}:{line}:{column + 1}: this is no XML: {error}") from None
+        raise SpawnError(f"{place}:{line}:{column + 1}: invalid XML: {error}") from None
     for element in root.iter():
         if element.tag.startswith("{") and XACRO in element.tag.partition("}")[0]:
             raise SpawnError(
@@ -185,7 +196,7 @@ def checked(text: str, place: str) -> str:
 
 
 def with_model_uris(text: str) -> str:
-    """The text with ``model://`` for the ``package://`` of its meshes."""
+    """Replaces ``package://`` by ``model://`` in mesh URIs."""
     root = _parsed(text)
     for mesh in root.iter("mesh"):
         uri = mesh.get("filename")
@@ -195,7 +206,7 @@ def with_model_uris(text: str) -> str:
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
-    """x, y, z, w of rotations about the fixed axes x, y, z, one after the other."""
+    """Returns (x, y, z, w) of rotations about the fixed x, y and z axes, in this order."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
@@ -208,14 +219,14 @@ def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, flo
 
 
 def _parsed(text: str) -> ElementTree.Element:
-    # What a text that is decoded already says of its encoding does not count.
+    # The text is already decoded, so the encoding in its XML declaration must not be used.
     return ElementTree.fromstring(text.encode(), ElementTree.XMLParser(encoding="utf-8"))  # noqa: S314
 
 
 def _number(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"{text} is no number to go by")
+        raise ValueError(f"{text} is not a finite number")
     return value
 
 
@@ -230,9 +241,9 @@ def _text(arguments: argparse.Namespace) -> tuple[str, str]:
         rospy.loginfo(f"Loading the model from the parameter {name}")
         value = rospy.get_param(arguments.param, None)
         if value is None:
-            raise SpawnError(f"there is no parameter {name}")
+            raise SpawnError(f"the parameter {name} does not exist")
         if not isinstance(value, str):
-            raise SpawnError(f"the parameter {name} is no text")
+            raise SpawnError(f"the parameter {name} must be a string")
         return value, name
     if arguments.database:
         rospy.loginfo(f"Loading the model {arguments.database} from the simulation's models")
@@ -279,7 +290,7 @@ def _wait_for_model(gazebo: str, model: str) -> None:
         world = gazebo_interface.call(gazebo + "/get_world_properties", GetWorldProperties)
         if world is not None and model in world.model_names:
             return
-        # Of the wall: the simulation may be paused.
+        # Wall time, because the simulation may be paused.
         rospy.rostime.wallsleep(0.1)
     raise rospy.ROSInterruptException
 

@@ -1,4 +1,4 @@
-"""The ROS node: keys in, Twist out."""
+"""The ROS node that converts key presses to Twist messages."""
 
 from __future__ import annotations
 
@@ -19,19 +19,22 @@ from geometry_msgs.msg import Twist, TwistStamped
 from teleop_from_keys.keys import HELP, Driver
 
 FOR_DELIVERY = 0.15
-"""s that the last message gets to leave the process."""
+"""Time in s to wait until the last message is sent."""
 
 NO_KEYS = """\
-no keys come from standard input, which is no terminal. Start this in a terminal of its own:
+standard input is not a terminal and contains no keys. Run the program in a separate terminal:
   rosrun teleop_twist_keyboard teleop_twist_keyboard.py
-or, in a launch file, give its node launch-prefix="xterm -e"."""
+In a launch file, set launch-prefix="xterm -e" for the node."""
 
 
 class Teleop:
-    """Publishes what a `Driver` says, on ``cmd_vel``; parameters as in teleop_twist_keyboard."""
+    """Publishes the commands of a `Driver` on ``cmd_vel``.
+
+    The parameters are those of the original teleop_twist_keyboard.
+    """
 
     def __init__(self, end: int) -> None:
-        """`end` is a descriptor that can be read as soon as the program should end."""
+        """`end` is a descriptor that becomes readable when the program should stop."""
         self._end = end
         number = _parameter
         self.driver = Driver(number("~speed", 0.5), number("~turn", 1.0))
@@ -46,25 +49,26 @@ class Teleop:
         self._publisher = rospy.Publisher("cmd_vel", kind, queue_size=1)
 
     def wait_for_reader(self) -> bool:
-        """Waits until somebody reads the topic, saying so where it takes a while.
+        """Waits for a subscriber, and prints a message every few seconds.
 
-        Returns False where the program should end first.
+        Returns:
+            False if the program should stop before there is a subscriber.
         """
-        told = time.monotonic()
+        printed = time.monotonic()
         while not self._publisher.get_num_connections():
-            if time.monotonic() - told > 1.0:
-                told = time.monotonic() + 4.0
-                print(f"waiting: nobody reads {self._publisher.resolved_name} yet")
+            if time.monotonic() - printed > 1.0:
+                printed = time.monotonic() + 4.0
+                print(f"waiting for a subscriber on {self._publisher.resolved_name}")
             if select.select([self._end], [], [], 0.02)[0]:
                 return False
         return True
 
     def run(self) -> int:
-        """Takes keys until they end or the program should; returns the exit status."""
+        """Reads keys until the input ends or the program should stop. Returns the exit status."""
         terminal = os.isatty(sys.stdin.fileno())
         if not terminal:
-            print("standard input is no terminal: its letters are taken as keys")
-        print(f"driving {self._publisher.resolved_name}\n\n{HELP}\n\n{self.driver}")
+            print("standard input is not a terminal: its characters are used as keys")
+        print(f"publishing on {self._publisher.resolved_name}\n\n{HELP}\n\n{self.driver}")
         keys = 0
         last_key = last_sent = time.monotonic()
         while True:
@@ -95,13 +99,13 @@ class Teleop:
             last_sent = time.monotonic()
 
     def stop(self) -> None:
-        """Lets the robot stand."""
+        """Stops the robot."""
         self.driver.press("k")
         self.publish()
         time.sleep(FOR_DELIVERY)
 
     def publish(self) -> None:
-        """Sends what the driver says now."""
+        """Publishes the current command."""
         message: Any = TwistStamped() if self._stamped else Twist()
         twist = message
         if self._stamped:
@@ -118,17 +122,17 @@ class Teleop:
         driver.press(key)
         if driver.speed > self._speed_limit:
             driver.speed = self._speed_limit
-            print(f"faster than {driver.speed:g} m/s is not allowed")
+            print(f"the speed is limited to {driver.speed:g} m/s")
         if driver.turn > self._turn_limit:
             driver.turn = self._turn_limit
-            print(f"faster than {driver.turn:g} rad/s is not allowed")
+            print(f"the turning speed is limited to {driver.turn:g} rad/s")
         if (driver.speed, driver.turn) != before:
             print(driver)
 
 
 def main() -> int:
     """Runs the node; returns the exit status."""
-    # rospy would take the node out of the graph before the last stop was sent.
+    # On a signal, rospy would shut down the node before the final stop command is sent.
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
     sys.stdout.reconfigure(line_buffering=True)
     teleop = Teleop(_end_of_program())
@@ -144,10 +148,10 @@ def main() -> int:
 
 
 def _end_of_program() -> int:
-    """A descriptor that can be read as soon as a signal asks for the end.
+    """Returns a descriptor that becomes readable when the program receives a signal to stop.
 
-    An exception in the middle of publishing would leave that message in rospy's buffer, to be
-    sent once more with the next one.
+    The signal must not raise an exception: during `publish`, the message would remain in rospy's
+    buffer, and would be sent again with the next message.
     """
     wakes, wake = os.pipe()
     os.set_blocking(wake, False)
@@ -162,19 +166,19 @@ def _parameter(name: str, default: float) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise SystemExit(f"the parameter {name} is {value!r}, which is no number") from None
+        raise SystemExit(f"the parameter {name} is {value!r}, which is not a number") from None
 
 
 @contextlib.contextmanager
 def _single_keys() -> Iterator[None]:
-    """Makes a terminal hand over each key as it is pressed, and puts it back as it was."""
+    """Makes the terminal pass on each key immediately, and restores its settings afterwards."""
     descriptor = sys.stdin.fileno()
     if not os.isatty(descriptor):
         yield
         return
     before = termios.tcgetattr(descriptor)
     try:
-        # Ctrl-C stays a signal, which also roslaunch sends.
+        # Ctrl-C still sends a signal, as roslaunch does.
         tty.setcbreak(descriptor, termios.TCSANOW)
         yield
     finally:
@@ -183,10 +187,10 @@ def _single_keys() -> Iterator[None]:
 
 
 def _read_keys() -> str | None:
-    """The keys that are there; None where there will be no more."""
+    """Returns the pressed keys; None at the end of the input."""
     data = os.read(sys.stdin.fileno(), 64)
     if not data:
         return None
     text = data.decode("utf-8", "replace")
-    # An arrow or a function key is an escape and letters that mean nothing here.
+    # Arrow and function keys send an escape sequence, whose letters are not commands.
     return "k" if text.startswith("\x1b") else "".join(text.split("\n"))
