@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cartwheel.devices.drives.odometry import Odometry, planar_motion
-from cartwheel.devices.drives.wheel_states import JointStates
+from cartwheel.devices.joints.states import JointStates
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.geometry import Quat, Vec3
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
-from cartwheel.devices.drives.odometry import AxleReckoning
+from cartwheel.devices.drives.reckoning import AxleReckoning
 from cartwheel.dialects.drive import Drive
 from cartwheel.dialects.tags import SMALLEST
 from cartwheel.errors import PluginError
@@ -59,6 +59,7 @@ class WheelDrive(Drive):
         names = [name for pair in pairs for name in (pair.left, pair.right)]
         self._pairs = list(pairs)
         self._radii = [pair.diameter / 2 for pair in pairs for _ in "lr"]
+        self.joint_names = tuple(names)
         self.joints = [self.part.joint(name, origin=origin) for name in names]
         self._motors = [
             self.part.velocity_motor(name, max_effort=torque, origin=origin) for name in names

@@ -8,7 +8,7 @@ import numpy as np
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.body_velocity import BodyVelocity, BodyVelocityConfig
-from cartwheel.devices.drives.odometry import UNKNOWN, Odometry, planar_motion
+from cartwheel.devices.drives.odometry import UNKNOWN, Odometry, OdometryConfig, planar_motion
 from cartwheel.geometry import Array, Pose
 
 _TURNING = 1e-4
@@ -60,14 +60,16 @@ class ForceBasedDrive(Component):
         )
         if config.rate <= 0:
             return
-        self._odometry = self.keep(
+        self._odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic,
-                frame=config.odometry_frame,
-                base=config.base,
-                rate=config.rate,
-                transform=config.transform,
+                scope,
+                OdometryConfig(
+                    topic=config.odometry_topic,
+                    frame=config.odometry_frame,
+                    base=config.base,
+                    rate=config.rate,
+                    transform=config.transform,
+                ),
             )
         )
         # The initial pose must not depend on when the first subscriber appears.

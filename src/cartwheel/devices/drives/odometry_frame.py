@@ -31,13 +31,13 @@ class OdometryFrame:
         chain = [joint for joint in fixed_chain(description, base) if joint.parent != "world"]
         self._graph = owner.graph
         self._sent: list[Any] = []
-        self.child = owner.frame(base)
+        self.name = owner.frame(base)
         """``child_frame_id`` of the transform."""
         self._to_root: Pose | None = None
         self._turned = False
         if not chain:
             return
-        self.child = owner.frame(chain[0].parent)
+        self.name = owner.frame(chain[0].parent)
         poses = link_poses(description, {})
         to_root = poses[base].inverse() @ poses[chain[0].parent]
         # If both frames coincide, the pose is passed on bit for bit.

@@ -9,6 +9,7 @@ from cartwheel.devices.drives.body_velocity import BodyVelocity, BodyVelocityCon
 from cartwheel.devices.drives.odometry import (
     NO_COVARIANCE,
     Odometry,
+    OdometryConfig,
     planar_covariance,
     planar_motion,
 )
@@ -52,19 +53,21 @@ class PlanarDrive(Component):
             )
         )
         publishes = config.rate > 0
-        self._odometry = self.keep(
+        self._odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic if publishes else None,
-                frame=config.odometry_frame,
-                base=config.base,
-                rate=config.rate,
-                transform=publishes and config.transform,
-                pose_covariance=planar_covariance(*config.pose_variances),
-                twist_covariance=(
-                    NO_COVARIANCE
-                    if config.twist_variances is None
-                    else planar_covariance(*config.twist_variances)
+                scope,
+                OdometryConfig(
+                    topic=config.odometry_topic if publishes else None,
+                    frame=config.odometry_frame,
+                    base=config.base,
+                    rate=config.rate,
+                    transform=publishes and config.transform,
+                    pose_covariance=planar_covariance(*config.pose_variances),
+                    twist_covariance=(
+                        NO_COVARIANCE
+                        if config.twist_variances is None
+                        else planar_covariance(*config.twist_variances)
+                    ),
                 ),
             )
         )

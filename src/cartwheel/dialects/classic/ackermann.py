@@ -9,14 +9,15 @@ from typing import ClassVar
 from cartwheel.codes import devices, running
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Capsule, Cylinder, Sphere
-from cartwheel.devices.drives.odometry import AxleReckoning, Odometry, planar_covariance
-from cartwheel.devices.drives.wheel_states import WheelTransforms
+from cartwheel.devices.drives.limiter import Limiter
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
+from cartwheel.devices.drives.reckoning import AxleReckoning
 from cartwheel.dialects.gz.drive_tags import (
     GzLimitedParameters,
-    Limiter,
     gz_name,
     gz_odometry,
     report_limits,
+    separate_limits,
 )
 from cartwheel.dialects.steered_drive import SteeredDrive
 from cartwheel.dialects.tags import tag
@@ -192,18 +193,19 @@ class AckermannDrive(SteeredDrive):
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
-        wheels = WheelTransforms(self, list(joints.values())) if config.publish_wheel_tf else None
-        self.odometry = self.keep(
+        self.odometry = self.add(
             Odometry(
-                self,
-                topic="odom" if config.publish_odom else None,
-                frame=config.odometry_frame,
-                base=config.base_frame,
-                rate=rate,
-                transform=config.publish_odom_tf,
-                wheels=wheels,
-                pose_covariance=covariance,
-                twist_covariance=covariance,
+                self.scope,
+                OdometryConfig(
+                    topic="odom" if config.publish_odom else None,
+                    frame=config.odometry_frame,
+                    base=config.base_frame,
+                    rate=rate,
+                    transform=config.publish_odom_tf,
+                    joints=tuple(joints) if config.publish_wheel_tf else (),
+                    pose_covariance=covariance,
+                    twist_covariance=covariance,
+                ),
             )
         )
         self._Float = message_class("std_msgs/msg/Float32")
@@ -382,8 +384,8 @@ class GzAckermann(SteeredDrive):
                     values={"parameter": what},
                 )
         report_limits(self, config)
-        self._linear = Limiter.of(config, "linear")
-        self._angular = Limiter.of(config, "angular")
+        self._linear = Limiter(separate_limits(config, "linear"))
+        self._angular = Limiter(separate_limits(config, "angular"))
         self._driven = [
             [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
              for name in names]
@@ -397,7 +399,7 @@ class GzAckermann(SteeredDrive):
         self._reckoning = AxleReckoning(
             left, right, radius=config.wheel_radius, separation=config.wheel_separation
         )
-        self.odometry = gz_odometry(self, config)
+        self.odometry = self.add(Odometry(self.scope, gz_odometry(self, config)))
         topic = config.topic or (
             f"/model/{part.name}/{config.sub_topic}" if config.sub_topic else ""
         )
@@ -410,7 +412,8 @@ class GzAckermann(SteeredDrive):
 
     def reset(self) -> None:
         super().reset()
-        self._linear.value = self._angular.value = 0.0
+        self._linear.reset()
+        self._angular.reset()
         self._reckoning.begin()
 
     def _turn_wheels(self, seconds: float) -> None:

@@ -6,8 +6,13 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import NO_COVARIANCE, Odometry, planar_covariance
-from cartwheel.devices.drives.wheel_states import JointStates, WheelTransforms
+from cartwheel.devices.drives.odometry import (
+    NO_COVARIANCE,
+    Odometry,
+    OdometryConfig,
+    planar_covariance,
+)
+from cartwheel.devices.joints.states import JointStates, JointStatesConfig
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
 from cartwheel.errors import PluginError
@@ -175,23 +180,27 @@ class DiffDrive(WheelDrive):
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
-        self.odometry = self.keep(
+        self.odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic if config.publish_tf and publishes_odom else None,
-                frame=config.odometry_frame,
-                base=config.base_frame,
-                rate=rate,
-                transform=config.publish_tf and publishes_tf,
-                wheels=WheelTransforms(self, self.joints) if config.publish_wheel_tf else None,
-                pose_covariance=covariance,
-                twist_covariance=covariance if ros2 else NO_COVARIANCE,
+                self.scope,
+                OdometryConfig(
+                    topic=config.odometry_topic if config.publish_tf and publishes_odom else None,
+                    frame=config.odometry_frame,
+                    base=config.base_frame,
+                    rate=rate,
+                    transform=config.publish_tf and publishes_tf,
+                    joints=self.joint_names if config.publish_wheel_tf else (),
+                    pose_covariance=covariance,
+                    twist_covariance=covariance if ros2 else NO_COVARIANCE,
+                ),
             )
         )
         if config.publish_joint_state:
             # In Gazebo's order: right before left.
-            order = [self.joints[i ^ 1] for i in range(len(self.joints))]
-            self.joint_states = JointStates(self, order, rate=rate)
+            order = tuple(self.joint_names[i ^ 1] for i in range(len(self.joint_names)))
+            self.joint_states = self.add(
+                JointStates(self.scope, JointStatesConfig(joints=order, rate=rate))
+            )
         self._run_wheels(
             command_topic=config.command_topic,
             base=config.base_frame,

@@ -6,19 +6,18 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import running
-from cartwheel.devices.drives.wheel_states import JointStates
+from cartwheel.devices.joints.states import JointStates, JointStatesConfig
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.simulation.handles import JointHandle
 
 
-def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
+def _joints(plugin: Plugin[Any], names: list[str]) -> tuple[str, ...]:
     """Returns the joints in the tag, or all movable joints if the tag is empty."""
     description = plugin.part.description
     if not names:
         names = [joint.name for joint in description.joints if joint.drivable]
-    handles = []
+    moving = []
     for name in names:
         joint = description.joint(name)
         if joint is not None and joint.type == "fixed":
@@ -29,8 +28,8 @@ def _joints(plugin: Plugin[Any], names: list[str]) -> list[JointHandle]:
                 values={"joint": name},
             )
         else:
-            handles.append(plugin.part.joint(name, origin=plugin.tag.origin))
-    return handles
+            moving.append(name)
+    return tuple(moving)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,11 +70,15 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
         if not ros2:
             self.under_model()
         names = [name.strip() for text in config.names for name in text.split(",")]
-        self._states = JointStates(
-            self,
-            _joints(self, [name for name in names if name]),
-            rate=config.update_rate or None,
-            velocities=True,
+        self._states = self.add(
+            JointStates(
+                self.scope,
+                JointStatesConfig(
+                    joints=_joints(self, [name for name in names if name]),
+                    rate=config.update_rate,
+                    velocities=True,
+                ),
+            )
         )
         self.part.schedule(
             config.update_rate,
@@ -115,13 +118,17 @@ class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
         config, part = self.config, self.part
         self.check_not_negative("update_rate")
         topic = config.topic or f"/world/{part.world.name}/model/{part.name}/joint_state"
-        self._states = JointStates(
-            self,
-            _joints(self, [name.strip() for name in config.names]),
-            topic=gz_name(self, topic, ""),
-            rate=config.update_rate or None,
-            velocities=True,
-            efforts=True,
+        self._states = self.add(
+            JointStates(
+                self.scope,
+                JointStatesConfig(
+                    joints=_joints(self, [name.strip() for name in config.names]),
+                    topic=gz_name(self, topic, ""),
+                    rate=config.update_rate,
+                    velocities=True,
+                    efforts=True,
+                ),
+            )
         )
         part.schedule(
             config.update_rate,

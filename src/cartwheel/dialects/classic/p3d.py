@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import Odometry
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -255,27 +255,31 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
         base = config.base_frame or f"{part.name}/base_footprint"
         covariance = np.diag([config.noise**2] * 6).ravel()
         self._outputs = (
-            self.keep(
+            self.add(
                 Odometry(
-                    self,
-                    topic=gz_name(self, config.topic, "odometry"),
-                    frame=frame,
-                    base=base,
-                    rate=config.rate,
-                    transform=True,
-                    tf_topic=gz_name(self, config.tf_topic, "pose"),
+                    self.scope,
+                    OdometryConfig(
+                        topic=gz_name(self, config.topic, "odometry"),
+                        frame=frame,
+                        base=base,
+                        rate=config.rate,
+                        transform=True,
+                        tf_topic=gz_name(self, config.tf_topic, "pose"),
+                    ),
                 )
             ),
-            self.keep(
+            self.add(
                 Odometry(
-                    self,
-                    topic=gz_name(self, config.covariance_topic, "odometry_with_covariance"),
-                    frame=frame,
-                    base=base,
-                    rate=config.rate,
-                    transform=False,
-                    pose_covariance=covariance,
-                    twist_covariance=covariance,
+                    self.scope,
+                    OdometryConfig(
+                        topic=gz_name(self, config.covariance_topic, "odometry_with_covariance"),
+                        frame=frame,
+                        base=base,
+                        rate=config.rate,
+                        transform=False,
+                        pose_covariance=covariance,
+                        twist_covariance=covariance,
+                    ),
                 )
             ),
         )

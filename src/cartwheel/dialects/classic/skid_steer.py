@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.drives.odometry import Odometry, planar_covariance
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
 
@@ -91,16 +91,18 @@ class SkidSteerDrive(WheelDrive):
             )
         ]
         self._take_wheels(pairs, torque=config.torque)
-        self.odometry = self.keep(
+        self.odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic,
-                frame=config.odometry_frame,
-                base=config.base_frame,
-                rate=config.update_rate,
-                transform=config.broadcast_tf,
-                pose_covariance=planar_covariance(
-                    config.covariance_x, config.covariance_y, config.covariance_yaw
+                self.scope,
+                OdometryConfig(
+                    topic=config.odometry_topic,
+                    frame=config.odometry_frame,
+                    base=config.base_frame,
+                    rate=config.update_rate,
+                    transform=config.broadcast_tf,
+                    pose_covariance=planar_covariance(
+                        config.covariance_x, config.covariance_y, config.covariance_yaw
+                    ),
                 ),
             )
         )

@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from cartwheel.devices.drives.odometry import AxleReckoning, Odometry, planar_covariance
-from cartwheel.devices.drives.wheel_states import JointStates, WheelTransforms
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
+from cartwheel.devices.drives.reckoning import AxleReckoning
+from cartwheel.devices.joints.states import JointStates, JointStatesConfig
 from cartwheel.dialects.steered_drive import SteeredDrive, toward
 from cartwheel.dialects.tags import tag, tags_of
 from cartwheel.geometry import Quat, Vec3
@@ -208,20 +209,23 @@ class TricycleDrive(SteeredDrive):
         self._motor = part.velocity_motor(config.wheel_joint, max_effort=torque, origin=origin)
         self._encoded = config.source in ("encoder", "0")
         rate = config.update_rate
-        self.odometry = self.keep(
+        self.odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic if publishes else None,
-                frame=config.odometry_frame,
-                base=config.base_frame,
-                rate=rate,
-                transform=publishes,
-                wheels=WheelTransforms(self, joints) if config.publish_wheel_tf else None,
-                pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+                self.scope,
+                OdometryConfig(
+                    topic=config.odometry_topic if publishes else None,
+                    frame=config.odometry_frame,
+                    base=config.base_frame,
+                    rate=rate,
+                    transform=publishes,
+                    joints=names if config.publish_wheel_tf else (),
+                    pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+                ),
             )
         )
         if config.publish_joint_state:
-            self.joint_states = JointStates(self, joints, rate=rate, velocities=True, efforts=True)
+            states = JointStatesConfig(joints=names, rate=rate, velocities=True, efforts=True)
+            self.joint_states = self.add(JointStates(self.scope, states))
         self._run(
             command_topic=config.command_topic,
             base=config.base_frame,

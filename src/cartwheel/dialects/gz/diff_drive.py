@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
+from cartwheel.devices.drives.limiter import Limiter
+from cartwheel.devices.drives.odometry import Odometry
 from cartwheel.dialects.gz.drive_tags import (
     GzLimitedParameters,
-    Limiter,
     gz_name,
     gz_odometry,
     report_limits,
+    separate_limits,
 )
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
@@ -60,8 +62,8 @@ class GzDiffDrive(WheelDrive):
                 values={"left": len(config.left_joint), "right": len(config.right_joint)},
             )
         report_limits(self, config)
-        self._linear = Limiter.of(config, "linear")
-        self._angular = Limiter.of(config, "angular")
+        self._linear = Limiter(separate_limits(config, "linear"))
+        self._angular = Limiter(separate_limits(config, "angular"))
         self._wanted_speed = (0.0, 0.0)
         pairs = [
             WheelPair(
@@ -73,7 +75,7 @@ class GzDiffDrive(WheelDrive):
             for left, right in zip(config.left_joint, config.right_joint, strict=True)
         ]
         self._take_wheels(pairs, torque=None)
-        self.odometry = gz_odometry(self, config)
+        self.odometry = self.add(Odometry(self.scope, gz_odometry(self, config)))
         self._run_wheels(
             command_topic=gz_name(self, config.topic, "cmd_vel"),
             base="",
@@ -84,7 +86,8 @@ class GzDiffDrive(WheelDrive):
 
     def reset(self) -> None:
         self._wanted_speed = (0.0, 0.0)
-        self._linear.value = self._angular.value = 0.0
+        self._linear.reset()
+        self._angular.reset()
         super().reset()
 
     def _aim(self, forward: float, turn: float) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import Odometry
+from cartwheel.devices.drives.limiter import Bounds, Limits
+from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -123,59 +125,29 @@ class GzLimitedParameters(GzCommonLimits):
     )
 
 
-class Limiter:
-    """Limits a commanded speed and its acceleration.
-
-    Args:
-        velocity: Minimum and maximum, m/s or rad/s; None for no limit.
-        acceleration: Minimum and maximum, m/s² or rad/s²; None for no limit.
-    """
-
-    def __init__(
-        self,
-        velocity: tuple[float | None, float | None],
-        acceleration: tuple[float | None, float | None],
-    ) -> None:
-        self._velocity, self._acceleration = velocity, acceleration
-        self.value = 0.0
-
-    @classmethod
-    def common(cls, limits: GzCommonLimits) -> Limiter:
-        """Returns the limiter for any motion."""
-        return cls(
-            (limits.min_velocity, limits.max_velocity),
-            (limits.min_acceleration, limits.max_acceleration),
-        )
-
-    @classmethod
-    def of(cls, limits: GzLimitedParameters, kind: str) -> Limiter:
-        """Returns the limiter for ``linear`` or ``angular`` motion."""
-
-        def pair(what: str) -> tuple[float | None, float | None]:
-            both = []
-            for bound in ("min", "max"):
-                own = getattr(limits, f"{bound}_{kind}_{what}")
-                both.append(getattr(limits, f"{bound}_{what}") if own is None else own)
-            return both[0], both[1]
-
-        return cls(pair("velocity"), pair("acceleration"))
-
-    def step(self, wanted: float, seconds: float) -> float:
-        """Returns the limited speed after a time step in s."""
-        low, high = self._acceleration
-        change = _clamp(
-            wanted - self.value,
-            None if low is None else low * seconds,
-            None if high is None else high * seconds,
-        )
-        self.value = _clamp(self.value + change, *self._velocity)
-        return self.value
+def common_limits(limits: GzCommonLimits) -> Limits:
+    """Returns the limits on any motion."""
+    return Limits(
+        velocity=_bounds(limits.min_velocity, limits.max_velocity),
+        acceleration=_bounds(limits.min_acceleration, limits.max_acceleration),
+    )
 
 
-def _clamp(value: float, low: float | None, high: float | None) -> float:
-    if low is not None:
-        value = max(value, low)
-    return value if high is None else min(value, high)
+def separate_limits(limits: GzLimitedParameters, kind: str) -> Limits:
+    """Returns the limits on ``linear`` or ``angular`` motion."""
+
+    def bounds(what: str) -> Bounds:
+        both = []
+        for bound in ("min", "max"):
+            own = getattr(limits, f"{bound}_{kind}_{what}")
+            both.append(getattr(limits, f"{bound}_{what}") if own is None else own)
+        return _bounds(*both)
+
+    return Limits(velocity=bounds("velocity"), acceleration=bounds("acceleration"))
+
+
+def _bounds(low: float | None, high: float | None) -> Bounds:
+    return -math.inf if low is None else low, math.inf if high is None else high
 
 
 def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
@@ -208,22 +180,18 @@ def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
     return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
 
 
-def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> Odometry:
-    """Creates the odometry of a gz-sim drive.
+def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> OdometryConfig:
+    """Returns the topics and frames of a gz-sim drive's odometry.
 
     Raises:
         PluginError: The rate is negative.
     """
     plugin.check_not_negative("rate")
     name = plugin.part.name
-    return plugin.keep(
-        Odometry(
-            plugin,
-            topic=gz_name(plugin, config.odom_topic, "odometry"),
-            frame=config.frame or f"{name}/odom",
-            base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
-            rate=config.rate,
-            transform=True,
-            tf_topic=gz_name(plugin, config.tf_topic, "tf"),
-        )
+    return OdometryConfig(
+        topic=gz_name(plugin, config.odom_topic, "odometry"),
+        frame=config.frame or f"{name}/odom",
+        base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
+        rate=config.rate,
+        tf_topic=gz_name(plugin, config.tf_topic, "tf"),
     )

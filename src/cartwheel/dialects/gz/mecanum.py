@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.devices.drives.odometry import DeadReckoning
+from cartwheel.devices.drives.limiter import Limiter
+from cartwheel.devices.drives.odometry import Odometry
+from cartwheel.devices.drives.reckoning import DeadReckoning
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.dialects.gz.drive_tags import (
     GzCommonLimits,
-    Limiter,
+    common_limits,
     gz_name,
     gz_odometry,
     report_limits,
@@ -77,7 +79,7 @@ class MecanumDrive(Plugin[MecanumParameters]):
             wheel_radius=config.wheel_radius,
         )
         report_limits(self, config)
-        self._limiters = [Limiter.common(config) for _ in range(3)]
+        self._limiters = [Limiter(common_limits(config)) for _ in range(3)]
         self._wheels = [
             [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
              for name in getattr(config, corner)]
@@ -87,7 +89,7 @@ class MecanumDrive(Plugin[MecanumParameters]):
         self._drive = None if rolls else part.body_drive(origin=origin)
         self._reach = (config.wheel_base + config.wheel_separation) / 2
         self._reckoning = DeadReckoning()
-        self._odometry = gz_odometry(self, config)
+        self._odometry = self.add(Odometry(self.scope, gz_odometry(self, config)))
         self.subscribe(
             gz_name(self, config.topic, "cmd_vel"), "geometry_msgs/msg/Twist", self._on_command
         )
@@ -98,7 +100,7 @@ class MecanumDrive(Plugin[MecanumParameters]):
     def reset(self) -> None:
         self._command = (0.0, 0.0, 0.0)
         for limiter in self._limiters:
-            limiter.value = 0.0
+            limiter.reset()
         self._turned: list[float] | None = None
         self._updated_ns = 0
         self._reckoning.restart()

@@ -10,8 +10,8 @@ import numpy as np
 
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
-from cartwheel.devices.drives.odometry import Odometry
-from cartwheel.devices.drives.wheel_states import JointStates
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig
+from cartwheel.devices.joints.states import JointStates, JointStatesConfig
 from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.classic.bumper import watched_collisions
 from cartwheel.dialects.inertial_unit import InertialUnit
@@ -105,19 +105,29 @@ class Kobuki(WheelDrive):
         )
         self._take_wheels([pair], torque=config.torque)
         self._take_sensors(config)
-        self.joint_states = JointStates(
-            self, self.joints, rate=config.rate or None, velocities=True, efforts=True,
-            frame="base_link",
-        )  # fmt: skip
-        self.odometry = self.keep(
+        self.joint_states = self.add(
+            JointStates(
+                self.scope,
+                JointStatesConfig(
+                    joints=self.joint_names,
+                    rate=config.rate,
+                    velocities=True,
+                    efforts=True,
+                    frame="base_link",
+                ),
+            )
+        )
+        self.odometry = self.add(
             Odometry(
-                self,
-                topic="odom",
-                frame="odom",
-                base="base_footprint",
-                rate=config.rate or None,
-                transform=config.publish_tf,
-                pose_covariance=_POSE_COVARIANCE,
+                self.scope,
+                OdometryConfig(
+                    topic="odom",
+                    frame="odom",
+                    base="base_footprint",
+                    rate=config.rate,
+                    transform=config.publish_tf,
+                    pose_covariance=_POSE_COVARIANCE,
+                ),
             )
         )
         self.subscribe(_BASE + "commands/motor_power", "kobuki_msgs/msg/MotorPower", self._on_power)

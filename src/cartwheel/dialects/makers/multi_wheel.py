@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import Odometry, planar_covariance
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
 from cartwheel.errors import PluginError
@@ -80,15 +80,17 @@ class MultiWheelDrive(WheelDrive):
         ]
         self._take_wheels(pairs, torque=config.torque)
         covariance = planar_covariance(1e-5, 1e-5, 1e-3)
-        self.odometry = self.keep(
+        self.odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic if config.publish_message else None,
-                frame=config.odometry_frame,
-                base=config.base_frame,
-                rate=config.rate,
-                transform=config.publish_tf,
-                pose_covariance=covariance,
+                self.scope,
+                OdometryConfig(
+                    topic=config.odometry_topic if config.publish_message else None,
+                    frame=config.odometry_frame,
+                    base=config.base_frame,
+                    rate=config.rate,
+                    transform=config.publish_tf,
+                    pose_covariance=covariance,
+                ),
             )
         )
         self._run_wheels(

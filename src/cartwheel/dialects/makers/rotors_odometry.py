@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import Odometry
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -138,16 +138,17 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
         self._frames = self.frame(config.parent), self.frame(config.child)
         variance = self._normal**2
         self._covariance = np.diag(variance[:6]).ravel()
-        self._odometry = self.keep(
+        self._odometry = self.add(
             Odometry(
-                self,
-                topic=config.odometry_topic,
-                frame=config.parent,
-                base=config.child,
-                rate=None,
-                transform=True,
-                pose_covariance=self._covariance,
-                twist_covariance=np.diag(variance[6:]).ravel(),
+                self.scope,
+                OdometryConfig(
+                    topic=config.odometry_topic,
+                    frame=config.parent,
+                    base=config.child,
+                    transform=True,
+                    pose_covariance=self._covariance,
+                    twist_covariance=np.diag(variance[6:]).ravel(),
+                ),
             )
         )
         self._classes = {

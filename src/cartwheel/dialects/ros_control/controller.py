@@ -5,11 +5,11 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, ClassVar
 
 from cartwheel.component import Component, Scope
 from cartwheel.description.model import Sensor
+from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.classic.ft_sensor import JointLoad
 from cartwheel.dialects.inertial_unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
@@ -20,7 +20,6 @@ from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Severity, Value
 from cartwheel.graph import JointInput, resolve_name
 from cartwheel.messages import message_class
-from cartwheel.simulation.clock import NANOSECONDS, Beat
 from cartwheel.simulation.pushing import BodyDriveHandle
 
 
@@ -352,27 +351,4 @@ class Controller(Component):
         super().warn(code, message, at=at, hint=hint, values=values, severity=severity)
 
 
-class Rhythm:
-    """Determines when a periodic task is due, at multiples of its period since time 0.
-
-    Args:
-        rate: Hz; 0: always due.
-    """
-
-    def __init__(self, rate: float) -> None:
-        period = (
-            Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
-        )
-        self._beat = Beat(max(Fraction(period), Fraction(1)))
-        self._due = 0
-
-    def start(self, time_ns: int) -> None:
-        """Sets the next due time to the first multiple from now on."""
-        self._due = self._beat.due(time_ns)
-
-    def due(self, time_ns: int) -> bool:
-        """Whether the task is due. If it is, the next multiple becomes the next due time."""
-        if self._due > time_ns:
-            return False
-        self._due = self._beat.due(time_ns + 1)
-        return True
+Rhythm = Periodic

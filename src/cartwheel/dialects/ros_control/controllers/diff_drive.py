@@ -6,12 +6,13 @@ import math
 from typing import ClassVar
 
 from cartwheel.codes import devices, running
+from cartwheel.devices.drives.limiter import Limiter
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.controllers.limiter import Limiter
+from cartwheel.dialects.ros_control.controllers.limits import read_limits
+from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
-    TwistCommand,
-    WheelOdometry,
     check_axis,
     frame_prefix,
     joint_place,
@@ -52,8 +53,8 @@ class DiffDriveController(Controller):
         both = settings.number("wheel_radius_multiplier", 1.0)
         self._left_radius = radius * settings.number("left_wheel_radius_multiplier", both)
         self._right_radius = radius * settings.number("right_wheel_radius_multiplier", both)
-        self._linear = Limiter.read(settings.section("linear/x"))
-        self._angular = Limiter.read(settings.section("angular/z"))
+        self._linear = Limiter(read_limits(settings.section("linear/x")))
+        self._angular = Limiter(read_limits(settings.section("angular/z")))
         settings.ignore("wheels_per_side", "allow_multiple_cmd_vel_publishers")
         self._open_loop = settings.boolean("open_loop", False)
         self._by_position = settings.boolean("position_feedback", True)
@@ -62,7 +63,7 @@ class DiffDriveController(Controller):
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
         topic = "cmd_vel_unstamped" if ros2 and not stamped else "cmd_vel"
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
-        self._odometry = WheelOdometry(
+        self._odometry = wheel_odometry(
             self,
             settings,
             transform=settings.boolean("enable_odom_tf", True),
@@ -72,23 +73,21 @@ class DiffDriveController(Controller):
         self._out = (
             self.advertise("cmd_vel_out", "geometry_msgs/msg/TwistStamped") if published else None
         )
-        self._history = [(0.0, 0.0), (0.0, 0.0)]
         self._turned = (0.0, 0.0)
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
         self._odometry.start(time_ns)
-        self._history = [(0.0, 0.0), (0.0, 0.0)]
+        self._linear.reset()
+        self._angular.reset()
         self._turned = self._positions()
 
     def update(self, time_ns: int, seconds: float) -> None:
         self._reckon(seconds)
         self._odometry.publish(time_ns)
         forward, _, turn = self._command.at(time_ns)
-        (v1, w1), (v0, w0) = self._history
-        forward = self._linear.limit(forward, v0, v1, seconds)
-        turn = self._angular.limit(turn, w0, w1, seconds)
-        self._history = [(v0, w0), (forward, turn)]
+        forward = self._linear.step(forward, seconds)
+        turn = self._angular.step(turn, seconds)
         half = turn * self._separation_used / 2
         for joint in self._left:
             joint.command = (forward - half) / self._left_radius
@@ -101,14 +100,10 @@ class DiffDriveController(Controller):
         for joint in self.claims.values():
             joint.command = 0.0
 
-    def close(self) -> None:
-        self._odometry.close()
-        super().close()
-
     def _reckon(self, seconds: float) -> None:
         if self._open_loop:
-            forward, turn = self._history[1]
-            self._odometry.go(forward * seconds, turn * seconds, seconds)
+            forward, turn = self._linear.value, self._angular.value
+            self._odometry.reckoning.go(forward * seconds, turn * seconds, seconds)
             return
         if self._by_position:
             left, right = self._positions()
@@ -120,7 +115,9 @@ class DiffDriveController(Controller):
                 seconds * _mean([joint.velocity for joint in self._right]),
             )
         left, right = ways[0] * self._left_radius, ways[1] * self._right_radius
-        self._odometry.go((left + right) / 2, (right - left) / self._separation_used, seconds)
+        self._odometry.reckoning.go(
+            (left + right) / 2, (right - left) / self._separation_used, seconds
+        )
 
     def _positions(self) -> tuple[float, float]:
         return (

@@ -6,13 +6,14 @@ import math
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices, running
+from cartwheel.devices.drives.limiter import Limiter
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.controllers.limiter import Limiter
+from cartwheel.dialects.ros_control.controllers.limits import read_limits
+from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
-    TwistCommand,
-    WheelOdometry,
     check_axis,
     frame_prefix,
     joint_place,
@@ -87,10 +88,10 @@ class MecanumDriveController(Controller):
             )
         offset = settings.section("kinematics/base_frame_offset")
         self._offset = tuple(offset.number(axis, 0.0) for axis in ("x", "y", "theta"))
-        self._limits = [
-            Limiter.read(settings.section(name)) for name in ("linear/x", "linear/y", "angular/z")
+        self._limiters = [
+            Limiter(read_limits(settings.section(name)))
+            for name in ("linear/x", "linear/y", "angular/z")
         ]
-        self._history = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
         topic = "reference" if nested else "cmd_vel"
         if ros2 and not stamped:
@@ -100,7 +101,7 @@ class MecanumDriveController(Controller):
         timeout = settings.number(*limit)
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
         prefix = frame_prefix(self, settings) if ros2 else ""
-        self._odometry = WheelOdometry(
+        self._odometry = wheel_odometry(
             self,
             settings,
             topic="odometry" if nested else "odom",
@@ -132,7 +133,8 @@ class MecanumDriveController(Controller):
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
-        self._history = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+        for limiter in self._limiters:
+            limiter.reset()
         self._odometry.start(time_ns)
         self._turned = [wheel.position for wheel in self._wheels]
 
@@ -165,12 +167,10 @@ class MecanumDriveController(Controller):
         return message
 
     def _limited(self, wanted: tuple[float, float, float], seconds: float) -> Vec3:
-        before, last = self._history
         x, y, turn = (
-            limit.limit(wanted[axis], last[axis], before[axis], seconds)
-            for axis, limit in enumerate(self._limits)
+            limiter.step(command, seconds)
+            for limiter, command in zip(self._limiters, wanted, strict=True)
         )
-        self._history = [last, (x, y, turn)]
         return x, y, turn
 
     def _at_centre(self, command: Vec3) -> Vec3:
@@ -189,7 +189,7 @@ class MecanumDriveController(Controller):
         x, y, theta = self._offset
         forward, sideways = forward - y * turn, sideways + x * turn
         cos, sin = math.cos(theta), math.sin(theta)
-        self._odometry.go(
+        self._odometry.reckoning.go(
             cos * forward + sin * sideways, turn, seconds, sideways=cos * sideways - sin * forward
         )
 
@@ -198,7 +198,3 @@ class MecanumDriveController(Controller):
             wheel.command = 0.0
         if self.rig.push is not None:
             self.rig.push.command((0.0, 0.0, None), (None, None, 0.0))
-
-    def close(self) -> None:
-        self._odometry.close()
-        super().close()

@@ -9,13 +9,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
+from cartwheel.devices.drives.limiter import Limiter
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.controllers.limiter import Limiter
+from cartwheel.dialects.ros_control.controllers.limits import read_limits
+from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
     UP,
-    TwistCommand,
-    WheelOdometry,
     check_axis,
     joint_place,
     wheel_radius,
@@ -56,23 +57,23 @@ class SingleSteering(Controller):
         self._radius = radius * settings.number("wheel_radius_multiplier", 1.0)
         angle = settings.number("steer_pos_multiplier", 1.0)
         self._angle = angle
-        self._linear = Limiter.read(settings.section("linear/x"))
-        self._angular = Limiter.read(settings.section("angular/z"))
+        self._linear = Limiter(read_limits(settings.section("linear/x")))
+        self._angular = Limiter(read_limits(settings.section("angular/z")))
         settings.ignore("allow_multiple_cmd_vel_publishers")
         self._open_loop = settings.boolean("open_loop", False)
         self._command = TwistCommand(
             self, "cmd_vel", timeout=settings.number("cmd_vel_timeout", 0.5)
         )
-        self._odometry = WheelOdometry(
+        self._odometry = wheel_odometry(
             self, settings, transform=settings.boolean("enable_odom_tf", True)
         )
-        self._history = [(0.0, 0.0), (0.0, 0.0)]
         self._turned = 0.0
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
         self._odometry.start(time_ns)
-        self._history = [(0.0, 0.0), (0.0, 0.0)]
+        self._linear.reset()
+        self._angular.reset()
         self._turned = self._wheel.position
 
     def update(self, time_ns: int, seconds: float) -> None:
@@ -81,23 +82,17 @@ class SingleSteering(Controller):
         way = (turned - self._turned) * self._radius
         self._turned = turned
         if self._open_loop:
-            way, angle = self._history[1][0] * seconds, self._history[1][1]
-        self._odometry.go(way, way * math.tan(angle) / self._base, seconds)
+            way, angle = self._linear.value * seconds, self._angular.value
+        self._odometry.reckoning.go(way, way * math.tan(angle) / self._base, seconds)
         self._odometry.publish(time_ns)
         forward, _, steer = self._command.at(time_ns)
-        (v1, w1), (v0, w0) = self._history
-        forward = self._linear.limit(forward, v0, v1, seconds)
-        steer = self._angular.limit(steer, w0, w1, seconds)
-        self._history = [(v0, w0), (forward, steer)]
+        forward = self._linear.step(forward, seconds)
+        steer = self._angular.step(steer, seconds)
         self._wheel.command = forward / self._radius
         self._steer.command = steer
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         self._wheel.command = 0.0
-
-    def close(self) -> None:
-        self._odometry.close()
-        super().close()
 
 
 class SteeringController(Controller):
@@ -162,7 +157,7 @@ class SteeringController(Controller):
         stamped = settings.boolean("use_stamped_vel", True)
         topic = "reference" if stamped else "reference_unstamped"
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
-        self._odometry = WheelOdometry(
+        self._odometry = wheel_odometry(
             self,
             settings,
             topic="odometry",
@@ -210,10 +205,6 @@ class SteeringController(Controller):
         for joint in self._traction:
             joint.command = 0.0
 
-    def close(self) -> None:
-        self._odometry.close()
-        super().close()
-
     def _axle(self, names: Sequence[str], interface: str) -> list[JointHardware]:
         """Claims the wheels of an axle; returns the left one first."""
         claimed = [self.claim(name, interface) for name in names]
@@ -245,7 +236,7 @@ class SteeringController(Controller):
     def _reckon(self, seconds: float) -> None:
         if self._open_loop:
             forward, turn = self._commanded
-            self._odometry.go(forward * seconds, turn * seconds, seconds)
+            self._odometry.reckoning.go(forward * seconds, turn * seconds, seconds)
             return
         rolled = self._rolled()
         way = (rolled - self._turned) * self._radius
@@ -254,7 +245,7 @@ class SteeringController(Controller):
             mean = sum(joint.velocity for joint in self._traction) / len(self._traction)
             way = mean * self._radius * seconds
         tangent = sum(math.tan(self._middle(joint, side)) for side, joint in self._sides())
-        self._odometry.go(way, way * tangent / len(self._steering) / self._base, seconds)
+        self._odometry.reckoning.go(way, way * tangent / len(self._steering) / self._base, seconds)
 
     def _sides(self) -> list[tuple[float, JointHardware]]:
         if len(self._steering) == 1:
@@ -304,7 +295,7 @@ class TricycleController(Controller):
                 raise settings.invalid(name, value, "positive")
         self._open_loop = settings.boolean("open_loop", False)
         traction, steering = settings.section("traction"), settings.section("steering")
-        self._traction_limits = Limiter.read(traction)
+        self._traction_limiter = Limiter(read_limits(traction))
         self._steering_rate = steering.number("max_velocity", math.inf)
         self._steering_range = (
             steering.number("min_position", -math.inf),
@@ -321,17 +312,16 @@ class TricycleController(Controller):
         timeout = settings.number("cmd_vel_timeout", 500.0) / 1000.0
         stamped = settings.boolean("use_stamped_vel", True)
         self._command = TwistCommand(self, "cmd_vel", timeout=timeout, stamped=stamped)
-        self._odometry = WheelOdometry(
+        self._odometry = wheel_odometry(
             self, settings, transform=settings.boolean("enable_odom_tf", True)
         )
-        self._history = [0.0, 0.0]
         self._angle = 0.0
         self._commanded = (0.0, 0.0)
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
         self._odometry.start(time_ns)
-        self._history = [0.0, 0.0]
+        self._traction_limiter.reset()
         self._angle = self._steer.position
         self._turned = self._traction.position
         self._commanded = (0.0, 0.0)
@@ -342,9 +332,13 @@ class TricycleController(Controller):
         self._turned = turned
         angle = self._steer.position
         if self._open_loop:
-            self._odometry.go(self._commanded[0] * seconds, self._commanded[1] * seconds, seconds)
+            self._odometry.reckoning.go(
+                self._commanded[0] * seconds, self._commanded[1] * seconds, seconds
+            )
         else:
-            self._odometry.go(rim * math.cos(angle), rim * math.sin(angle) / self._base, seconds)
+            self._odometry.reckoning.go(
+                rim * math.cos(angle), rim * math.sin(angle) / self._base, seconds
+            )
         self._odometry.publish(time_ns)
         forward, _, turn = self._command.at(time_ns)
         self._commanded = (forward, turn)
@@ -357,8 +351,7 @@ class TricycleController(Controller):
         # The speed is reduced while the wheel does not yet have the steering angle.
         off = abs(wanted - angle)
         speed *= 1.0 if off < math.pi / 6 else 0.01 if off > math.pi / 2 else math.cos(off)
-        speed = self._traction_limits.limit(speed, self._history[1], self._history[0], seconds)
-        self._history = [self._history[1], speed]
+        speed = self._traction_limiter.step(speed, seconds)
         most = self._steering_rate * seconds
         self._angle += min(max(wanted - self._angle, -most), most)
         self._traction.command = speed
@@ -366,10 +359,6 @@ class TricycleController(Controller):
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         self._traction.command = 0.0
-
-    def close(self) -> None:
-        self._odometry.close()
-        super().close()
 
 
 def _steering_angle(forward: float, turn: float, base: float) -> float:

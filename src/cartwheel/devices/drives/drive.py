@@ -1,0 +1,112 @@
+"""The base class of drives that follow Twist commands and publish odometry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cartwheel.component import Component
+from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_motion
+from cartwheel.devices.drives.reckoning import Motion
+from cartwheel.devices.joints.states import JointStates, JointStatesConfig
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DriveConfig:
+    """Topics and rates of a drive."""
+
+    command_topic: str
+    """Topic of the Twist commands."""
+    timeout: float | None = None
+    """Time after which the robot stops without a command, s; None: never."""
+    control_rate: float
+    """Rate of the control loop, Hz; 0: every step."""
+    odometry: OdometryConfig
+    """The odometry. Its rate is the publish rate of all topics."""
+    joint_states: JointStatesConfig | None = None
+    """The joint states; None: not published."""
+
+
+class Drive(Component):
+    """Base class of drives.
+
+    A subclass acquires its joints and then calls `run`, which creates the topics and the control
+    loop. `command` stores a command, `update` executes it, and `motion` returns the pose and
+    velocity that the odometry contains.
+    """
+
+    _odometry: Odometry | None = None
+    _joint_states: JointStates | None = None
+    enabled: bool = True
+    """Whether commands move the robot. Requires a `timeout`."""
+
+    def run(self, config: DriveConfig) -> None:
+        """Advertises topics, subscribes to commands and schedules the control loop."""
+        self._odometry = self.add(Odometry(self.scope, config.odometry))
+        if config.joint_states is not None:
+            self._joint_states = self.add(JointStates(self.scope, config.joint_states))
+        self._base = self.link_or_root(config.odometry.base)
+        self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
+        if config.timeout is not None:
+            self._timeout = config.timeout
+            self.part.schedule(0, before=self._watch)
+        self.part.schedule(config.control_rate, before=self._control)
+        self.part.schedule(config.odometry.rate, after=self._publish, active=self.wanted)
+        self.reset()
+
+    def reset(self) -> None:
+        """Stops the robot and forgets commands and odometry."""
+        super().reset()
+        self.enabled = True
+        self._updated_ns: int | None = None
+        self._received_ns = 0
+
+    def command(self, forward: float, sideways: float, turn: float) -> None:
+        """Stores a command.
+
+        Args:
+            forward: Velocity in x, m/s.
+            sideways: Velocity in y, m/s.
+            turn: Yaw rate in rad/s, or a steering angle in rad: the drive defines it.
+        """
+        raise NotImplementedError
+
+    def update(self, seconds: float) -> None:
+        """Executes the command; `seconds` is the time since the last call, or 0."""
+        raise NotImplementedError
+
+    def motion(self) -> Motion:
+        """Returns pose and velocity for the odometry: by default, those in the world."""
+        return planar_motion(self._base)
+
+    def wanted(self) -> bool:
+        """Whether one of the topics has subscribers."""
+        if self._odometry is not None and self._odometry.wanted():
+            return True
+        return self._joint_states is not None and self._joint_states.wanted()
+
+    def publish(self, time_ns: int) -> None:
+        """Publishes on the topics that have subscribers."""
+        if self._joint_states is not None and self._joint_states.wanted():
+            self._joint_states.publish(time_ns)
+        if self._odometry is not None and self._odometry.wanted():
+            self._odometry.publish(time_ns, *self.motion())
+
+    def _on_command(self, message: Any) -> None:
+        self._received_ns = self.part.time_ns
+        linear, angular = message.linear, message.angular
+        self.command(float(linear.x), float(linear.y), float(angular.z))
+
+    def _watch(self) -> None:
+        late = (self.part.time_ns - self._received_ns) * 1e-9 > self._timeout
+        if late or not self.enabled:
+            self.command(0.0, 0.0, 0.0)
+
+    def _control(self) -> None:
+        now = self.part.time_ns
+        seconds = 0.0 if self._updated_ns is None else (now - self._updated_ns) * 1e-9
+        self._updated_ns = now
+        self.update(seconds)
+
+    def _publish(self) -> None:
+        self.publish(self.part.time_ns)

@@ -1,0 +1,60 @@
+"""Joint states: positions, velocities and efforts in one message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cartwheel.component import Component, Scope
+from cartwheel.messages import header, message_class
+
+_NOTHING = np.zeros(0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointStatesConfig:
+    """Contents of the messages."""
+
+    joints: tuple[str, ...]
+    """Names of the joints, in the order of the message."""
+    topic: str = "joint_states"
+    rate: float = 0.0
+    """Publish rate, Hz; 0: every step."""
+    velocities: bool = False
+    """Include velocities."""
+    efforts: bool = False
+    """Include efforts."""
+    frame: str = ""
+    """Frame of the messages."""
+
+
+class JointStates(Component):
+    """Publishes ``sensor_msgs/JointState`` messages when its owner calls `publish`."""
+
+    def __init__(self, scope: Scope, config: JointStatesConfig) -> None:
+        super().__init__(scope)
+        joints = [self.part.joint(name, origin=self.origin) for name in config.joints]
+        self._joints = self.part.together(joints)
+        self._names = list(config.joints)
+        self._velocities, self._efforts = config.velocities, config.efforts
+        self._frame = self.frame(config.frame) if config.frame else ""
+        self._JointState = message_class("sensor_msgs/msg/JointState")
+        self._publisher = self.advertise(
+            config.topic, "sensor_msgs/msg/JointState", rate=config.rate or None
+        )
+
+    def wanted(self) -> bool:
+        """Whether the topic has subscribers."""
+        return self._publisher.wanted
+
+    def publish(self, time_ns: int) -> None:
+        """Publishes the current state."""
+        joints, JointState = self._joints, self._JointState
+        velocities = joints.velocities() if self._velocities else _NOTHING
+        efforts = joints.efforts() if self._efforts else _NOTHING
+        self._publisher.publish(
+            JointState(
+                header(time_ns, self._frame), self._names, joints.positions(), velocities, efforts
+            )
+        )

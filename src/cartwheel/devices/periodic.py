@@ -1,0 +1,33 @@
+"""Determines when a periodic task is due, for components that are called more often than that."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from cartwheel.simulation.clock import NANOSECONDS, Beat
+
+
+class Periodic:
+    """A task that is due at the multiples of its period since time 0.
+
+    Args:
+        rate: Hz; 0: always due.
+    """
+
+    def __init__(self, rate: float) -> None:
+        period = (
+            Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
+        )
+        self._multiples = Beat(max(Fraction(period), Fraction(1)))
+        self._due = 0
+
+    def start(self, time_ns: int) -> None:
+        """Sets the next due time to the first multiple from now on."""
+        self._due = self._multiples.due(time_ns)
+
+    def due(self, time_ns: int) -> bool:
+        """Whether the task is due. If it is, the next multiple becomes the next due time."""
+        if self._due > time_ns:
+            return False
+        self._due = self._multiples.due(time_ns + 1)
+        return True
