@@ -210,9 +210,9 @@ def _attach(
     world: Any, wires: list[str], stack: contextlib.ExitStack, processes: list[int]
 ) -> dict[str, Reader]:
     """Starts each bridge with a subscriber, and adds the bridges' processes to `processes`."""
+    from cartwheel.assembly.foxglove import SimulationControls
     from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.bridges.ros1.address import master_uri
-    from cartwheel.cli.commands.foxglove import SimulationControls
 
     graph, simulation = world.session.graph, world.session.simulation
     readers: dict[str, Reader] = {}

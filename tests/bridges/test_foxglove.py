@@ -19,10 +19,10 @@ from tests.bridges.running import Running
 from tests.coded import coded, raises
 from websockets.sync.client import connect
 
+from cartwheel.assembly.assets import Assets
+from cartwheel.assembly.foxglove import SimulationControls
 from cartwheel.bridges.foxglove import FoxgloveBridge
 from cartwheel.bridges.foxglove.forms import encoding_of, packed, schema_of
-from cartwheel.cli.commands.assets import Assets
-from cartwheel.cli.commands.foxglove import SimulationControls
 from cartwheel.codes.files import XACRO_NOT_EXPANDED
 from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.codes.wires import (

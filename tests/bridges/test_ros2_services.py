@@ -11,7 +11,7 @@ from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
 from tests.coded import coded, raises
 
-from cartwheel.cli.commands.ros2 import node_parameters
+from cartwheel.assembly.ros2 import node_parameters
 from cartwheel.codes.graph import ENTITY_NAME_TAKEN
 from cartwheel.codes.wires import MALFORMED_MESSAGE
 from cartwheel.codes.world import UNKNOWN_MODEL

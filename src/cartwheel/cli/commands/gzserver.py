@@ -6,10 +6,10 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 
+from cartwheel.assembly.ports import free_port
 from cartwheel.cli.commands.gazebo_arguments import ServerArguments, parse_server
 from cartwheel.cli.commands.gazebo_paths import adopt_exports, find_world
 from cartwheel.cli.commands.options import Options
-from cartwheel.cli.commands.ports import free_port
 from cartwheel.cli.commands.run import simulate
 
 NODE = "gazebo"

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, cast
 
+from cartwheel.assembly.ports import refuse_taken
 from cartwheel.cli import interrupts
+from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.info import unfinished
-from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import say
 from cartwheel.codes.command import OPTION_INVALID
@@ -94,16 +95,18 @@ def play(options: Options) -> None:
                 report.diagnostic(diagnostic)
             page = None
             if not options.headless:
-                from cartwheel.cli.commands.page import Page
+                from cartwheel.assembly.viewer import AnnouncedViewer
                 from cartwheel.viewer.play_desk import PlayDesk
 
-                page = Page(
+                page = AnnouncedViewer(
                     session,
                     server,
                     report,
                     access=access,
                     port=options.port,
-                    open_browser=options.open_browser,
+                    open_browser=is_desktop()
+                    if options.open_browser is None
+                    else options.open_browser,
                     desk=PlayDesk,
                 )
                 page.start(cast("Pacer", player))

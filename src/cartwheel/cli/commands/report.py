@@ -8,6 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
+from cartwheel.assembly.observer import Observer
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import (
     is_terminal,
@@ -47,7 +48,7 @@ def size_text(size: int) -> str:
     return f"{size / 1e6:.1f} MB" if size < 1_000_000_000 else f"{size / 1e9:.2f} GB"
 
 
-class Report:
+class Report(Observer):
     """Prints the lines of a run; without colours and suggestions if there is no terminal.
 
     Args:
@@ -93,14 +94,14 @@ class Report:
         simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
 
-    def address(self, url: str, access: Access) -> None:
+    def viewer_shown(self, url: str, access: Access) -> None:
         """Prints the address of the viewer, and who can connect."""
         self._line("viewer", paint(url, "bold", "cyan"))
         self._open(access, url)
         if self._decorated:
             say(paint("\nPress Ctrl-C to stop.", "dim"))
 
-    def joined(self, node: str, master: str, *, own: bool, open_ports: Sequence[int]) -> None:
+    def ros1_joined(self, node: str, master: str, *, own: bool, open_ports: Sequence[int]) -> None:
         """Prints the ROS 1 node, its master, and the ports that are open to other computers."""
         self._line("ros 1", f"{node} at {master}{', started by Cartwheel' if own else ''}")
         if open_ports:
@@ -114,28 +115,34 @@ class Report:
             url = access.url(parts.scheme, parts.port or 0, elsewhere=True)
             self._line("", f"open to other computers with the token: {url}")
 
-    def refused(self, origin: str) -> None:
+    def page_refused(self, origin: str) -> None:
         """Reports the origin of a refused web page."""
         self.diagnostic(refused_page("the viewer", origin))
 
-    def foxglove(self, url: str, access: Access) -> None:
+    def foxglove_served(self, url: str, access: Access) -> None:
         """Prints the address of the Foxglove server, and who can connect."""
         self._line("foxglove", paint(url, "bold", "cyan"))
         self._open(access, url)
 
-    def recording(self, path: PurePath) -> None:
+    def recording_started(self, path: PurePath) -> None:
         """Prints the file of a recording."""
         self._line("record", str(path))
 
-    def recorded(self, files: Sequence[PurePath], messages: int, topics: int, size: int) -> None:
+    def recording_ended(
+        self, files: Sequence[PurePath], messages: int, topics: int, size: int
+    ) -> None:
         """Prints the contents of a finished recording."""
         names = ", ".join(map(str, files))
         contents = f"{messages} messages on {topics} topics"
         say(f"recorded {contents}, {size_text(size)} before compression, to {names}")
 
-    def joined_ros2(self, node: str, where: str) -> None:
+    def ros2_joined(self, node: str, where: str) -> None:
         """Prints the ROS 2 node, and its domain or router."""
         self._line("ros 2", f"{node} on {where}")
+
+    def disconnected(self, diagnostic: Diagnostic) -> None:
+        """Prints why ROS 1 ended the run."""
+        print_diagnostic(diagnostic)
 
     def diagnostic(self, diagnostic: Diagnostic) -> None:
         """Prints a diagnostic."""

@@ -5,15 +5,17 @@ from __future__ import annotations
 import contextlib
 import gc
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cartwheel.assembly.assembly import Assembly
+from cartwheel.assembly.ports import refuse_taken
+from cartwheel.assembly.processes import Kind
+from cartwheel.assembly.recording import RecordingOptions, check_recordings
 from cartwheel.cli import interrupts
-from cartwheel.cli.commands.bridges import Bridges, bridges_for
+from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.options import Options
-from cartwheel.cli.commands.ports import refuse_taken
-from cartwheel.cli.commands.recording import check_recording, recorded
 from cartwheel.cli.commands.report import Report, world_title
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.control import running
@@ -22,11 +24,8 @@ from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
 
 if TYPE_CHECKING:
-    from cartwheel.bridges.apart.process import BridgeProcess
-    from cartwheel.cli.commands.page import Page
-    from cartwheel.control.server import ControlServer
+    from cartwheel.assembly.viewer import AnnouncedViewer
     from cartwheel.description.model import RobotDescription, WorldDescription
-    from cartwheel.gazebo.robot_descriptions import RobotDescriptions
     from cartwheel.session import Session
     from cartwheel.simulation.pacing import Pacer
 
@@ -47,7 +46,7 @@ def simulate(options: Options) -> None:
             values={"option": "--for", "value": options.seconds},
         )
     if options.record:
-        check_recording(options)
+        check_recordings(options.record, _recording_options(options))
     if options.foxglove_port is not None:
         from cartwheel.bridges.foxglove.bridge import require
 
@@ -55,20 +54,44 @@ def simulate(options: Options) -> None:
     # What is loaded stays: looking through it for garbage costs a tenth of the start, and of
     # the speed later where a reader keeps many messages.
     gc.disable()
-    access = Access.of(options.host, options.allow_origin)
-    with bridges_for(options) as bridges:
-        _simulate(options, access, bridges)
-
-
-def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
-    others = running()
     report = Report(verbose=options.verbose)
+    assembly = Assembly(
+        access=Access.of(options.host, options.allow_origin),
+        package_path=options.package_path,
+        observer=report,
+        at_end=interrupts.finally_do,
+    )
+    with assembly:
+        assembly.prepare(_bridges(options))
+        _simulate(options, assembly, report)
+
+
+def _bridges(options: Options) -> Iterator[Kind | Path]:
+    """The requested bridges."""
+    if options.ros1_node is not None:
+        yield "ros1"
+    if options.ros2_node is not None:
+        yield "ros2"
+    if options.foxglove_port is not None:
+        yield "foxglove"
+    yield from options.record
+
+
+def _recording_options(options: Options) -> RecordingOptions:
+    return RecordingOptions(
+        topics=options.record_topics,
+        encoding=options.record_encoding,
+        overwrite=options.overwrite,
+    )
+
+
+def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
+    others = running()
     world, robot, remappings = _read(options)
     if not options.headless:
         refuse_taken(options.host, options.port)
     # The engine is imported only after the files have been checked.
     from cartwheel.control.place import placed
-    from cartwheel.control.server import ControlServer
     from cartwheel.session import Session
 
     session = Session(
@@ -97,26 +120,42 @@ def _simulate(options: Options, access: Access, bridges: Bridges) -> None:
     # Ctrl-C is how an endless run is meant to end, so it is no failure; a run that was to
     # last a certain time has failed when it is ended before.
     endless = options.seconds is None and options.steps is None
+    ros = options.ros1_node is not None
     # From the time at which other processes can see the simulation.
-    with interrupts.handled_by(session.simulation.stop, status=0 if endless else None):
-        ros = options.ros1_node is not None
-        server = ControlServer(session, title=title, load=_load_robot, ros=ros)
-        with interrupts.finally_do(server.close):
-            pacer = _pacer(session, options)
-            page = _page(session, server, pacer, options, report, access=access)
-            if others:
-                report.others(others)
-            report.loaded(session, name, ros=ros)
-            with (
-                _joined_to_ros1(
-                    session, bridges.ros1, server, options, report, remappings=remappings
-                ),
-                _described(session, options) as descriptions,
-                _joined_to_ros2(session, bridges.ros2, options, descriptions, report),
-                _shown_by_foxglove(session, bridges.foxglove, options, access, report),
-                recorded(session, bridges.recorders, options, report),
-            ):
-                _run(session, pacer, page, report)
+    with (
+        interrupts.handled_by(session.simulation.stop, status=0 if endless else None),
+        contextlib.closing(assembly),
+    ):
+        assembly.attach(session, _pacer(session, options))
+        assembly.serve_control(title, ros=ros)
+        viewer = _viewer(assembly, options)
+        if others:
+            report.others(others)
+        report.loaded(session, name, ros=ros)
+        _connect(assembly, options, remappings)
+        _run(assembly, viewer, report)
+
+
+def _viewer(assembly: Assembly, options: Options) -> AnnouncedViewer | None:
+    """The web viewer of the run; None if it is started on request."""
+    if options.headless:
+        assembly.offer_viewer(options.port)
+        return None
+    open_browser = is_desktop() if options.open_browser is None else options.open_browser
+    return assembly.add_viewer(options.port, open_browser=open_browser)
+
+
+def _connect(assembly: Assembly, options: Options, remappings: Sequence[str]) -> None:
+    """Connects the simulation to everything that the options request."""
+    if options.ros1_node is not None:
+        assembly.connect_ros1(options.ros1_node, (*options.ros1_arguments, *remappings))
+    if options.ros2_node is not None:
+        assembly.connect_ros2(options.ros2_node, options.rmw)
+    if options.foxglove_port is not None:
+        end_ns = None if options.seconds is None else round(options.seconds * 1e9)
+        assembly.serve_foxglove(options.foxglove_port, end_ns=end_ns)
+    for path in options.record:
+        assembly.record(path, _recording_options(options))
 
 
 def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterator[str]:
@@ -124,96 +163,6 @@ def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterato
     for each in descriptions:
         if each is not None and not each.origin.file.startswith("<"):
             yield each.origin.file
-
-
-@contextlib.contextmanager
-def _joined_to_ros1(
-    session: Session,
-    process: BridgeProcess | None,
-    server: ControlServer,
-    options: Options,
-    report: Report,
-    *,
-    remappings: Sequence[str],
-) -> Iterator[None]:
-    if process is None or options.ros1_node is None:
-        yield
-        return
-    from cartwheel.cli.commands.ros1 import Ros1
-
-    ros1 = Ros1(
-        session,
-        process,
-        node=options.ros1_node,
-        arguments=(*options.ros1_arguments, *remappings),
-        package_path=options.package_path,
-        report=report,
-    )
-    with interrupts.finally_do(ros1.close):
-        ros1.start()
-        server.announce_ros(ros1.master_uri)
-        yield
-
-
-@contextlib.contextmanager
-def _joined_to_ros2(
-    session: Session,
-    process: BridgeProcess | None,
-    options: Options,
-    descriptions: RobotDescriptions | None,
-    report: Report,
-) -> Iterator[None]:
-    if process is None or options.ros2_node is None or descriptions is None:
-        yield
-        return
-    from cartwheel.cli.commands.ros2 import Ros2
-
-    ros2 = Ros2(
-        session,
-        process,
-        node=options.ros2_node,
-        rmw=options.rmw,
-        package_path=options.package_path,
-        descriptions=descriptions,
-        report=report,
-    )
-    with interrupts.finally_do(ros2.close):
-        ros2.start()
-        yield
-
-
-@contextlib.contextmanager
-def _shown_by_foxglove(
-    session: Session,
-    process: BridgeProcess | None,
-    options: Options,
-    access: Access,
-    report: Report,
-) -> Iterator[None]:
-    if process is None or options.foxglove_port is None:
-        yield
-        return
-    from cartwheel.cli.commands.foxglove import shown_by_foxglove
-
-    with shown_by_foxglove(session, process, options, access, report):
-        yield
-
-
-@contextlib.contextmanager
-def _described(session: Session, options: Options) -> Iterator[RobotDescriptions | None]:
-    """Publishes what the robots are, and where their links, where somebody shows them elsewhere."""
-    if not options.record and options.foxglove_port is None and options.ros2_node is None:
-        yield None
-        return
-    from cartwheel.gazebo.robot_descriptions import RobotDescriptions
-
-    descriptions = RobotDescriptions(session.simulation, session.graph)
-    if options.ros1_node is None and options.ros2_node is None:
-        # In ROS that may be another node's, so it is for those who are a part of it to say.
-        from cartwheel.gazebo.robot_states import RobotStates
-
-        RobotStates(session.simulation, session.graph, descriptions)
-    yield descriptions
 
 
 def _read(
@@ -252,14 +201,6 @@ def _read(
     return load_world(named or fallback, package_path=options.package_path), found, ()
 
 
-def _load_robot(
-    path: Path, values: Mapping[str, str], package_path: Sequence[Path]
-) -> RobotDescription:
-    from cartwheel.description import load_robot
-
-    return load_robot(path, arguments=values, package_path=package_path)
-
-
 def _pacer(session: Session, options: Options) -> Pacer:
     simulation = session.simulation
     simulation.set_speed(options.speed)
@@ -271,43 +212,17 @@ def _pacer(session: Session, options: Options) -> Pacer:
     return session.pacer(until_ns=until)
 
 
-def _page(
-    session: Session,
-    server: ControlServer,
-    pacer: Pacer,
-    options: Options,
-    report: Report,
-    *,
-    access: Access,
-) -> Page | None:
-    """The web viewer of the run; None if it is started on request."""
-    if options.headless:
-        from cartwheel.cli.commands.page_on_demand import PageOnDemand
-
-        PageOnDemand(session, server, pacer, report, access=access, port=options.port)
-        return None
-    from cartwheel.cli.commands.page import Page
-
-    return Page(
-        session,
-        server,
-        report,
-        access=access,
-        port=options.port,
-        open_browser=options.open_browser,
-    )
-
-
-def _run(session: Session, pacer: Pacer, page: Page | None, report: Report) -> None:
+def _run(assembly: Assembly, viewer: AnnouncedViewer | None, report: Report) -> None:
     gc.freeze()
     gc.enable()
+    session, pacer = assembly.session, assembly.pacer
     began = time.perf_counter()
-    if page is not None:
-        page.start(pacer)
+    if viewer is not None:
+        viewer.start(pacer)
     pacer.run()
     report.ended(session, time.perf_counter() - began)
-    if page is not None:
-        page.raise_failure()
+    if viewer is not None:
+        viewer.raise_failure()
     until = pacer.until_ns
     if until is not None and session.simulation.time_ns < until:
         raise interrupts.Interrupted(interrupts.last_signal())

@@ -6,9 +6,9 @@ import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from cartwheel.assembly.ports import refuse_taken
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.grouping import grouped
-from cartwheel.cli.commands.ports import refuse_taken
 from cartwheel.cli.console import paint, say
 from cartwheel.cli.showing import print_diagnostic
 from cartwheel.gate.access import Access, refused_page

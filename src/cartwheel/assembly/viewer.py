@@ -1,12 +1,11 @@
-"""The web viewer of a simulation, started in parallel and announced when it is ready."""
+"""The web viewer of a run, started in parallel and announced when it is ready."""
 
 from __future__ import annotations
 
 import threading
 from typing import TYPE_CHECKING
 
-from cartwheel.cli.commands.desktop import is_desktop
-from cartwheel.cli.commands.report import Report
+from cartwheel.assembly.observer import Observer
 from cartwheel.codes.recording import VIEWER_NOT_STARTED
 from cartwheel.control.operations import PageOffer
 from cartwheel.control.protocol import PATIENCE
@@ -21,16 +20,16 @@ if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk
 
 
-class Page:
+class AnnouncedViewer:
     """The web viewer of a session.
 
     Args:
         session: The session to show.
         server: Announces the URL to other processes.
-        report: Prints messages for the user.
+        observer: Is notified.
         access: Who may connect.
         port: Port to listen on.
-        open_browser: Whether to open a browser; None opens it only on a desktop.
+        open_browser: Whether to open a browser.
         desk: Creates its panels; None for a simulation's panels.
     """
 
@@ -38,19 +37,21 @@ class Page:
         self,
         session: Session,
         server: ControlServer,
-        report: Report,
+        observer: Observer,
         *,
         access: Access,
         port: int,
-        open_browser: bool | None,
+        open_browser: bool = False,
         desk: type[Desk] | None = None,
     ) -> None:
         self._session = session
         self._access = access
         self._server = server
-        self._open = is_desktop() if open_browser is None else open_browser
-        self._report = report
-        self._viewer = Viewer(session, access=access, port=port, desk=desk, refused=report.refused)
+        self._open = open_browser
+        self._observer = observer
+        self._viewer = Viewer(
+            session, access=access, port=port, desk=desk, refused=observer.page_refused
+        )
         self._failure: CartwheelError | None = None
         self._started = threading.Event()
         server.offer_page(
@@ -58,7 +59,7 @@ class Page:
         )
 
     def start(self, pacer: Pacer) -> None:
-        """Starts the web viewer while the simulation begins."""
+        """Starts the web viewer while the simulation begins. Call it on the owner's thread."""
         self._viewer.start(pacer)
         self._started.set()
         threading.Thread(target=self._announce, name="announce", daemon=True).start()
@@ -88,7 +89,7 @@ class Page:
             self._session.simulation.stop()
             return
         self._server.announce(url=url, port=self._viewer.port)
-        self._report.address(url, self._access)
+        self._observer.viewer_shown(url, self._access)
         if self._open:
             import webbrowser
 

@@ -1,16 +1,15 @@
-"""Serves a simulation to Foxglove."""
+"""A session with a server for Foxglove."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cartwheel.cli import interrupts
-from cartwheel.cli.commands.assets import Assets
-from cartwheel.cli.commands.bridges import log_all_on
-from cartwheel.cli.commands.options import Options
-from cartwheel.cli.commands.report import Report
+from cartwheel.assembly.assets import Assets
+from cartwheel.assembly.observer import Observer
+from cartwheel.assembly.processes import log_all_on
 from cartwheel.codes.wires import SEEK_UNSUPPORTED
 from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
@@ -19,36 +18,52 @@ from cartwheel.simulation import RunState
 if TYPE_CHECKING:
     from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.bridges.foxglove.controls import TimeState
+    from cartwheel.gazebo.ros2_api import Ros2Api
     from cartwheel.session import Session
     from cartwheel.simulation import Simulation
 
 
-@contextlib.contextmanager
-def shown_by_foxglove(
-    session: Session,
-    process: BridgeProcess,
-    options: Options,
-    access: Access,
-    report: Report,
-) -> Iterator[None]:
-    """Serves the enclosed run to Foxglove.
+class FoxgloveServer:
+    """The Foxglove bridge of a session.
+
+    Args:
+        session: The session.
+        process: The bridge's process, which is closed with the server.
+        access: Who may connect.
+        port: Port to listen on; 0 selects a free port.
+        end_ns: Simulation time at which the run ends; None if unlimited.
+        package_path: Folders to search for packages first.
+        observer: Is notified.
 
     Raises:
         CartwheelError: The optional dependency is missing, or the port is in use.
     """
-    from cartwheel.gazebo.ros2_api import Ros2Api
 
-    simulation = session.simulation
-    end_ns = None if options.seconds is None else round(options.seconds * 1e9)
-    controls = SimulationControls(simulation)
-
-    with interrupts.finally_do(process.close):
+    def __init__(
+        self,
+        session: Session,
+        process: BridgeProcess,
+        *,
+        access: Access,
+        port: int,
+        end_ns: int | None,
+        package_path: Sequence[Path],
+        observer: Observer,
+    ) -> None:
+        simulation = session.simulation
+        controls = SimulationControls(simulation)
+        self._session = session
+        self._process = process
+        self._access = access
+        self._observer = observer
+        self.url = ""
+        """URL for Foxglove, after `start`."""
         process.open(
             session.graph,
             {
                 "name": f"Cartwheel: {', '.join(simulation.models)}",
                 "access": access,
-                "port": options.foxglove_port,
+                "port": port,
                 "time_range": None if end_ns is None else (0, end_ns),
             },
             time_ns=lambda: simulation.time_ns,
@@ -60,16 +75,28 @@ def shown_by_foxglove(
                 "resume": (controls.resume, True),
                 "set_speed": (controls.set_speed, True),
                 "seek": (controls.seek, True),
-                "asset": (Assets(session, options.package_path), True),
+                "asset": (Assets(session, package_path), True),
             },
         )
-        if options.ros1_node is None and options.ros2_node is None:
-            # Without ROS, no other bridge offers Gazebo's services.
-            Ros2Api(session, package_path=options.package_path).start()
-        url = process.call("start")
-        log_all_on(process, simulation)
-        report.foxglove(url, access)
-        yield
+
+    def start(self, api: Ros2Api | None) -> None:
+        """Starts the server. Call it on the owner's thread.
+
+        Args:
+            api: Gazebo's services, unless a ROS connection offers them.
+
+        Raises:
+            CartwheelError: The server cannot start.
+        """
+        if api is not None:
+            api.start()
+        self.url = self._process.call("start")
+        log_all_on(self._process, self._session.simulation)
+        self._observer.foxglove_served(self.url, self._access)
+
+    def close(self) -> None:
+        """Stops the server."""
+        self._process.close()
 
 
 class SimulationControls:

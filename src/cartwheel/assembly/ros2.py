@@ -1,18 +1,17 @@
-"""Runs a session as a ROS 2 node."""
+"""A session as a ROS 2 node."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
+from cartwheel.assembly.observer import Observer
+from cartwheel.assembly.processes import log_all_on
 from cartwheel.bridges.apart.process import BridgeProcess
 from cartwheel.bridges.ros2 import Parameter, Rmw
-from cartwheel.cli.commands.bridges import log_all_on
-from cartwheel.cli.commands.report import Report
 from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
-from cartwheel.gazebo.robot_descriptions import TOPIC, RobotDescriptions
+from cartwheel.gazebo.robot_descriptions import TOPIC
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.session import CLOCK_RATE, Session
@@ -23,20 +22,20 @@ _FASTEST = 1e6
 """Hz."""
 
 
-class Ros2:
-    """The bridge of a session and what belongs to it.
+class Ros2Connection:
+    """The ROS 2 bridge of a session.
 
     Args:
-        session: To offer.
-        process: Of the bridge.
+        session: The session.
+        process: The bridge's process, which is closed with the connection.
+        api: Gazebo's services; None if they are already offered.
         node: Name of the node.
         rmw: The middleware.
-        package_path: Where models that are spawned look for packages first.
-        descriptions: Of the robots.
-        report: Tells the user.
+        observer: Is notified.
 
     Raises:
-        CartwheelError: A name or a variable of ROS makes no sense, or something is missing.
+        CartwheelError: A name or an environment variable of ROS is invalid, or a dependency is
+            missing.
     """
 
     def __init__(
@@ -44,16 +43,14 @@ class Ros2:
         session: Session,
         process: BridgeProcess,
         *,
+        api: Ros2Api | None,
         node: str,
         rmw: Rmw,
-        package_path: Sequence[Path],
-        descriptions: RobotDescriptions,
-        report: Report,
+        observer: Observer,
     ) -> None:
         self._session = session
-        self._descriptions = descriptions
-        self._report = report
-        self._api = Ros2Api(session, package_path=package_path)
+        self._observer = observer
+        self._api = api
         simulation = session.simulation
         self._process = process
         self._parameters = {one.name: one for one in node_parameters(session)}
@@ -78,19 +75,22 @@ class Ros2:
             },
         )
 
-    def start(self) -> None:
-        """Joins ROS; on the owner's thread, before the run.
+    def start(self, states: Callable[[], RobotStates]) -> None:
+        """Joins ROS. Call it on the owner's thread.
+
+        Args:
+            states: Creates the publisher of link poses, which leaves robots to other nodes.
 
         Raises:
-            CartwheelError: It cannot be joined.
+            CartwheelError: The bridge cannot start.
         """
-        self._api.start()
-        simulation = self._session.simulation
-        self._states = RobotStates(simulation, self._session.graph, self._descriptions)
+        if self._api is not None:
+            self._api.start()
+        self._states = states()
         self._process.call("start")
         self._process.tell("make_way", TOPIC.strip("/"))
-        self._report.joined_ros2(self._name, self._middleware)
-        log_all_on(self._process, simulation)
+        self._observer.ros2_joined(self._name, self._middleware)
+        log_all_on(self._process, self._session.simulation)
 
     def close(self) -> None:
         """Disconnects from ROS."""

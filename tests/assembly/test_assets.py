@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cartwheel.cli.commands.assets import Assets
+from cartwheel.assembly.assets import Assets
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.session import Session
@@ -116,7 +116,7 @@ def test_a_pipe_is_not_waited_for(package: Path, spawned: Spawn) -> None:
 def test_a_file_that_is_too_large(
     package: Path, spawned: Spawn, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cartwheel.cli.commands.assets.LARGEST", 4)
+    monkeypatch.setattr("cartwheel.assembly.assets.LARGEST", 4)
     assert spawned(from_file(package))("package://robots/meshes/a.stl") is None
 
 

@@ -1,12 +1,12 @@
-"""The web viewer of a simulation that was started without one."""
+"""The web viewer of a run that was started without one."""
 
 from __future__ import annotations
 
 import threading
 from typing import TYPE_CHECKING
 
-from cartwheel.cli.commands.ports import free_port
-from cartwheel.cli.commands.report import Report
+from cartwheel.assembly.observer import Observer
+from cartwheel.assembly.ports import free_port
 from cartwheel.control.operations import PageOffer
 from cartwheel.control.protocol import PATIENCE
 from cartwheel.control.server import ControlServer
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from cartwheel.viewer import Viewer
 
 
-class PageOnDemand:
+class ViewerOnDemand:
     """A session's web viewer, started when a client requests it.
 
     Args:
         session: The session to show.
         server: Receives the requests, and announces the URL.
         pacer: Runs the session.
-        report: Prints messages for the user.
+        observer: Is notified.
         access: Who may connect.
         port: The first port to try; ports in use are skipped.
     """
@@ -35,7 +35,7 @@ class PageOnDemand:
         session: Session,
         server: ControlServer,
         pacer: Pacer,
-        report: Report,
+        observer: Observer,
         *,
         access: Access,
         port: int,
@@ -43,7 +43,7 @@ class PageOnDemand:
         self._session = session
         self._server = server
         self._pacer = pacer
-        self._report = report
+        self._observer = observer
         self._access, self._port = access, port
         self._lock = threading.Lock()
         self._viewer: Viewer | None = None
@@ -64,7 +64,10 @@ class PageOnDemand:
 
                 port = free_port(self._access.host, self._port)
                 viewer = self._viewer = Viewer(
-                    self._session, access=self._access, port=port, refused=self._report.refused
+                    self._session,
+                    access=self._access,
+                    port=port,
+                    refused=self._observer.page_refused,
                 )
                 starting = self._session.simulation.call(lambda: viewer.start(self._pacer))
                 starting.result(PATIENCE)

@@ -1,32 +1,31 @@
-"""Runs a session as a ROS 1 node with Gazebo's services."""
+"""A session as a ROS 1 node with Gazebo's services."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable, Sequence
 
+from cartwheel.assembly.observer import Observer
+from cartwheel.assembly.processes import log_all_on, log_on
 from cartwheel.bridges.apart.process import BridgeProcess
-from cartwheel.cli.commands.bridges import log_all_on, log_on
-from cartwheel.cli.commands.report import Report
-from cartwheel.cli.showing import print_diagnostic
 from cartwheel.errors import Diagnostic
 from cartwheel.gazebo import GazeboApi
 from cartwheel.session import Session
 
 
-class Ros1:
-    """The bridge of a session and what belongs to it.
+class Ros1Connection:
+    """The ROS 1 bridge of a session.
 
     Args:
-        session: To offer.
-        process: Of the bridge.
+        session: The session.
+        process: The bridge's process, which is closed with the connection.
+        api: Gazebo's services; None if they are already offered.
         node: Name of the node.
-        arguments: ``name:=value`` of ROS.
-        package_path: Where models that are spawned look for packages first.
-        report: Tells the user.
+        arguments: ROS arguments ``name:=value``.
+        observer: Is notified.
+        ended: Called when another node has replaced this one, on any thread.
 
     Raises:
-        CartwheelError: A name or address is none.
+        CartwheelError: A name or address is invalid.
     """
 
     def __init__(
@@ -34,14 +33,16 @@ class Ros1:
         session: Session,
         process: BridgeProcess,
         *,
+        api: GazeboApi | None,
         node: str,
         arguments: Sequence[str],
-        package_path: Sequence[Path],
-        report: Report,
+        observer: Observer,
+        ended: Callable[[Diagnostic], None],
     ) -> None:
         self._session = session
-        self._report = report
-        self._api = GazeboApi(session, package_path=package_path)
+        self._observer = observer
+        self._on_end = ended
+        self._api = api
         simulation = session.simulation
         self._process = process
         self.name, self.master_uri, _ = process.open(
@@ -54,21 +55,22 @@ class Ros1:
         )
 
     def start(self) -> None:
-        """Joins ROS; on the owner's thread, before the run.
+        """Joins ROS. Call it on the owner's thread.
 
         Raises:
-            CartwheelError: There is no ROS master, and none can be started.
+            CartwheelError: No ROS master is running, and none can be started.
         """
-        self._api.start()
+        if self._api is not None:
+            self._api.start()
         own, open_ports = self._process.call("start")
-        self._report.joined(self.name, self.master_uri, own=own, open_ports=open_ports)
+        self._observer.ros1_joined(self.name, self.master_uri, own=own, open_ports=open_ports)
         log_all_on(self._process, self._session.simulation)
         parameters = self._session.graph.parameters
         rate = parameters.get(f"{self.name}/pub_clock_frequency")
         if isinstance(rate, int | float) and not isinstance(rate, bool) and rate > 0:
             self._session.set_clock_rate(float(rate))
-        if parameters.get(f"{self.name}/enable_ros_network") is False:
-            # As with Gazebo: its plugins' topics stay, and the clock.
+        if parameters.get(f"{self.name}/enable_ros_network") is False and self._api:
+            # As in Gazebo, the topics of plugins and the clock remain.
             self._api.close()
 
     def close(self) -> None:
@@ -76,7 +78,6 @@ class Ros1:
         self._process.close()
 
     def _ended(self, diagnostic: Diagnostic) -> None:
-        print_diagnostic(diagnostic)
-        simulation = self._session.simulation
-        log_on(self._process, simulation, diagnostic)
-        simulation.stop()
+        self._observer.disconnected(diagnostic)
+        log_on(self._process, self._session.simulation, diagnostic)
+        self._on_end(diagnostic)
