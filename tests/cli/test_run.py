@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from tests.coded import raises
 
+from cartwheel.assembly import ports
 from cartwheel.assembly.ports import refuse_taken
-from cartwheel.cli.commands import ports
 from cartwheel.codes.command import (
     OPTION_INVALID,
     OPTIONS_CONFLICT,
