@@ -141,7 +141,7 @@ def test_a_distortion_that_nobody_sees_is_not_drawn(make):
     for k1, same in ((1e-8, True), (1e-2, False)):
         intrinsics = CameraIntrinsics(width=320, height=240, horizontal_fov=FOV)
         lens = Lens(intrinsics, Distortion(k1=k1))
-        picture = np.zeros((lens.drawn.height, lens.drawn.width, 3), np.uint8)
+        picture = np.zeros((lens.rendered.height, lens.rendered.width, 3), np.uint8)
         assert (lens.image(picture) is picture) == same
 
 
@@ -178,7 +178,7 @@ def test_inverting_is_exact(numbers):
 def test_what_lies_between_pixels_is_mixed():
     """A ramp of brightness stays one: each pixel has the brightness of its own ray's place."""
     lens = Lens(CameraIntrinsics(horizontal_fov=FOV), Distortion(**BARREL))
-    width, height = lens.drawn.width, lens.drawn.height
+    width, height = lens.rendered.width, lens.rendered.height
     across = (np.arange(width) + 0.5) / width * 255
     along = (np.arange(height) + 0.5) / height * 255
     picture = np.empty((height, width, 3), dtype=np.uint8)

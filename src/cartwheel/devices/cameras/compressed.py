@@ -111,9 +111,9 @@ class CompressedImages:
     Source: compressed_image_transport.
 
     Args:
-        owner: The publishing plugin.
+        owner: The camera.
         image: Topic of the image.
-        form: Format of the image.
+        image_format: Format of the image.
         rate: Publish rate for listings, Hz.
         adjustable: Whether ``dynamic_reconfigure`` offers the parameters.
     """
@@ -122,12 +122,12 @@ class CompressedImages:
         self,
         owner: Component,
         image: str,
-        form: ImageFormat,
+        image_format: ImageFormat,
         *,
         rate: float | None,
         adjustable: bool,
     ) -> None:
-        self._format = form
+        self._format = image_format
         self._publisher = owner.advertise(
             f"{image}/compressed", COMPRESSED, rate=rate, qos="sensor"
         )
@@ -143,10 +143,10 @@ class CompressedImages:
 
     def publish(self, moment: Any, pixels: Pixels) -> None:
         """Compresses and publishes RGB pixels, shape (height, width, 3), in the image's format."""
-        form = self._format
+        source = self._format
         kind = self._values["format"]
-        transport = f"{form.encoding}; {kind} compressed {'bgr8' if form.colour else ''}"
-        data = _packed(pixels if form.colour else form.encode(pixels), kind, self._values)
+        transport = f"{source.encoding}; {kind} compressed {'bgr8' if source.colour else ''}"
+        data = _compress(pixels if source.colour else source.encode(pixels), kind, self._values)
         self._publisher.publish(
             self._message(
                 header=moment,
@@ -173,7 +173,7 @@ class CompressedDepths:
     Source: compressed_depth_image_transport.
 
     Args:
-        owner: The publishing plugin.
+        owner: The camera.
         image: Topic of the depth image.
         rate: Publish rate for listings, Hz.
     """
@@ -216,7 +216,7 @@ class CompressedDepths:
         )
 
 
-def _packed(pixels: NDArray[Any], kind: str, values: Mapping[str, Any]) -> bytes:
+def _compress(pixels: NDArray[Any], kind: str, values: Mapping[str, Any]) -> bytes:
     from PIL import Image
 
     if pixels.dtype != np.uint8:

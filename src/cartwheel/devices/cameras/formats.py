@@ -1,4 +1,4 @@
-"""Encodings of ``sensor_msgs/Image`` for the image formats in SDF."""
+"""Layouts of pixels in ``sensor_msgs/Image``."""
 
 from __future__ import annotations
 
@@ -66,30 +66,13 @@ def _bayer(pattern: str) -> Callable[[Pixels], Pixels]:
     return encode
 
 
-_RGB8 = ImageFormat(encoding="rgb8", bytes_per_pixel=3, encode=_same)
-_BGR8 = ImageFormat(encoding="bgr8", bytes_per_pixel=3, encode=_swap)
-_MONO8 = ImageFormat(encoding="mono8", bytes_per_pixel=1, encode=grey, colour=False)
-_MONO16 = ImageFormat(encoding="mono16", bytes_per_pixel=2, encode=_wide_grey, colour=False)
-_RGB16 = ImageFormat(encoding="rgb16", bytes_per_pixel=6, encode=_wide)
-
-FORMATS = {
-    "R8G8B8": _RGB8,
-    "RGB_INT8": _RGB8,
-    "RGB8": _RGB8,
-    "B8G8R8": _BGR8,
-    "BGR_INT8": _BGR8,
-    "BGR8": _BGR8,
-    "L8": _MONO8,
-    "L_INT8": _MONO8,
-    "MONO8": _MONO8,
-    "L16": _MONO16,
-    "L_INT16": _MONO16,
-    "MONO16": _MONO16,
-    "R16G16B16": _RGB16,
-    "RGB_INT16": _RGB16,
-    "RGB16": _RGB16,
-} | {
-    f"BAYER_{pattern}8": ImageFormat(
+RGB8 = ImageFormat(encoding="rgb8", bytes_per_pixel=3, encode=_same)
+BGR8 = ImageFormat(encoding="bgr8", bytes_per_pixel=3, encode=_swap)
+MONO8 = ImageFormat(encoding="mono8", bytes_per_pixel=1, encode=grey, colour=False)
+MONO16 = ImageFormat(encoding="mono16", bytes_per_pixel=2, encode=_wide_grey, colour=False)
+RGB16 = ImageFormat(encoding="rgb16", bytes_per_pixel=6, encode=_wide)
+BAYER8 = {
+    pattern: ImageFormat(
         encoding=f"bayer_{pattern.lower()}8",
         bytes_per_pixel=1,
         encode=_bayer(pattern),
@@ -97,5 +80,4 @@ FORMATS = {
     )
     for pattern in ("RGGB", "BGGR", "GBRG", "GRBG")
 }
-"""By upper-case SDF format. Source: SDF, ``<camera><image><format>``; gazebo_ros_camera_utils.
-"""
+"""Formats with one filter per pixel, by the colours of the filters."""

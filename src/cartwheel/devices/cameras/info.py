@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cartwheel.devices.cameras.lens import Lens
+from cartwheel.geometry import Array
 from cartwheel.messages import header, message_class, service_classes
 
 INFO = "sensor_msgs/msg/CameraInfo"
@@ -19,7 +20,7 @@ SET_INFO = "sensor_msgs/srv/SetCameraInfo"
 class Rectified:
     """Entries of R and P. None keeps the entry of the identity (R) or of K (P)."""
 
-    turn: tuple[float, ...] | None = None
+    rotation: tuple[float, ...] | None = None
     """R, row by row."""
     fx: float | None = None
     fy: float | None = None
@@ -31,36 +32,39 @@ class Rectified:
     """Last column of P."""
 
 
-_PLAIN = Rectified()
+UNCHANGED = Rectified()
+"""R is the identity, and P has the entries of K."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CalibrationConfig:
+    """Entries of a CameraInfo that do not follow from the lens."""
+
+    focal_length: float = 0.0
+    """Pixels; 0: computed from the field of view."""
+    centre: tuple[float, float] = (0.0, 0.0)
+    """Principal point, pixels; 0: (size + 1) / 2, as in Gazebo."""
+    baseline: float = 0.0
+    """Distance to the right of the left camera of a stereo pair, m."""
+    rectified: Rectified = UNCHANGED
 
 
 class Calibration:
-    """CameraInfo of a pinhole camera, with Gazebo's image centre and stereo baseline.
+    """CameraInfo of a camera.
 
     Args:
         lens: The rendered lens.
         frame: Frame ID of the messages.
-        focal_length: Pixels; 0 to compute it from the field of view.
-        centre: Principal point in pixels; 0 for (size + 1) / 2.
-        baseline: Distance to the right of the left camera of a stereo pair, m.
-        rectified: Entries of R and P that differ from the identity and K.
+        config: Entries that do not follow from the lens.
     """
 
-    def __init__(
-        self,
-        lens: Lens,
-        frame: str,
-        *,
-        focal_length: float = 0.0,
-        centre: tuple[float, float] = (0.0, 0.0),
-        baseline: float = 0.0,
-        rectified: Rectified = _PLAIN,
-    ) -> None:
+    def __init__(self, lens: Lens, frame: str, config: CalibrationConfig) -> None:
         self._frame = frame
         self.width, self.height = lens.intrinsics.width, lens.intrinsics.height
-        focal = focal_length or lens.focal
-        cx = centre[0] or (self.width + 1) / 2
-        cy = centre[1] or (self.height + 1) / 2
+        focal = config.focal_length or lens.focal
+        cx = config.centre[0] or (self.width + 1) / 2
+        cy = config.centre[1] or (self.height + 1) / 2
+        rectified = config.rectified
         self.info = message_class(INFO)(
             header=header(0, frame),
             height=self.height,
@@ -68,21 +72,8 @@ class Calibration:
             distortion_model="plumb_bob",
             d=np.array(lens.distortion.coefficients, dtype=float),
             k=np.array([focal, 0, cx, 0, focal, cy, 0, 0, 1]),
-            r=np.eye(3).ravel() if rectified.turn is None else np.array(rectified.turn),
-            p=np.array(
-                [
-                    *(_or_default(rectified.fx, focal), 0, _or_default(rectified.cx, cx)),
-                    _or_default(rectified.tx, -focal * baseline),
-                    *(
-                        0,
-                        _or_default(rectified.fy, focal),
-                        _or_default(rectified.cy, cy),
-                        rectified.ty,
-                    ),
-                    *(0, 0, 1, 0),
-                ],
-                dtype=float,
-            ),
+            r=np.eye(3).ravel() if rectified.rotation is None else np.array(rectified.rotation),
+            p=projection(rectified, focal, cx, cy, config.baseline),
             binning_x=0,
             binning_y=0,
             roi=message_class("sensor_msgs/msg/RegionOfInterest")(
@@ -107,6 +98,22 @@ class Calibration:
             )
         self.info = given
         return self._response(success=True, status_message="")
+
+
+def projection(rectified: Rectified, focal: float, cx: float, cy: float, baseline: float) -> Array:
+    """Returns P, row by row, for the focal length and principal point of K in pixels.
+
+    Args:
+        rectified: Entries that differ from K.
+        focal: Focal length, pixels.
+        cx: x of the principal point, pixels.
+        cy: y of the principal point, pixels.
+        baseline: Distance to the right of the left camera of a stereo pair, m.
+    """
+    fx, fy = _or_default(rectified.fx, focal), _or_default(rectified.fy, focal)
+    cx, cy = _or_default(rectified.cx, cx), _or_default(rectified.cy, cy)
+    tx = _or_default(rectified.tx, -focal * baseline)
+    return np.array([fx, 0, cx, tx, 0, fy, cy, rectified.ty, 0, 0, 1, 0], dtype=float)
 
 
 def _or_default(value: float | None, default: float) -> float:

@@ -58,24 +58,24 @@ class Distortion:
         fold = self._fold()
         u, v = x.copy(), y.copy()
         for _ in range(_ROUNDS):
-            _within(u, v, fold)
+            _limit_radius(u, v, fold)
             r2 = u * u + v * v
             radial = 1 + r2 * (self.k1 + r2 * (self.k2 + r2 * self.k3))
             slope = 2 * (self.k1 + r2 * (2 * self.k2 + r2 * 3 * self.k3))
             a = radial + u * u * slope + 2 * self.p1 * v + 6 * self.p2 * u
             b = u * v * slope + 2 * self.p1 * u + 2 * self.p2 * v
             d = radial + v * v * slope + 6 * self.p1 * v + 2 * self.p2 * u
-            seen_u, seen_v = self.apply(u, v)
-            off_u, off_v = x - seen_u, y - seen_v
-            if not max(np.abs(off_u).max(), np.abs(off_v).max()) > _CLOSE:
+            applied_u, applied_v = self.apply(u, v)
+            error_u, error_v = x - applied_u, y - applied_v
+            if not max(np.abs(error_u).max(), np.abs(error_v).max()) > _CLOSE:
                 break
             determinant = a * d - b * b
             determinant[np.abs(determinant) < 1e-9] = 1e-9
-            u = u + (d * off_u - b * off_v) / determinant
-            v = v + (a * off_v - b * off_u) / determinant
-        seen_u, seen_v = self.apply(u, v)
-        lost = ~(np.hypot(seen_u - x, seen_v - y) < 1e-6) | (np.hypot(u, v) > fold)
-        u[lost] = v[lost] = math.nan
+            u = u + (d * error_u - b * error_v) / determinant
+            v = v + (a * error_v - b * error_u) / determinant
+        applied_u, applied_v = self.apply(u, v)
+        invalid = ~(np.hypot(applied_u - x, applied_v - y) < 1e-6) | (np.hypot(u, v) > fold)
+        u[invalid] = v[invalid] = math.nan
         return u, v
 
     def _fold(self) -> float:
@@ -85,7 +85,7 @@ class Distortion:
         return math.sqrt(min(real)) if real else math.inf
 
 
-def _within(u: Floats, v: Floats, radius: float) -> None:
+def _limit_radius(u: Floats, v: Floats, radius: float) -> None:
     """Moves points beyond `radius` to slightly inside of it."""
     if math.isinf(radius):
         return
@@ -109,7 +109,7 @@ class Lens:
         width, height = intrinsics.width, intrinsics.height
         self.focal = width / (2 * math.tan(intrinsics.horizontal_fov / 2))
         """Focal length, pixels."""
-        self.drawn = intrinsics
+        self.rendered = intrinsics
         """The pinhole image to render, larger than the final image for barrel distortion."""
         x = (np.arange(width) + 0.5 - width / 2) / self.focal
         y = (np.arange(height) + 0.5 - height / 2) / self.focal
@@ -119,9 +119,9 @@ class Lens:
         )
         self._map: _Map | None = None
         if any(distortion.coefficients):
-            self._bend()
+            self._distort()
 
-    def _bend(self) -> None:
+    def _distort(self) -> None:
         image = self.intrinsics
         # The distortion is centred at the point in the description.
         cx = (image.distortion_center[0] - 0.5) * image.width / self.focal
@@ -134,7 +134,7 @@ class Lens:
         self._x, self._y = x, y
         width = _even(2 * self.focal * _reach(x), image.width)
         height = _even(2 * self.focal * _reach(y), image.height)
-        self.drawn = dataclasses.replace(
+        self.rendered = dataclasses.replace(
             image,
             width=width,
             height=height,
@@ -181,9 +181,9 @@ class _Map:
     def __init__(self, u: Floats, v: Floats, width: int, height: int) -> None:
         self.shape = u.shape
         with np.errstate(invalid="ignore"):
-            self._dark = ~((u >= 0) & (u < width) & (v >= 0) & (v < height))
-        u = np.where(self._dark, 0.0, u) - 0.5
-        v = np.where(self._dark, 0.0, v) - 0.5
+            self._outside = ~((u >= 0) & (u < width) & (v >= 0) & (v < height))
+        u = np.where(self._outside, 0.0, u) - 0.5
+        v = np.where(self._outside, 0.0, v) - 0.5
         left, top = np.floor(u).astype(np.int64), np.floor(v).astype(np.int64)
         part = np.round((u - left) * _ONE).astype(np.int64)
         below = np.round((v - top) * _ONE).astype(np.int64)
@@ -206,7 +206,7 @@ class _Map:
         near_u = np.clip(np.round(u), 0, width - 1).astype(np.int64)
         near_v = np.clip(np.round(v), 0, height - 1).astype(np.int64)
         self._nearest = near_v * width + near_u
-        self._none = np.flatnonzero(self._dark.ravel())
+        self._none = np.flatnonzero(self._outside.ravel())
 
     def blend(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
         flat = picture.reshape(-1, 3)

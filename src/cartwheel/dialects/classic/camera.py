@@ -8,13 +8,17 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, TypeVar
 
 from cartwheel.codes import devices
-from cartwheel.description.model import CameraIntrinsics
+from cartwheel.description.model import CameraIntrinsics, Sensor
 from cartwheel.description.sdf.sensors import MOST_BENT
-from cartwheel.devices.cameras.depth import DepthOptions
-from cartwheel.devices.cameras.eye import Eye, EyeTopics, joined
-from cartwheel.devices.cameras.info import Rectified
+from cartwheel.devices.cameras.camera import Camera as CameraDevice
+from cartwheel.devices.cameras.camera import CameraConfig
+from cartwheel.devices.cameras.depth_camera import DepthConfig
+from cartwheel.devices.cameras.imager import ImagerConfig, topic_in
+from cartwheel.devices.cameras.info import CalibrationConfig, Rectified
 from cartwheel.devices.cameras.lens import Distortion
-from cartwheel.dialects.camera_base import CameraBase
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.camera import read_camera, read_lens
+from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag, vector
 
 _NINE = 9
@@ -162,11 +166,32 @@ class CameraParameters:
 P = TypeVar("P", bound=CameraParameters)
 
 
-class RosCamera(CameraBase[P]):
+class RosCamera(Plugin[P]):
     """Base class of the camera plugins in gazebo_plugins."""
 
-    waits: ClassVar[bool] = False
-    """Whether images are always triggered."""
+    empty_is_model: ClassVar[bool] = True
+    for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "camera"
+    always_triggered: ClassVar[bool] = False
+    """Whether images are triggered without the tag ``<triggered>``."""
+
+    def configure(self) -> None:
+        assert self.sensor is not None
+        self.sensor = sensor = read_camera(self, self.sensor)
+        device = CameraConfig(
+            name=sensor.name,
+            link=sensor.link,
+            pose=sensor.pose,
+            rate=slowest(self.config.update_rate, sensor.update_rate),
+            imagers=tuple(self._imagers(sensor)),
+            depth=self._depth(),
+            trigger_topics=self._trigger_topics(),
+        )
+        self.add(CameraDevice(self.scope, device))
+
+    def _depth(self) -> DepthConfig | None:
+        """Returns the depth topics, or None if only images are published."""
+        return None
 
     @property
     def is_ros2(self) -> bool:
@@ -175,9 +200,6 @@ class RosCamera(CameraBase[P]):
         return "ros" in tags or (
             any("_" in name for name in tags) and all(name.islower() for name in tags)
         )
-
-    def _asked_rate(self) -> float:
-        return self.config.update_rate
 
     def _base(self) -> str:
         """Namespace of all topics. Default: the sensor's name in ROS 2, none in ROS 1."""
@@ -200,41 +222,43 @@ class RosCamera(CameraBase[P]):
             side = lens.name or str(index)
             if not self.is_ros2:
                 side = next((word for word in ("left", "right") if word in lens.name), side)
-            lenses.append((lens, joined(base, side)))
+            lenses.append((lens, topic_in(base, side)))
         return lenses
 
-    def _open_eyes(self) -> Iterator[Eye]:
+    def _imagers(self, sensor: Sensor) -> Iterator[ImagerConfig]:
         config, lenses = self.config, self._lenses()
-        distortion = Distortion(
+        configured = Distortion(
             k1=config.k1, k2=config.k2, p1=config.t1, p2=config.t2, k3=config.k3
         )
         rectified = self._rectified()
-        for lens, base in lenses:
-            left = len(lenses) > 1 and "left" in lens.name
-            yield self._eye(
-                lens,
-                EyeTopics(
-                    image=joined(base, config.image_topic),
-                    info=joined(base, config.info_topic),
-                    base=base,
-                    adjustable=not self.is_ros2,
-                ),
-                frame=config.frame,
+        for each, base in lenses:
+            left = len(lenses) > 1 and "left" in each.name
+            lens, distortion, image_format = read_lens(self, each, configured)
+            yield ImagerConfig(
+                intrinsics=lens,
                 distortion=distortion,
-                focal_length=config.focal_length,
-                centre=(config.cx, config.cy),
-                baseline=0.0 if left else config.hack_baseline,
-                rectified=rectified,
+                format=image_format,
+                calibration=CalibrationConfig(
+                    focal_length=config.focal_length,
+                    centre=(config.cx, config.cy),
+                    baseline=0.0 if left else config.hack_baseline,
+                    rectified=rectified,
+                ),
+                frame=config.frame or sensor.link,
+                image_topic=topic_in(base, config.image_topic),
+                info_topic=topic_in(base, config.info_topic),
+                namespace=base,
+                adjustable=not self.is_ros2,
             )
 
     def _rectified(self) -> Rectified:
         config = self.config
-        turn = None
+        rotation = None
         if config.rectification:
             element = self.tag.element.find("rectification_matrix") or self.tag.element
-            turn = vector(replace(element, text=config.rectification), _NINE)
+            rotation = vector(replace(element, text=config.rectification), _NINE)
         return Rectified(
-            turn=turn,
+            rotation=rotation,
             fx=config.p_fx,
             fy=config.p_fy,
             cx=config.p_cx,
@@ -243,13 +267,13 @@ class RosCamera(CameraBase[P]):
             ty=config.p_ty,
         )
 
-    def _trigger_topics(self) -> list[str]:
+    def _trigger_topics(self) -> tuple[str, ...]:
         config = self.config
-        if not (self.waits or config.triggered):
-            return []
+        if not (self.always_triggered or config.triggered):
+            return ()
         # In ROS 2 all lenses share one trigger.
         bases = [self._base()] if self.is_ros2 else [base for _, base in self._lenses()]
-        return [joined(base, config.trigger_topic) for base in bases]
+        return tuple(topic_in(base, config.trigger_topic) for base in bases)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -293,15 +317,15 @@ class Camera(RosCamera[DepthByTypeParameters]):
     )
     parameters: ClassVar[type] = DepthByTypeParameters
 
-    def _depth_options(self) -> DepthOptions | None:
+    def _depth(self) -> DepthConfig | None:
         assert self.sensor is not None
         if self.sensor.type not in ("depth", "depth_camera", "rgbd_camera"):
             return None
         base, config = self._base(), self.config
-        return DepthOptions(
-            depth=joined(base, "depth/image_raw"),
-            info=joined(base, "depth/camera_info"),
-            points=joined(base, "points"),
+        return DepthConfig(
+            depth_topic=topic_in(base, "depth/image_raw"),
+            info_topic=topic_in(base, "depth/camera_info"),
+            points_topic=topic_in(base, "points"),
             nearest=config.min_depth,
             furthest=config.max_depth,
             beyond="inf",
@@ -321,7 +345,7 @@ class TriggeredCamera(Camera):
         "libgazebo_ros_triggered_camera.so",
         "libgazebo_ros_triggered_multicamera.so",
     )
-    waits: ClassVar[bool] = True
+    always_triggered: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

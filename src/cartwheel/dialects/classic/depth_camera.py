@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.devices.cameras.depth import DepthOptions
-from cartwheel.devices.cameras.eye import joined
+from cartwheel.devices.cameras.depth_camera import DepthConfig
+from cartwheel.devices.cameras.imager import topic_in
 from cartwheel.dialects.classic.camera import CameraParameters, RosCamera
 from cartwheel.dialects.tags import tag
 
@@ -83,12 +83,12 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
                     values={"parameter": name},
                 )
 
-    def _depth_options(self) -> DepthOptions:
+    def _depth(self) -> DepthConfig:
         base, config = self._base(), self.config
-        return DepthOptions(
-            depth=joined(base, config.depth_topic),
-            info=joined(base, config.depth_info_topic),
-            points=joined(base, config.points_topic),
+        return DepthConfig(
+            depth_topic=topic_in(base, config.depth_topic),
+            info_topic=topic_in(base, config.depth_info_topic),
+            points_topic=topic_in(base, config.points_topic),
             nearest=config.nearest,
             furthest=config.furthest,
             millimetres=config.millimetres,

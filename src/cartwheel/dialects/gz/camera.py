@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.cameras.depth import DepthOptions
-from cartwheel.devices.cameras.eye import Eye, EyeTopics
-from cartwheel.dialects.camera_base import CameraBase
+from cartwheel.description.model import Sensor
+from cartwheel.devices.cameras.camera import Camera, CameraConfig
+from cartwheel.devices.cameras.depth_camera import DepthConfig
+from cartwheel.devices.cameras.imager import ImagerConfig
+from cartwheel.devices.cameras.info import CalibrationConfig
 from cartwheel.dialects.gz.sensor_tags import default_topic
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.camera import read_camera, read_lens
+from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag
 
 _DEPTHS = ("depth_camera", "depth")
@@ -60,7 +64,7 @@ class GzCameraParameters:
     )
 
 
-class GzCamera(CameraBase[GzCameraParameters]):
+class GzCamera(Plugin[GzCameraParameters]):
     """Publishes the images of gz-sim's ``camera``, ``depth_camera`` and ``rgbd_camera`` sensors.
 
     A ``camera`` publishes images on ``<topic>``. A ``depth_camera`` publishes depths on ``<topic>``
@@ -76,39 +80,50 @@ class GzCamera(CameraBase[GzCameraParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzCameraParameters
+    empty_is_model: ClassVar[bool] = True
+    for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "camera"
     serves: ClassVar[tuple[str, ...]] = ("camera", "rgbd_camera", *_DEPTHS)
 
-    def _topic(self) -> str:
+    def configure(self) -> None:
         assert self.sensor is not None
-        last = {"camera": "image", "rgbd_camera": ""}.get(self.sensor.type, "depth_image")
-        return self.config.topic or default_topic(self.part, self.sensor, last).rstrip("/")
+        config, sensor = self.config, read_camera(self, self.sensor)
+        last = {"camera": "image", "rgbd_camera": ""}.get(sensor.type, "depth_image")
+        topic = config.topic or default_topic(self.part, sensor, last).rstrip("/")
+        trigger = config.trigger_topic or f"{topic}/trigger"
+        device = CameraConfig(
+            name=sensor.name,
+            link=sensor.link,
+            pose=sensor.pose,
+            rate=slowest(sensor.update_rate),
+            imagers=(self._imager(sensor, topic),),
+            depth=self._depth(sensor, topic),
+            trigger_topics=(trigger,) if config.triggered else (),
+        )
+        self.add(Camera(self.scope, device))
 
-    def _open_eyes(self) -> Iterator[Eye]:
-        sensor, config, topic = self.sensor, self.config, self._topic()
-        assert sensor is not None
+    def _imager(self, sensor: Sensor, topic: str) -> ImagerConfig:
         around = topic if sensor.type == "rgbd_camera" else topic.rpartition("/")[0]
-        image = {"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, "")
-        info = config.info_topic or (f"{around}/camera_info" if around else "camera_info")
-        lens = sensor.cameras[0]
-        yield self._eye(
-            lens,
-            EyeTopics(image=image, info=info, base="", set_info=False, adjustable=False),
-            frame=config.frame,
-            centre=(lens.width / 2, lens.height / 2),
+        lens, distortion, image_format = read_lens(self, sensor.cameras[0])
+        return ImagerConfig(
+            intrinsics=lens,
+            distortion=distortion,
+            format=image_format,
+            calibration=CalibrationConfig(centre=(lens.width / 2, lens.height / 2)),
+            frame=self.config.frame or sensor.link,
+            image_topic={"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, ""),
+            info_topic=self.config.info_topic
+            or (f"{around}/camera_info" if around else "camera_info"),
+            set_info=False,
+            adjustable=False,
         )
 
-    def _trigger_topics(self) -> list[str]:
-        config = self.config
-        return [config.trigger_topic or f"{self._topic()}/trigger"] if config.triggered else []
-
-    def _depth_options(self) -> DepthOptions | None:
-        assert self.sensor is not None
-        kind, topic = self.sensor.type, self._topic()
-        if kind == "camera":
+    def _depth(self, sensor: Sensor, topic: str) -> DepthConfig | None:
+        if sensor.type == "camera":
             return None
-        return DepthOptions(
-            depth=topic if kind in _DEPTHS else f"{topic}/depth_image",
-            points=f"{topic}/points",
+        return DepthConfig(
+            depth_topic=topic if sensor.type in _DEPTHS else f"{topic}/depth_image",
+            points_topic=f"{topic}/points",
             nearest=self.config.nearest,
             furthest=self.config.furthest,
             beyond="inf",

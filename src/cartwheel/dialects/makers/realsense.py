@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import running
-from cartwheel.component import Shared
-from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.devices.cameras.depth import DepthOptions
-from cartwheel.devices.cameras.eye import Eye, EyeTopics, joined
-from cartwheel.dialects.camera_base import CameraBase
+from cartwheel.description.model import Sensor
+from cartwheel.devices.cameras.camera import Camera, CameraConfig
+from cartwheel.devices.cameras.depth_camera import DepthConfig
+from cartwheel.devices.cameras.imager import ImagerConfig, topic_in
+from cartwheel.devices.cameras.info import CalibrationConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag, tags_of
-from cartwheel.simulation import Part
+from cartwheel.dialects.sdf.camera import read_camera, read_lens
+from cartwheel.dialects.sdf.rates import slowest
+from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -118,49 +118,6 @@ class RealSenseParameters:
     )
 
 
-class _Stream(CameraBase[RealSenseParameters]):
-    """One of the four image streams."""
-
-    parameters: ClassVar[type] = RealSenseParameters
-
-    def __init__(
-        self,
-        part: Part,
-        shared: Shared,
-        tag: PluginTag,
-        sensor: Sensor,
-        *,
-        topic: str,
-        frame: str,
-        rate: float,
-        depth: DepthOptions | None,
-    ) -> None:
-        self._image_topic, self._stream_frame = topic, frame
-        self._stream_rate, self._options = rate, depth
-        super().__init__(part, shared, tag, sensor)
-
-    def _asked_rate(self) -> float:
-        return self._stream_rate
-
-    def _open_eyes(self) -> Iterator[Eye]:
-        assert self.sensor is not None
-        lens = self.sensor.cameras[0]
-        folder = self._image_topic.rpartition("/")[0]
-        topics = EyeTopics(
-            image="" if self._options is not None else self._image_topic,
-            info=joined(folder, "camera_info"),
-            base="",
-            set_info=False,
-            adjustable=False,
-        )
-        yield self._eye(
-            lens, topics, frame=self._stream_frame, centre=(lens.width / 2, lens.height / 2)
-        )
-
-    def _depth_options(self) -> DepthOptions | None:
-        return self._options
-
-
 class RealSense(Plugin[RealSenseParameters]):
     """Publishes the colour, infrared and depth images of an Intel RealSense.
 
@@ -173,45 +130,56 @@ class RealSense(Plugin[RealSenseParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("librealsense_gazebo_plugin.so",)
     parameters: ClassVar[type] = RealSenseParameters
-    _streams: tuple[_Stream, ...] = ()
+    empty_is_model: ClassVar[bool] = True
 
     def configure(self) -> None:
         config = self.config
         base = self.tag.name
-        depth = DepthOptions(
-            depth=joined(base, config.depth_topic),
-            points=joined(base, config.points_topic) if config.points else "",
+        depth = DepthConfig(
+            depth_topic=topic_in(base, config.depth_topic),
+            points_topic=topic_in(base, config.points_topic) if config.points else "",
             nearest=config.nearest,
             furthest=config.furthest,
             points_nearest=config.points_nearest,
             points_furthest=config.points_furthest,
             millimetres=True,
         )
-        for name, topic, frame, rate, options in (
+        for name, topic, frame, rate, depths in (
             ("color", config.color_topic, config.color_frame, config.color_rate, None),
             ("ired1", config.infrared1_topic, config.infrared1_frame, config.infrared_rate, None),
             ("ired2", config.infrared2_topic, config.infrared2_frame, config.infrared_rate, None),
             ("depth", config.depth_topic, config.depth_frame, config.depth_rate, depth),
         ):
             sensor = self._sensor(config.prefix + name)
-            if sensor is None:
-                continue
-            stream = _Stream(
-                self.part,
-                self.shared,
-                self._quiet_tag(),
-                sensor,
-                topic=joined(base, topic),
-                frame=frame,
-                rate=rate,
-                depth=options,
-            )
-            self._streams += (stream,)
+            if sensor is not None:
+                image = topic_in(base, topic)
+                self._add_camera(sensor, image, frame=frame, rate=rate, depth=depths)
 
-    def close(self) -> None:
-        for stream in self._streams:
-            stream.close()
-        super().close()
+    def _add_camera(
+        self, sensor: Sensor, topic: str, *, frame: str, rate: float, depth: DepthConfig | None
+    ) -> None:
+        sensor = read_camera(self, sensor)
+        lens, distortion, image_format = read_lens(self, sensor.cameras[0])
+        imager = ImagerConfig(
+            intrinsics=lens,
+            distortion=distortion,
+            format=image_format,
+            calibration=CalibrationConfig(centre=(lens.width / 2, lens.height / 2)),
+            frame=frame or sensor.link,
+            image_topic="" if depth is not None else topic,
+            info_topic=topic_in(topic.rpartition("/")[0], "camera_info"),
+            set_info=False,
+            adjustable=False,
+        )
+        device = CameraConfig(
+            name=sensor.name,
+            link=sensor.link,
+            pose=sensor.pose,
+            rate=slowest(rate, sensor.update_rate),
+            imagers=(imager,),
+            depth=depth,
+        )
+        self.add(Camera(self.scope, device))
 
     def _sensor(self, name: str) -> Sensor | None:
         for link in self.part.description.links:
@@ -225,10 +193,3 @@ class RealSense(Plugin[RealSenseParameters]):
             values={"name": name},
         )
         return None
-
-    def _quiet_tag(self) -> PluginTag:
-        """Returns the tag without unsupported elements, which have already been reported."""
-        known = tags_of(RealSenseParameters) | {"robotNamespace", "ros"}
-        element = self.tag.element
-        children = tuple(child for child in element.children if child.tag in known)
-        return replace(self.tag, element=replace(element, children=children))

@@ -1,4 +1,4 @@
-"""One lens of a camera, with its images, calibration and topics."""
+"""The image of one lens of a camera, with its calibration and topics."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.codes import devices
 from cartwheel.component import Component
-from cartwheel.description.model import CameraIntrinsics, Sensor
+from cartwheel.description.model import CameraIntrinsics
 from cartwheel.devices.cameras.compressed import (
     COMPRESSED,
     DEPTH_PARAMETERS,
     CompressedImages,
 )
-from cartwheel.devices.cameras.formats import FORMATS, ImageFormat, Pixels
-from cartwheel.devices.cameras.info import INFO, SET_INFO, Calibration
-from cartwheel.devices.cameras.lens import Lens
+from cartwheel.devices.cameras.formats import ImageFormat, Pixels
+from cartwheel.devices.cameras.info import INFO, SET_INFO, Calibration, CalibrationConfig
+from cartwheel.devices.cameras.lens import Distortion, Lens
+from cartwheel.geometry import Pose
 from cartwheel.graph import Publisher, ReconfigureParameter
 from cartwheel.messages import header, message_class
 
@@ -36,31 +36,39 @@ _RATE = ReconfigureParameter(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class EyeTopics:
-    """Topics and services of a lens."""
+class ImagerConfig:
+    """Lens, calibration and topics of an `Imager`."""
 
-    image: str
-    """Empty if no images are published."""
-    info: str
-    base: str
+    intrinsics: CameraIntrinsics
+    """Image size, field of view, noise, and the pose of the lens in the camera."""
+    distortion: Distortion
+    """Distortion of the lens, which replaces that of the intrinsics."""
+    format: ImageFormat
+    calibration: CalibrationConfig
+    frame: str
+    """Frame ID of the messages, without the robot's prefix."""
+    image_topic: str
+    """Topic of the images; empty if only depths are published."""
+    info_topic: str
+    """Topic of the CameraInfo."""
+    namespace: str = ""
     """Namespace of the services; empty if no service needs one."""
     set_info: bool = True
-    """Whether ``set_camera_info`` is offered."""
+    """Whether the service ``set_camera_info`` is offered."""
     adjustable: bool = True
-    """Whether ROS 1's dynamic_reconfigure is offered."""
+    """Whether the frame rate and the compression can be changed with ROS 1's
+    dynamic_reconfigure."""
 
 
-class Eye:
-    """Renders and publishes the images of one lens when its plugin requests it.
+class Imager:
+    """Renders and publishes the images of one lens when its camera requests it.
 
     Args:
-        owner: The publishing plugin.
-        sensor: The sensor of the lens.
-        lens: Intrinsics from the description, with the pose of the lens in the sensor.
-        bent: The lens with its distortion.
-        calibration: The published CameraInfo.
-        topics: Topics and services.
-        frame: Frame ID of the messages.
+        owner: The camera.
+        config: Lens and topics.
+        name: Name of the camera.
+        link: Link of the camera.
+        pose: Pose of the camera in its link.
         rate: Hz; 0 for every step.
         on_rate: Called with a new rate.
     """
@@ -68,83 +76,82 @@ class Eye:
     def __init__(
         self,
         owner: Component,
-        sensor: Sensor,
-        lens: CameraIntrinsics,
+        config: ImagerConfig,
         *,
-        bent: Lens,
-        calibration: Calibration,
-        topics: EyeTopics,
-        frame: str,
+        name: str,
+        link: str,
+        pose: Pose,
         rate: float,
         on_rate: Callable[[float], None],
     ) -> None:
+        intrinsics = config.intrinsics
         self._owner = owner
-        self.lens = bent
-        self.calibration = calibration
-        self.frame = frame
-        self._noise = (lens.noise_mean, lens.noise_stddev)
-        self._format = image_format(owner, lens.format)
-        self._camera = owner.part.camera(
-            sensor.name, sensor.link, sensor.pose @ lens.pose, bent.drawn
-        )
+        self.lens = Lens(intrinsics, config.distortion)
+        self.frame = owner.frame(config.frame)
+        self.calibration = Calibration(self.lens, self.frame, config.calibration)
+        self._noise = (intrinsics.noise_mean, intrinsics.noise_stddev)
+        self._format = config.format
+        self._camera = owner.part.camera(name, link, pose @ intrinsics.pose, self.lens.rendered)
         self._message = message_class("sensor_msgs/msg/Image")
         listed_rate = rate or None
-        self._info = owner.advertise(topics.info, INFO, rate=listed_rate, qos="sensor")
+        self._info = owner.advertise(config.info_topic, INFO, rate=listed_rate, qos="sensor")
         self._image: Publisher | None = None
         self._compressed: CompressedImages | None = None
-        if topics.image:
+        image = config.image_topic
+        if image:
             self._image = owner.advertise(
-                topics.image, "sensor_msgs/msg/Image", rate=listed_rate, qos="sensor"
+                image, "sensor_msgs/msg/Image", rate=listed_rate, qos="sensor"
             )
-        free = not topics.set_info or owner.serve(
-            joined(topics.base, "set_camera_info"), SET_INFO, calibration.set
+        free = not config.set_info or owner.serve(
+            topic_in(config.namespace, "set_camera_info"), SET_INFO, self.calibration.set
         )
-        adjustable = topics.adjustable and free
-        if topics.image:
+        adjustable = config.adjustable and free
+        if image:
             self._compressed = CompressedImages(
-                owner, topics.image, self._format, rate=listed_rate, adjustable=adjustable
+                owner, image, self._format, rate=listed_rate, adjustable=adjustable
             )
         if adjustable:
             # Gazebo lists this topic for every camera; colour images have no depths to publish.
-            owner.advertise(f"{topics.image}/compressedDepth", COMPRESSED, qos="sensor")
+            owner.advertise(f"{image}/compressedDepth", COMPRESSED, qos="sensor")
             owner.reconfigure(
-                f"{topics.image}/compressedDepth", DEPTH_PARAMETERS, lambda _: None, preset=True
+                f"{image}/compressedDepth", DEPTH_PARAMETERS, lambda _: None, preset=True
             )
-        if adjustable and topics.base.strip("/"):
+        if adjustable and config.namespace.strip("/"):
             owner.reconfigure(
-                topics.base,
+                config.namespace,
                 (_RATE,),
                 lambda values: on_rate(float(values["imager_rate"])),
                 initial={"imager_rate": rate},
             )
 
     @property
-    def sees(self) -> bool:
-        """Whether the image has subscribers."""
+    def needs_rendering(self) -> bool:
+        """Whether the image has subscribers, so that it must be rendered."""
         return (self._image is not None and self._image.wanted) or (
             self._compressed is not None and self._compressed.wanted
         )
 
     @property
     def wanted(self) -> bool:
-        return self.sees or self._info.wanted
+        """Whether the image or the calibration has subscribers."""
+        return self.needs_rendering or self._info.wanted
 
-    def picture(self) -> Pixels:
+    def render(self) -> Pixels:
         """Renders the current image: RGB, shape (height, width, 3).
 
         Raises:
             SimulationError: OpenGL is not available, or was opened before a fork.
         """
-        return self._noisy(self.lens.image(self._owner.part.render(self._camera)))
+        return self._with_noise(self.lens.image(self._owner.part.render(self._camera)))
 
-    def picture_with_depth(self) -> tuple[Pixels, NDArray[np.float32]]:
+    def render_with_depth(self) -> tuple[Pixels, NDArray[np.float32]]:
         """Renders the image and the depths along the optical axis in m; inf where nothing is hit.
 
         Raises:
             SimulationError: OpenGL is not available, or was opened before a fork.
         """
         pixels, depths = self._owner.part.render_with_depth(self._camera)
-        return self._noisy(self.lens.image(pixels)), self.lens.depths(depths)
+        return self._with_noise(self.lens.image(pixels)), self.lens.depths(depths)
 
     def publish_info(self, now: int) -> None:
         """Publishes the calibration if it has subscribers."""
@@ -172,33 +179,17 @@ class Eye:
             data=data.view(np.uint8),
         )
 
-    def _noisy(self, pixels: Pixels) -> Pixels:
+    def _with_noise(self, pixels: Pixels) -> Pixels:
         """Adds noise: one random number for each pixel, the same for all colours, as in Gazebo."""
-        mean, spread = self._noise
-        if spread <= 0 and mean == 0:
+        mean, stddev = self._noise
+        if stddev <= 0 and mean == 0:
             return pixels
         random = self._owner.part.random(f"camera {self._camera.name}")
-        noise = random.normal(mean, max(spread, 0.0), (*pixels.shape[:2], 1)) * 255
+        noise = random.normal(mean, max(stddev, 0.0), (*pixels.shape[:2], 1)) * 255
         noisy: Pixels = np.clip(pixels + noise, 0, 255).astype(np.uint8)
         return noisy
 
 
-def joined(base: str, topic: str) -> str:
-    """Returns a topic under a namespace, unless the topic is global."""
-    return f"{base}/{topic}" if base and not topic.startswith("/") else topic
-
-
-def image_format(owner: Component, name: str) -> ImageFormat:
-    """Returns the format with this name; colour, with a warning, if it is not supported."""
-    known = FORMATS.get(name.strip().upper())
-    if known is not None:
-        return known
-    # Float formats belong to depth cameras, whose depths are always floats.
-    if "FLOAT" not in name.upper():
-        owner.warn(
-            devices.IMAGE_FORMAT_UNKNOWN,
-            f'the image format "{name}" is not supported, so R8G8B8 is used',
-            hint=f"Supported formats: {', '.join(FORMATS)}.",
-            values={"format": name},
-        )
-    return FORMATS["R8G8B8"]
+def topic_in(namespace: str, topic: str) -> str:
+    """Returns a topic in a namespace, unless the topic is global."""
+    return f"{namespace}/{topic}" if namespace and not topic.startswith("/") else topic

@@ -1,4 +1,4 @@
-"""Depth topics of a camera: a depth image, and coloured points."""
+"""The depth topics of a camera: depth images and coloured points."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from cartwheel.component import Component
 from cartwheel.devices.cameras.compressed import CompressedDepths
-from cartwheel.devices.cameras.eye import Eye
 from cartwheel.devices.cameras.formats import Pixels
+from cartwheel.devices.cameras.imager import Imager
 from cartwheel.devices.cameras.info import INFO
 from cartwheel.devices.point_clouds import point_cloud2
 from cartwheel.messages import header, message_class
@@ -31,91 +31,100 @@ POINT = np.dtype(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class DepthOptions:
-    """Topics, limits and encoding of the depth topics."""
+class DepthConfig:
+    """Topics, limits and encoding of a `DepthImager`."""
 
-    depth: str
-    points: str = ""
-    info: str = ""
-    """Topics; empty ones are not published."""
+    depth_topic: str
+    """Topic of the depth images."""
+    points_topic: str = ""
+    """Topic of the points; empty if they are not published."""
+    info_topic: str = ""
+    """Topic of the CameraInfo of the depths; empty if it is not published."""
     nearest: float = 0.0
+    """Depths at or below this value are published as `beyond`, m."""
     furthest: float = np.inf
-    """m; depths at or below `nearest` and at or above `furthest` are published as `beyond`."""
+    """Depths at or above this value are published as `beyond`, m."""
     points_nearest: float | None = None
+    """Lower limit of the points, m. Default: `nearest`."""
     points_furthest: float | None = None
-    """m; limits of the points, if different."""
+    """Upper limit of the points, m. Default: `furthest`."""
     beyond: Literal["nan", "inf"] = "nan"
     """Value outside the limits: nan, or -inf if too near and inf if too far (REP 118)."""
     millimetres: bool = False
     """Publish 16UC1 in mm instead of 32FC1 in m; 0 means no depth."""
     compressed: bool = False
-    """Whether ``<depth>/compressedDepth`` is published."""
+    """Whether ``<depth_topic>/compressedDepth`` is published."""
     optical: bool = True
     """Points with x right, y down, z forward; otherwise x forward, y left, z up."""
 
 
-class Depths:
-    """The depth topics of an `Eye`. The colour image comes from the same rendering.
+class DepthImager:
+    """The depth topics of an `Imager`. The colour image comes from the same rendering.
 
     Args:
-        owner: The publishing plugin.
-        eye: The lens.
-        options: Topics, limits and encoding.
+        owner: The camera.
+        imager: The lens.
+        config: Topics, limits and encoding.
         rate: Publish rate for listings, Hz.
     """
 
     def __init__(
-        self, owner: Component, eye: Eye, options: DepthOptions, *, rate: float | None
+        self, owner: Component, imager: Imager, config: DepthConfig, *, rate: float | None
     ) -> None:
-        self._eye = eye
-        self._options = options
+        self._imager = imager
+        self._config = config
         self._message = message_class("sensor_msgs/msg/Image")
         self._image = owner.advertise(
-            options.depth, "sensor_msgs/msg/Image", rate=rate, qos="sensor"
+            config.depth_topic, "sensor_msgs/msg/Image", rate=rate, qos="sensor"
         )
         self._points = (
-            owner.advertise(options.points, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor")
-            if options.points
+            owner.advertise(
+                config.points_topic, "sensor_msgs/msg/PointCloud2", rate=rate, qos="sensor"
+            )
+            if config.points_topic
             else None
         )
         self._compressed = (
-            CompressedDepths(owner, options.depth, rate=rate) if options.compressed else None
+            CompressedDepths(owner, config.depth_topic, rate=rate) if config.compressed else None
         )
         self._info = (
-            owner.advertise(options.info, INFO, rate=rate, qos="sensor") if options.info else None
+            owner.advertise(config.info_topic, INFO, rate=rate, qos="sensor")
+            if config.info_topic
+            else None
         )
-        right, down = eye.lens.rays()
+        right, down = imager.lens.rays()
         self._right, self._down = right.astype(np.float32), down.astype(np.float32)
 
     @property
-    def sees(self) -> bool:
-        """Whether a depth image or the points have subscribers."""
-        packed = self._compressed is not None and self._compressed.wanted
-        return packed or self._image.wanted or self._points_wanted()
+    def needs_rendering(self) -> bool:
+        """Whether the depth image or the points have subscribers, so that it must be rendered."""
+        compressed = self._compressed is not None and self._compressed.wanted
+        return compressed or self._image.wanted or self._points_wanted()
 
     @property
     def wanted(self) -> bool:
-        return self.sees or (self._info is not None and self._info.wanted)
+        """Whether one of the topics has subscribers."""
+        return self.needs_rendering or (self._info is not None and self._info.wanted)
 
     def publish_info(self, now: int) -> None:
         """Publishes the calibration if it has subscribers."""
         if self._info is not None and self._info.wanted:
-            self._info.publish(self._eye.calibration.message(now))
+            self._info.publish(self._imager.calibration.message(now))
 
     def publish(self, now: int, pixels: Pixels, depths: NDArray[np.float32]) -> None:
         """Publishes depths in m, and points with the colours of `pixels`."""
-        moment = header(now, self._eye.frame)
-        options = self._options
-        clipped = self._clip(depths, options.nearest, options.furthest)
+        moment = header(now, self._imager.frame)
+        config = self._config
+        clipped = self._clip(depths, config.nearest, config.furthest)
         if self._image.wanted:
             self._image.publish(self._depth_image(moment, clipped))
         if self._compressed is not None and self._compressed.wanted:
             self._compressed.publish(moment, clipped)
         if self._points is not None and self._points.wanted:
-            near, far = options.points_nearest, options.points_furthest
+            near, far = config.points_nearest, config.points_furthest
             if near is not None or far is not None:
-                near = options.nearest if near is None else near
-                clipped = self._clip(depths, near, options.furthest if far is None else far)
+                near = config.nearest if near is None else near
+                clipped = self._clip(depths, near, config.furthest if far is None else far)
             dense = bool(np.isfinite(clipped).all())
             self._points.publish(point_cloud2(moment, self._cloud(pixels, clipped), dense=dense))
 
@@ -128,7 +137,7 @@ class Depths:
         # Limits are restricted to the range of float32.
         near = depths <= max(-_FURTHEST, min(nearest, _FURTHEST))
         far = depths >= max(-_FURTHEST, min(furthest, _FURTHEST))
-        if self._options.beyond == "nan":
+        if self._config.beyond == "nan":
             # inf, where the ray hits nothing, also becomes nan if the limit is inf.
             return np.where(near | far, np.float32(np.nan), depths)
         return np.where(near, np.float32(-np.inf), np.where(far, np.float32(np.inf), depths))
@@ -136,14 +145,14 @@ class Depths:
     def _depth_image(self, moment: Any, clipped: NDArray[np.float32]) -> Any:
         height, width = clipped.shape
         data: NDArray[Any] = clipped.astype("<f4", copy=False)
-        if self._options.millimetres:
+        if self._config.millimetres:
             whole = np.nan_to_num(clipped * _MILLIMETRES, nan=0.0, posinf=0.0, neginf=0.0)
             data = np.where(whole > np.iinfo(np.uint16).max, 0, whole).astype("<u2")
         return self._message(
             header=moment,
             height=height,
             width=width,
-            encoding="16UC1" if self._options.millimetres else "32FC1",
+            encoding="16UC1" if self._config.millimetres else "32FC1",
             is_bigendian=0,
             step=width * data.itemsize,
             data=np.ascontiguousarray(data).reshape(-1).view(np.uint8),
@@ -153,13 +162,13 @@ class Depths:
         cloud = np.zeros(clipped.shape, dtype=POINT)
         with np.errstate(invalid="ignore"):
             right, down = self._right * clipped, self._down * clipped
-        if self._options.beyond == "inf":
+        if self._config.beyond == "inf":
             # All three coordinates get the same infinity. Multiplying it by the slope of a ray
             # would give the opposite sign on the left, and nan in the centre.
-            lost = ~np.isfinite(clipped)
-            np.copyto(right, clipped if self._options.optical else -clipped, where=lost)
-            np.copyto(down, clipped if self._options.optical else -clipped, where=lost)
-        if self._options.optical:
+            missing = ~np.isfinite(clipped)
+            np.copyto(right, clipped if self._config.optical else -clipped, where=missing)
+            np.copyto(down, clipped if self._config.optical else -clipped, where=missing)
+        if self._config.optical:
             cloud["x"], cloud["y"], cloud["z"] = right, down, clipped
         else:
             cloud["x"] = clipped
