@@ -21,6 +21,7 @@ from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.codes.command import RECORDING_UNFINISHED
 from cartwheel.codes.recording import PLAYBACK_READ_ONLY, RECORDING_EMPTY
 from cartwheel.description import load_robot, load_world
+from cartwheel.geometry import Pose
 from cartwheel.messages import encode_cdr
 from cartwheel.playback import PlaybackSession
 from cartwheel.simulation.snapshot import RunState
@@ -297,3 +298,21 @@ def test_an_incomplete_recording_is_played_with_a_warning(
         )
         assert done.returncode == 0, done.stderr
         assert (f"[{RECORDING_UNFINISHED}]" in done.stderr) == warned
+
+
+def test_a_recording_refuses_changes_and_keeps_reports(drive: Drive) -> None:
+    played = PlaybackSession(open_recording(drive.path), hold=False)
+    player = played.simulation
+    for change in (
+        lambda: player.set_pose("rosbots", Pose()),
+        lambda: player.delete("rosbots"),
+        player.occupied,
+        played.spawn,
+    ):
+        with raises(PLAYBACK_READ_ONLY):
+            change()
+    # A control client's last message that cannot be published is reported this way.
+    diagnostic = PLAYBACK_READ_ONLY.diagnostic("a client's final message cannot be published")
+    player.report(diagnostic)
+    player.drain()
+    assert played.diagnostics[-1] is diagnostic

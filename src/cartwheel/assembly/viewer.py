@@ -12,8 +12,7 @@ from cartwheel.control.protocol import PATIENCE
 from cartwheel.control.server import ControlServer
 from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.gate.access import Access
-from cartwheel.session import Session
-from cartwheel.simulation.pacing import Pacer
+from cartwheel.interfaces import RunningSession, SnapshotSource
 from cartwheel.viewer import Viewer
 
 if TYPE_CHECKING:
@@ -35,7 +34,7 @@ class AnnouncedViewer:
 
     def __init__(
         self,
-        session: Session,
+        session: RunningSession,
         server: ControlServer,
         observer: Observer,
         *,
@@ -58,7 +57,7 @@ class AnnouncedViewer:
             PageOffer(show=self._url, browsers=lambda: self._viewer.browsers),
         )
 
-    def start(self, pacer: Pacer) -> None:
+    def start(self, pacer: SnapshotSource) -> None:
         """Starts the web viewer while the simulation begins. Call it on the owner's thread."""
         self._viewer.start(pacer)
         self._started.set()

@@ -21,8 +21,8 @@ from cartwheel.control.protocol import PATIENCE
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import ControlError, UnknownNameError
 from cartwheel.graph import TopicInfo, resolve_name
+from cartwheel.interfaces import RunningSession
 from cartwheel.messages import decode_cdr, from_dict, service_classes, to_dict, type_name
-from cartwheel.session import Session
 from cartwheel.simulation import RunState
 
 T = TypeVar("T")
@@ -51,7 +51,7 @@ class Operations:
         load: Reads the file of a ``spawn`` request.
     """
 
-    def __init__(self, session: Session, load: Load) -> None:
+    def __init__(self, session: RunningSession, load: Load) -> None:
         self._session = session
         self._simulation = session.simulation
         self._graph = session.graph

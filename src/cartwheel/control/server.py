@@ -21,7 +21,7 @@ from cartwheel.control.stream import Streams
 from cartwheel.control.wills import Wills
 from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.graph import resolve_name
-from cartwheel.session import Session
+from cartwheel.interfaces import RunningSession
 
 MAX_CLIENTS = 64
 """Maximum number of clients. A new client replaces the client that has been silent longest."""
@@ -61,7 +61,9 @@ class ControlServer:
         ControlError: The socket cannot be created.
     """
 
-    def __init__(self, session: Session, *, title: str, load: Load, ros: bool = False) -> None:
+    def __init__(
+        self, session: RunningSession, *, title: str, load: Load, ros: bool = False
+    ) -> None:
         self._session = session
         self._operations = Operations(session, load)
         self._closed = threading.Event()

@@ -8,7 +8,7 @@ from typing import Any
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.protocol import Connection, pack
 from cartwheel.graph import Mailbox, TopicInfo
-from cartwheel.session import Session
+from cartwheel.interfaces import RunningSession
 
 _LOOK = 0.2
 """Interval of the checks whether the client is still connected, s."""
@@ -30,7 +30,7 @@ class Streams:
         closed: Ends all streams when set.
     """
 
-    def __init__(self, session: Session, closed: threading.Event) -> None:
+    def __init__(self, session: RunningSession, closed: threading.Event) -> None:
         self._session = session
         self._closed = closed
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from cartwheel.bridges.recording.decoding import Decode, decoder
 from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, span_of
@@ -127,6 +127,30 @@ class Player(Run):
             code=PLAYBACK_READ_ONLY,
             values={"model": name},
         )
+
+    def set_pose(self, name: str, _pose: Pose) -> None:
+        """Raises an error, because a recording cannot change.
+
+        Raises:
+            RecordingError: Always.
+        """
+        raise RecordingError(
+            f'the recorded model "{name}" cannot be moved',
+            code=PLAYBACK_READ_ONLY,
+            values={"model": name},
+        )
+
+    def occupied(self) -> NoReturn:
+        """Raises an error, because models cannot be placed in a recording.
+
+        Raises:
+            RecordingError: Always.
+        """
+        raise RecordingError("models cannot be spawned during playback", code=PLAYBACK_READ_ONLY)
+
+    def report(self, diagnostic: Diagnostic) -> None:
+        """Stores a diagnostic. Thread-safe."""
+        self.post(lambda: self._notes.append(diagnostic))
 
     def snapshot(self) -> Snapshot:
         """Current state of the displayed scene."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from cartwheel.session import Session
+from cartwheel.interfaces import RunningSession
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.framing import robot_of
 from cartwheel.viewer.look import Look
@@ -55,7 +55,7 @@ class Desk:
         session: The session to show.
     """
 
-    def __init__(self, page: Page, session: Session) -> None:
+    def __init__(self, page: Page, session: RunningSession) -> None:
         self.page = page
         self.stage = Stage(page, session)
         self._graph = session.graph

@@ -8,7 +8,7 @@ import numpy as np
 
 from cartwheel.description.model import RobotDescription
 from cartwheel.geometry import Pose, Vec3
-from cartwheel.simulation.simulation import Simulation
+from cartwheel.interfaces import RunningSimulation
 from cartwheel.simulation.snapshot import Scene, Snapshot
 from cartwheel.viewer.model_view import bounds
 from cartwheel.viewer.page import Page
@@ -36,7 +36,7 @@ class Framing:
         simulation: Tests the line of sight.
     """
 
-    def __init__(self, page: Page, simulation: Simulation) -> None:
+    def __init__(self, page: Page, simulation: RunningSimulation) -> None:
         self._page = page
         self._simulation = simulation
         self._robot: str | None = None

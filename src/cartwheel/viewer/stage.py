@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cartwheel.session import Session
+from cartwheel.interfaces import RunningSession
 from cartwheel.viewer.framing import Framing
 from cartwheel.viewer.overlays import Frustums, Trail
 from cartwheel.viewer.page import Page
@@ -18,7 +18,7 @@ class Stage:
         session: The session to show.
     """
 
-    def __init__(self, page: Page, session: Session) -> None:
+    def __init__(self, page: Page, session: RunningSession) -> None:
         self.page = page
         self.session = session
         self.robot: str | None = None

@@ -10,8 +10,7 @@ from cartwheel.codes.recording import VIEWER_NOT_STARTED
 from cartwheel.errors import ControlError
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
-from cartwheel.session import Session
-from cartwheel.simulation.pacing import Pacer
+from cartwheel.interfaces import RunningSession, SnapshotSource
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.teleop import KEYS
@@ -42,11 +41,11 @@ class Viewer:
 
     def __init__(
         self,
-        session: Session,
+        session: RunningSession,
         *,
         access: Access | None = None,
         port: int = 8080,
-        desk: Callable[[Page, Session], Desk] | None = None,
+        desk: Callable[[Page, RunningSession], Desk] | None = None,
         refused: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._access = access or Access(host="127.0.0.1")
@@ -89,7 +88,7 @@ class Viewer:
         """Number of connected browsers."""
         return 0 if self._page is None else len(self._page.clients)
 
-    def start(self, pacer: Pacer) -> None:
+    def start(self, pacer: SnapshotSource) -> None:
         """Starts the server and shows the simulation of `pacer`."""
         pacer.add_listener(self._listen, rate=RATE)
         self._thread.start()

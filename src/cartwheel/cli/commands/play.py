@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, cast
+from typing import NoReturn
 
 from cartwheel.assembly.ports import refuse_taken
 from cartwheel.cli import interrupts
@@ -18,10 +18,6 @@ from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.recording import PLAYBACK_READ_ONLY
 from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.gate.access import Access
-
-if TYPE_CHECKING:
-    from cartwheel.session import Session
-    from cartwheel.simulation.pacing import Pacer
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -81,11 +77,9 @@ def play(options: Options) -> None:
         player.seek(player.start_ns + round(options.start * 1e9))
     if options.paused:
         player.pause()
-    # For clients, a recording is equivalent to a simulation: time, topics and models.
-    session = cast("Session", played)
     report = Report(verbose=False)
     with interrupts.handled_by(player.stop, status=0):
-        server = ControlServer(session, title=f"playback of {options.file.name}", load=_refuse)
+        server = ControlServer(played, title=f"playback of {options.file.name}", load=_refuse)
         with interrupts.finally_do(server.close):
             length = (player.end_ns - player.start_ns) / 1e9
             say(f"playing {options.file}, {length:.3f} s, {len(recording.topics)} topics")
@@ -99,7 +93,7 @@ def play(options: Options) -> None:
                 from cartwheel.viewer.play_desk import PlayDesk
 
                 page = AnnouncedViewer(
-                    session,
+                    played,
                     server,
                     report,
                     access=access,
@@ -109,7 +103,7 @@ def play(options: Options) -> None:
                     else options.open_browser,
                     desk=PlayDesk,
                 )
-                page.start(cast("Pacer", player))
+                page.start(player)
             else:
                 server.offer_page(None)
             player.run()
