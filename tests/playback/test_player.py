@@ -300,8 +300,8 @@ def test_an_incomplete_recording_is_played_with_a_warning(
         assert (f"[{RECORDING_UNFINISHED}]" in done.stderr) == warned
 
 
-def test_a_recording_refuses_changes_and_keeps_reports(drive: Drive) -> None:
-    played = PlaybackSession(open_recording(drive.path), hold=False)
+def test_a_recording_refuses_changes_and_keeps_reports(drives: Callable[[str], Drive]) -> None:
+    played = PlaybackSession(open_recording(drives("drive.mcap").path), hold=False)
     player = played.simulation
     for change in (
         lambda: player.set_pose("rosbots", Pose()),
