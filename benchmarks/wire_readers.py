@@ -76,14 +76,14 @@ def _read_ros1(uri: str, take: Callable[[str, bytearray], None]) -> None:
 
 def _read_ros2(_: str, take: Callable[[str, bytes], None]) -> None:
     from cartwheel.bridges.loop import Loop
-    from cartwheel.bridges.ros2.rtps.discovery import EndpointQos
-    from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
-    from cartwheel.bridges.ros2.rtps.participant import Participant
+    from cartwheel.bridges.ros2.environment import discovery_range, domain_id
     from cartwheel.messages.ros2_types import ros2_type
+    from rtps_lite.discovery import EndpointQos
+    from rtps_lite.participant import Participant
 
     loop = Loop(lambda error: print(error, file=sys.stderr), name="reader")
     participant = Participant(
-        loop, domain=domain_id(), reach=Reach.of(), name="reader", user_data=b"", tell=print
+        loop, domain=domain_id(), reach=discovery_range(), name="reader", user_data=b"", warn=print
     )
 
     def begin() -> None:

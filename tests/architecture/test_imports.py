@@ -152,3 +152,11 @@ def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
                     assert room_of(path) in {"world", "simulation", "cli"}, f"{path} imports mujoco"
                 elif top in homes:
                     assert room_of(path) == homes[top], f"{path} imports {top}"
+
+
+def test_rtps_lite_imports_nothing_of_cartwheel() -> None:
+    files = sorted((SOURCE.parent / "rtps_lite").glob("*.py"))
+    assert len(files) > 5
+    for path in files:
+        assert not imported_rooms(path), path
+        assert "cartwheel" not in path.read_text().lower(), path

@@ -19,15 +19,7 @@ from tests.coded import coded, raises
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2 import Ros2Bridge
 from cartwheel.bridges.ros2.dds import Dds
-from cartwheel.bridges.ros2.rtps import discovery, wire
-from cartwheel.bridges.ros2.rtps import participant as participant_module
-from cartwheel.bridges.ros2.rtps.discovery import ParticipantData, encode_participant
-from cartwheel.bridges.ros2.rtps.network import Network, Reach, domain_id
-from cartwheel.bridges.ros2.rtps.outbox import Outbox
-from cartwheel.bridges.ros2.rtps.participant import Participant
-from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
-from cartwheel.bridges.ros2.rtps.room import Room
-from cartwheel.bridges.ros2.rtps.writer import Writer
+from cartwheel.bridges.ros2.environment import discovery_range, domain_id
 from cartwheel.cli.arguments import rmw
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.wires import (
@@ -39,6 +31,16 @@ from cartwheel.codes.wires import (
 )
 from cartwheel.graph import Graph
 from cartwheel.messages.ros2_types import ros2_type
+from rtps_lite import discovery, wire
+from rtps_lite import participant as participant_module
+from rtps_lite.discovery import ParticipantData, encode_participant
+from rtps_lite.interface import UnknownHostError
+from rtps_lite.network import Network, Reach
+from rtps_lite.outbox import Outbox
+from rtps_lite.participant import Participant
+from rtps_lite.reader import Reader, Taken
+from rtps_lite.room import Room
+from rtps_lite.writer import Writer
 
 QOS = discovery.EndpointQos()
 PATIENCE = 60.0
@@ -433,10 +435,10 @@ class Rude:
         self._participant = Participant(
             self._loop,
             domain=domain,
-            reach=Reach.of(),
+            reach=discovery_range(),
             name="rude",
             user_data=b"",
-            tell=lambda _: None,
+            warn=lambda _: None,
         )
         self._count = 0
         self._loop.start()
@@ -580,9 +582,9 @@ def test_variables_that_make_no_sense_are_told_of() -> None:
         with raises(ROS_VARIABLE_INVALID, variable="ROS_DOMAIN_ID"):
             domain_id({"ROS_DOMAIN_ID": wrong})
     with raises(ROS_VARIABLE_INVALID, variable="ROS_AUTOMATIC_DISCOVERY_RANGE"):
-        Reach.of({"ROS_AUTOMATIC_DISCOVERY_RANGE": "GALAXY"})
+        discovery_range({"ROS_AUTOMATIC_DISCOVERY_RANGE": "GALAXY"})
     with raises(ROS_VARIABLE_INVALID, variable="ROS_LOCALHOST_ONLY"):
-        Reach.of({"ROS_LOCALHOST_ONLY": "yes"})
+        discovery_range({"ROS_LOCALHOST_ONLY": "yes"})
     with raises(ROS_NODE_NAME_INVALID):
         Ros2Bridge(Graph(), node="my node")
     with raises(OPTION_INVALID, option="--rmw", value="carrier_pigeon"):
@@ -602,7 +604,7 @@ def test_variables_that_make_no_sense_are_told_of() -> None:
     ],
 )
 def test_discovery_reaches_as_far_as_ros_says(variables: dict[str, str], expected: str) -> None:
-    assert Reach.of(variables).range == expected
+    assert discovery_range(variables).range == expected
 
 
 def test_on_this_computer_only_nobody_else_can_connect(bridged: Ros2Bridged) -> None:
@@ -612,8 +614,10 @@ def test_on_this_computer_only_nobody_else_can_connect(bridged: Ros2Bridged) -> 
     assert not network.hears("192.0.2.77")
 
 
-def test_who_is_named_is_heard_and_nobody_where_that_is_off() -> None:
-    peers = Reach.of({"ROS_STATIC_PEERS": "localhost; 192.0.2.7 ;;"})
+def test_who_is_named_is_heard_and_nobody_where_that_is_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    peers = discovery_range({"ROS_STATIC_PEERS": "localhost; 192.0.2.7 ;;"})
     assert peers.peers == ("localhost", "192.0.2.7")
     network = Network(DOMAIN + 6, peers)
     try:
@@ -623,14 +627,18 @@ def test_who_is_named_is_heard_and_nobody_where_that_is_off() -> None:
         assert ("192.0.2.7", 7400 + 250 * (DOMAIN + 6) + 10) in network.announce
     finally:
         network.close()
-    off = Network(DOMAIN + 6, Reach.of({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
+    off = Network(DOMAIN + 6, discovery_range({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
     try:
         assert not off.announce
         assert not off.hears("127.0.0.1")
     finally:
         off.close()
-    with raises(ROS_VARIABLE_INVALID, variable="ROS_STATIC_PEERS"):
-        Network(DOMAIN + 6, Reach.of({"ROS_STATIC_PEERS": "no.such.host.invalid"}))
+    with pytest.raises(UnknownHostError, match=r"^no\.such\.host\.invalid$"):
+        Network(DOMAIN + 6, Reach(peers=("no.such.host.invalid",)))
+    monkeypatch.setenv("ROS_STATIC_PEERS", "no.such.host.invalid")
+    loop = Loop(lambda _: None, name="test")
+    with raises(ROS_VARIABLE_INVALID, variable="ROS_STATIC_PEERS", value="no.such.host.invalid"):
+        Dds(loop, node="gazebo", namespace="/", tell=lambda _: None)
 
 
 def test_a_peer_is_heard_by_what_its_name_means(monkeypatch: pytest.MonkeyPatch) -> None:

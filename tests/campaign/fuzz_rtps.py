@@ -14,12 +14,12 @@ from tests.campaign.target import FaultError, Target
 
 from cartwheel.bridges.ros2.dds import Dds
 from cartwheel.bridges.ros2.middleware import DEFAULT, LATCHED, SENSOR, Reply, Served
-from cartwheel.bridges.ros2.rtps import participant as participants
-from cartwheel.bridges.ros2.rtps import room, wire
-from cartwheel.bridges.ros2.rtps.discovery import EndpointQos
 from cartwheel.errors import GraphError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 from cartwheel.messages.ros2_types import ros2_service, ros2_type
+from rtps_lite import participant as participants
+from rtps_lite import room, wire
+from rtps_lite.discovery import EndpointQos
 
 OURS, THEIRS = ("127.0.0.1", 20001), ("127.0.0.1", 20002)
 _TWIST, _ODOMETRY, _TF = (
@@ -157,7 +157,7 @@ def _exchange() -> list[bytes]:
             reach=mock.Mock(),
             name="peer",
             user_data=b"enclave=/;",
-            tell=lambda _: None,
+            warn=lambda _: None,
         )
     peer.start()
     twist, odometry = ros2_type(_TWIST).dds, ros2_type(_ODOMETRY).dds

@@ -14,25 +14,29 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.environment import discovery_range, domain_id
 from cartwheel.bridges.ros2.middleware import Profile, Served
-from cartwheel.bridges.ros2.rtps import discovery, wire
-from cartwheel.bridges.ros2.rtps.discovery import Endpoint, EndpointQos
-from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
-from cartwheel.bridges.ros2.rtps.participant import Participant
-from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
-from cartwheel.bridges.ros2.rtps.wire import Guid, Prefix
-from cartwheel.bridges.ros2.rtps.writer import ReaderProxy, Writer
 from cartwheel.codes.wires import (
     CALL_LIMIT,
+    DOMAIN_FULL,
     NETWORK_FULL,
+    PEER_LIMIT,
     PEER_TYPE_MISMATCH,
     QOS_INCOMPATIBLE,
+    ROS_VARIABLE_INVALID,
     SLOW_SUBSCRIBER,
     UNRESPONSIVE_SUBSCRIBER,
 )
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages import encode_cdr, message_class
 from cartwheel.messages.ros2_types import Ros2Type, ros2_type
+from rtps_lite import discovery, wire
+from rtps_lite.discovery import Endpoint, EndpointQos
+from rtps_lite.interface import DomainFullError, LimitWarning, UnknownHostError
+from rtps_lite.participant import Participant
+from rtps_lite.reader import Reader, Taken
+from rtps_lite.wire import Guid, Prefix
+from rtps_lite.writer import ReaderProxy, Writer
 
 _NODES = "ros_discovery_info"
 _ENTITIES = "rmw_dds_common/msg/ParticipantEntitiesInfo"
@@ -69,21 +73,37 @@ class Dds:
         self._tell = tell
         self._name = f"{namespace.rstrip('/')}/{node}"
         self._domain = domain_id()
-        self._reach = Reach.of()
-        self.participant = Participant(
-            loop,
-            domain=self._domain,
-            reach=self._reach,
-            name=self._name,
-            user_data=b"enclave=/;",
-            tell=tell,
-        )
+        self._reach = discovery_range()
+        try:
+            self.participant = Participant(
+                loop,
+                domain=self._domain,
+                reach=self._reach,
+                name=self._name,
+                user_data=b"enclave=/;",
+                warn=self._limit_reached,
+            )
+        except DomainFullError:
+            raise CartwheelError(
+                "all ports for participants in this ROS domain are in use",
+                code=DOMAIN_FULL,
+                hint="Set ROS_DOMAIN_ID to a different domain.",
+            ) from None
+        except UnknownHostError as error:
+            raise CartwheelError(
+                f'ROS_STATIC_PEERS contains the unknown host "{error}"',
+                code=ROS_VARIABLE_INVALID,
+                values={"variable": "ROS_STATIC_PEERS", "value": str(error)},
+            ) from None
         self.on_others: Callable[[], None] = lambda: None
         self._endpoints: dict[Writer | Reader, str] = {}
         """Endpoints, with their nodes."""
         self._info: Writer | None = None
         self._due = False
         self._closed = False
+
+    def _limit_reached(self, warning: LimitWarning) -> None:
+        self._tell(PEER_LIMIT.diagnostic(warning.message, values=warning.values))
 
     @property
     def description(self) -> str:

@@ -18,8 +18,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.ros2.environment import discovery_range, domain_id
 from cartwheel.bridges.ros2.middleware import Answer, Profile, Served
-from cartwheel.bridges.ros2.rtps.network import Reach, domain_id
 from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token, published
 from cartwheel.codes.wires import INCOMING_DROPPED, PACKAGE_MISSING, PEER_LIMIT, ZENOH_NOT_OPENED
 from cartwheel.errors import CartwheelError, Diagnostic
@@ -74,7 +74,7 @@ class Zenoh:
         self._name = f"{namespace.rstrip('/')}/{node}"
         self._tell = tell
         self._domain = domain_id()
-        self._reach = Reach.of()
+        self._reach = discovery_range()
         self._is_router = False
         self._session: Any = None
         self._zid = ""

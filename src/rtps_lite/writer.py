@@ -8,10 +8,10 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from cartwheel.bridges.ros2.rtps import wire
-from cartwheel.bridges.ros2.rtps.discovery import Address, Endpoint
-from cartwheel.bridges.ros2.rtps.outbox import Outbox, Parts, Send
-from cartwheel.bridges.ros2.rtps.wire import UNKNOWN, Guid, Prefix
+from rtps_lite import wire
+from rtps_lite.discovery import Address, Endpoint
+from rtps_lite.outbox import Outbox, Parts, Send
+from rtps_lite.wire import UNKNOWN, Guid, Prefix
 
 _FIRST_AGAIN, _LAST_AGAIN = 0.05, 2.0
 """Initial and maximum interval in s between reminders to a reader that does not respond."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 VERSION = b"\x02\x03"
 VENDOR = b"\x01\x64"
-"""Vendor ID of Cartwheel, above the assigned ones."""
+"""Vendor ID of this implementation, above the assigned ones."""
 CYCLONE = b"\x01\x10"
 
 Prefix = bytes

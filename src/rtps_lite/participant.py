@@ -10,10 +10,9 @@ from collections import Counter, OrderedDict
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-from cartwheel.bridges.loop import READ, Loop
-from cartwheel.bridges.ros2.rtps import discovery, wire
-from cartwheel.bridges.ros2.rtps.alarm import Alarm
-from cartwheel.bridges.ros2.rtps.discovery import (
+from rtps_lite import discovery, wire
+from rtps_lite.alarm import Alarm
+from rtps_lite.discovery import (
     Address,
     Endpoint,
     EndpointQos,
@@ -21,14 +20,13 @@ from cartwheel.bridges.ros2.rtps.discovery import (
     decode_endpoint,
     decode_participant,
 )
-from cartwheel.bridges.ros2.rtps.network import LOOPBACK, PARTICIPANTS, Network, Reach
-from cartwheel.bridges.ros2.rtps.outbox import Outbox
-from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
-from cartwheel.bridges.ros2.rtps.room import Room
-from cartwheel.bridges.ros2.rtps.wire import Guid, MalformedError, Prefix, Received
-from cartwheel.bridges.ros2.rtps.writer import Writer
-from cartwheel.codes.wires import PEER_LIMIT
-from cartwheel.errors import Diagnostic
+from rtps_lite.interface import READ, EventLoop, LimitWarning
+from rtps_lite.network import LOOPBACK, PARTICIPANTS, Network, Reach
+from rtps_lite.outbox import Outbox
+from rtps_lite.reader import Reader, Taken
+from rtps_lite.room import Room
+from rtps_lite.wire import Guid, MalformedError, Prefix, Received
+from rtps_lite.writer import Writer
 
 _ANNOUNCE_FIRST, _ANNOUNCE = (0.0, 0.1, 0.3, 0.6, 1.0), 3.0
 """Times in s of the first announcements after startup, and the interval of all later ones."""
@@ -87,25 +85,25 @@ class Participant:
         reach: Discovery range.
         name: Name for lists of participants.
         user_data: User data of the participant.
-        tell: Receives warnings.
+        warn: Receives warnings.
 
     Raises:
-        CartwheelError: No port is free.
+        DomainFullError: No port is free.
     """
 
     def __init__(
         self,
-        loop: Loop,
+        loop: EventLoop,
         *,
         domain: int,
         reach: Reach,
         name: str,
         user_data: bytes,
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[LimitWarning], None],
     ) -> None:
         self._loop = loop
         self._domain = domain
-        self._tell = tell
+        self._warn = warn
         self._network = Network(domain, reach)
         # Vendor, host, process, and a random part for several participants in one process.
         self.prefix: Prefix = (
@@ -136,7 +134,7 @@ class Participant:
         """Replaced participants, minus the number that the rate limit has released."""
         self._count = 0
         """Number of remote endpoints."""
-        self._told_due = False
+        self._others_due = False
         self._room = Room()
         self._alarm = Alarm(loop)
         self._outbox = Outbox(self._send, self._alarm.after)
@@ -400,7 +398,7 @@ class Participant:
         self._send((self._announcement,), remote.address)
         self._greet(remote)
         for wait in _AGAIN:
-            self._loop.after(wait, lambda: self._tell_again(remote))
+            self._loop.after(wait, lambda: self._announce_again(remote))
 
     def _has_place(self, prefix: Prefix, host: str) -> bool:
         """Whether one more participant is allowed. It may replace one that has not responded."""
@@ -417,9 +415,9 @@ class Participant:
             ):
                 self._lose(oldest.data.prefix)
                 return True
-        self._tell(
-            PEER_LIMIT.diagnostic(
-                f"there are more than {PARTICIPANTS} participants on {host}, or more than "
+        self._warn(
+            LimitWarning(
+                message=f"there are more than {PARTICIPANTS} participants on {host}, or more than "
                 f"{_PARTICIPANTS} in total, so some of them are ignored",
                 values={"host": host, "most": PARTICIPANTS},
             )
@@ -438,16 +436,16 @@ class Participant:
         self._others_changed()
 
     def _others_changed(self) -> None:
-        if not self._told_due:
-            self._told_due = True
-            self._loop.after(_GATHER, self._tell_of_others)
+        if not self._others_due:
+            self._others_due = True
+            self._loop.after(_GATHER, self._announce_others)
 
-    def _tell_of_others(self) -> None:
-        self._told_due = False
+    def _announce_others(self) -> None:
+        self._others_due = False
         if not self._closed:
             self.on_endpoints()
 
-    def _tell_again(self, remote: _Remote) -> None:
+    def _announce_again(self, remote: _Remote) -> None:
         if not remote.knows_us and self._remotes.get(remote.data.prefix) is remote:
             self._send((self._announcement,), remote.address)
 
@@ -530,11 +528,11 @@ class Participant:
             return
         if endpoint.guid not in known:
             if len(known) >= _ENDPOINTS or self._count >= _ENDPOINTS_IN_ALL:
-                self._tell(
-                    PEER_LIMIT.diagnostic(
-                        f"there are more than {_ENDPOINTS} publishers or subscribers in one "
-                        f"process, or more than {_ENDPOINTS_IN_ALL} in total, so some of them are "
-                        "ignored",
+                self._warn(
+                    LimitWarning(
+                        message=f"there are more than {_ENDPOINTS} publishers or subscribers in "
+                        f"one process, or more than {_ENDPOINTS_IN_ALL} in total, so some of them "
+                        "are ignored",
                         values={"most": _ENDPOINTS},
                     )
                 )
@@ -570,10 +568,10 @@ class Participant:
         if not ours.topic or ours.topic != other.topic:
             return False
         if len(connected) >= _MATCHES and other.guid not in connected:
-            self._tell(
-                PEER_LIMIT.diagnostic(
-                    f"more than {_MATCHES} publishers or subscribers match {ours.topic}, so some "
-                    "of them are ignored",
+            self._warn(
+                LimitWarning(
+                    message=f"more than {_MATCHES} publishers or subscribers match {ours.topic}, "
+                    "so some of them are ignored",
                     values={"topic": ours.topic, "most": _MATCHES},
                 )
             )

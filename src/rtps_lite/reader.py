@@ -6,11 +6,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from cartwheel.bridges.ros2.rtps import wire
-from cartwheel.bridges.ros2.rtps.discovery import Address, Endpoint
-from cartwheel.bridges.ros2.rtps.outbox import Send
-from cartwheel.bridges.ros2.rtps.room import LARGEST, Room
-from cartwheel.bridges.ros2.rtps.wire import Guid
+from rtps_lite import wire
+from rtps_lite.discovery import Address, Endpoint
+from rtps_lite.outbox import Send
+from rtps_lite.room import LARGEST, Room
+from rtps_lite.wire import Guid
 
 _WAITING = 256
 """Maximum number of samples per writer that wait for earlier ones; one request covers as many."""

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 
 import pytest
 
-from cartwheel.bridges.ros2.rtps import discovery, wire
-from cartwheel.bridges.ros2.rtps.discovery import Endpoint, EndpointQos
-from cartwheel.bridges.ros2.rtps.outbox import Outbox
-from cartwheel.bridges.ros2.rtps.reader import Reader, Taken
-from cartwheel.bridges.ros2.rtps.writer import Writer
+from rtps_lite import discovery, wire
+from rtps_lite.discovery import Endpoint, EndpointQos
+from rtps_lite.outbox import Outbox
+from rtps_lite.reader import Reader, Taken
+from rtps_lite.writer import Writer
 
 OURS, THEIRS = b"w" * 12, b"r" * 12
 WRITER, READER = b"\0\0\1\3", b"\0\0\1\4"

@@ -9,7 +9,7 @@ import struct
 import sys
 from collections.abc import Callable
 
-from cartwheel.bridges.loop import READ, Loop
+from rtps_lite.interface import READ, EventLoop
 
 _MONOTONIC, _FLAGS = 1, os.O_NONBLOCK | os.O_CLOEXEC
 
@@ -23,7 +23,7 @@ class Alarm:
         loop: Event loop.
     """
 
-    def __init__(self, loop: Loop) -> None:
+    def __init__(self, loop: EventLoop) -> None:
         self._loop = loop
         self._ring: Callable[[], None] = lambda: None
         self._set = False

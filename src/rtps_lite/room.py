@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from cartwheel.bridges.ros2.rtps.wire import Prefix
+from rtps_lite.wire import Prefix
 
 LARGEST = 128 << 20
 """Maximum size of a sample in bytes. A point cloud with 1920 x 1080 points has 66 MB. A message

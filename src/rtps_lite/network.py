@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
-import os
 import socket
 import struct
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from cartwheel.bridges.ros2.rtps.discovery import Address
-from cartwheel.codes.wires import DOMAIN_FULL, ROS_VARIABLE_INVALID
-from cartwheel.errors import CartwheelError
+from rtps_lite.discovery import Address
+from rtps_lite.interface import DomainFullError, UnknownHostError
 
 GROUP = "239.255.0.1"
 LOOPBACK = "127.0.0.1"
 _BASE, _PER_DOMAIN, _PER_PARTICIPANT, _UNICAST = 7400, 250, 2, 10
-_LAST_DOMAIN = 232
+LAST_DOMAIN = 232
 PARTICIPANTS = 120
 """Maximum number of participants per computer, because there is one port for each."""
 _PEERS = 32
@@ -36,64 +33,6 @@ class Reach:
     range: Range = "LOCALHOST"
     peers: tuple[str, ...] = ()
     """Hosts to which announcements are sent individually."""
-
-    @classmethod
-    def of(cls, environment: Mapping[str, str] = os.environ) -> Reach:
-        """Range from ROS environment variables. The default is this computer only.
-
-        Source: REP 2017's ``ROS_AUTOMATIC_DISCOVERY_RANGE`` and ``ROS_STATIC_PEERS``, and the
-        older ``ROS_LOCALHOST_ONLY``.
-
-        Raises:
-            CartwheelError: A variable has an invalid value.
-        """
-        peers = tuple(
-            peer.strip()
-            for peer in environment.get("ROS_STATIC_PEERS", "").split(";")
-            if peer.strip()
-        )
-        only = environment.get("ROS_LOCALHOST_ONLY", "").strip()
-        given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
-        if only not in ("", "0", "1"):
-            raise CartwheelError(
-                f'ROS_LOCALHOST_ONLY has the invalid value "{only}"',
-                code=ROS_VARIABLE_INVALID,
-                hint="Set it to 0 or 1.",
-                values={"variable": "ROS_LOCALHOST_ONLY", "value": only},
-            )
-        if only == "1":
-            return cls(range="LOCALHOST")
-        if not given:
-            return cls(range="SUBNET" if only == "0" else "LOCALHOST", peers=peers)
-        if given == "OFF":
-            return cls(range="OFF")
-        if given == "LOCALHOST":
-            return cls(range="LOCALHOST", peers=peers)
-        if given in ("SUBNET", "SYSTEM_DEFAULT"):
-            return cls(range="SUBNET", peers=peers)
-        raise CartwheelError(
-            f'ROS_AUTOMATIC_DISCOVERY_RANGE has the invalid value "{given}"',
-            code=ROS_VARIABLE_INVALID,
-            hint="Set it to OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT.",
-            values={"variable": "ROS_AUTOMATIC_DISCOVERY_RANGE", "value": given},
-        )
-
-
-def domain_id(environment: Mapping[str, str] = os.environ) -> int:
-    """``ROS_DOMAIN_ID``; 0 if unset.
-
-    Raises:
-        CartwheelError: The domain is invalid.
-    """
-    given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
-    if not given.isdecimal() or int(given) > _LAST_DOMAIN:
-        raise CartwheelError(
-            f'ROS_DOMAIN_ID has the invalid value "{given}"',
-            code=ROS_VARIABLE_INVALID,
-            hint=f"Set it to a number from 0 to {_LAST_DOMAIN}.",
-            values={"variable": "ROS_DOMAIN_ID", "value": given},
-        )
-    return int(given)
 
 
 def own_addresses() -> dict[str, str]:
@@ -113,11 +52,12 @@ class Network:
     """Sockets of a participant.
 
     Args:
-        domain: See `domain_id`.
+        domain: DDS domain, 0 to 232.
         reach: Discovery range.
 
     Raises:
-        CartwheelError: No port is free.
+        DomainFullError: No port is free.
+        UnknownHostError: A peer cannot be resolved.
     """
 
     def __init__(self, domain: int, reach: Reach) -> None:
@@ -188,11 +128,7 @@ class Network:
                 continue
             return sock, port
         sock.close()
-        raise CartwheelError(
-            "all ports for participants in this ROS domain are in use",
-            code=DOMAIN_FULL,
-            hint="Set ROS_DOMAIN_ID to a different domain.",
-        )
+        raise DomainFullError
 
     def _join(self, port: int) -> socket.socket:
         sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -224,9 +160,5 @@ class Network:
             try:
                 found.append(socket.gethostbyname(peer))
             except OSError:
-                raise CartwheelError(
-                    f'ROS_STATIC_PEERS contains the unknown host "{peer}"',
-                    code=ROS_VARIABLE_INVALID,
-                    values={"variable": "ROS_STATIC_PEERS", "value": peer},
-                ) from None
+                raise UnknownHostError(peer) from None
         return found

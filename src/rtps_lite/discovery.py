@@ -7,7 +7,7 @@ import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from cartwheel.bridges.ros2.rtps.wire import VENDOR, VERSION, Guid, MalformedError, Prefix
+from rtps_lite.wire import VENDOR, VERSION, Guid, MalformedError, Prefix
 
 PARTICIPANT = b"\x00\x00\x01\xc1"
 SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"

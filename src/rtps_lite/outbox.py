@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from cartwheel.bridges.ros2.rtps.discovery import Address
+from rtps_lite.discovery import Address
 
 Parts = Sequence[bytes | memoryview]
 """Parts of a datagram."""
