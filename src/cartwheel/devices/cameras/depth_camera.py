@@ -16,6 +16,8 @@ from cartwheel.devices.cameras.info import INFO
 from cartwheel.devices.point_clouds import point_cloud2
 from cartwheel.messages import header, message_class
 
+Floats = NDArray[np.float32]
+
 _MILLIMETRES = 1000.0
 _FURTHEST = float(np.finfo(np.float32).max)
 
@@ -111,11 +113,11 @@ class DepthImager:
         if self._info is not None and self._info.wanted:
             self._info.publish(self._imager.calibration.message(now))
 
-    def publish(self, now: int, pixels: Pixels, depths: NDArray[np.float32]) -> None:
+    def publish(self, now: int, pixels: Pixels, depths: Floats) -> None:
         """Publishes depths in m, and points with the colours of `pixels`."""
         moment = header(now, self._imager.frame)
         config = self._config
-        clipped = self._clip(depths, config.nearest, config.furthest)
+        clipped = clip(depths, config.nearest, config.furthest, beyond=config.beyond)
         if self._image.wanted:
             self._image.publish(self._depth_image(moment, clipped))
         if self._compressed is not None and self._compressed.wanted:
@@ -124,30 +126,19 @@ class DepthImager:
             near, far = config.points_nearest, config.points_furthest
             if near is not None or far is not None:
                 near = config.nearest if near is None else near
-                clipped = self._clip(depths, near, config.furthest if far is None else far)
+                far = config.furthest if far is None else far
+                clipped = clip(depths, near, far, beyond=config.beyond)
             dense = bool(np.isfinite(clipped).all())
             self._points.publish(point_cloud2(moment, self._cloud(pixels, clipped), dense=dense))
 
     def _points_wanted(self) -> bool:
         return self._points is not None and self._points.wanted
 
-    def _clip(
-        self, depths: NDArray[np.float32], nearest: float, furthest: float
-    ) -> NDArray[np.float32]:
-        # Limits are restricted to the range of float32.
-        near = depths <= max(-_FURTHEST, min(nearest, _FURTHEST))
-        far = depths >= max(-_FURTHEST, min(furthest, _FURTHEST))
-        if self._config.beyond == "nan":
-            # inf, where the ray hits nothing, also becomes nan if the limit is inf.
-            return np.where(near | far, np.float32(np.nan), depths)
-        return np.where(near, np.float32(-np.inf), np.where(far, np.float32(np.inf), depths))
-
-    def _depth_image(self, moment: Any, clipped: NDArray[np.float32]) -> Any:
+    def _depth_image(self, moment: Any, clipped: Floats) -> Any:
         height, width = clipped.shape
         data: NDArray[Any] = clipped.astype("<f4", copy=False)
         if self._config.millimetres:
-            whole = np.nan_to_num(clipped * _MILLIMETRES, nan=0.0, posinf=0.0, neginf=0.0)
-            data = np.where(whole > np.iinfo(np.uint16).max, 0, whole).astype("<u2")
+            data = to_millimetres(clipped)
         return self._message(
             header=moment,
             height=height,
@@ -158,24 +149,56 @@ class DepthImager:
             data=np.ascontiguousarray(data).reshape(-1).view(np.uint8),
         )
 
-    def _cloud(self, pixels: Pixels, clipped: NDArray[np.float32]) -> NDArray[np.void]:
+    def _cloud(self, pixels: Pixels, clipped: Floats) -> NDArray[np.void]:
         cloud = np.zeros(clipped.shape, dtype=POINT)
-        with np.errstate(invalid="ignore"):
-            right, down = self._right * clipped, self._down * clipped
-        if self._config.beyond == "inf":
-            # All three coordinates get the same infinity. Multiplying it by the slope of a ray
-            # would give the opposite sign on the left, and nan in the centre.
-            missing = ~np.isfinite(clipped)
-            np.copyto(right, clipped if self._config.optical else -clipped, where=missing)
-            np.copyto(down, clipped if self._config.optical else -clipped, where=missing)
-        if self._config.optical:
-            cloud["x"], cloud["y"], cloud["z"] = right, down, clipped
-        else:
-            cloud["x"] = clipped
-            np.negative(right, out=cloud["y"])
-            np.negative(down, out=cloud["z"])
+        infinite, optical = self._config.beyond == "inf", self._config.optical
+        positions = points(clipped, self._right, self._down, infinite=infinite, optical=optical)
+        for name, values in zip("xyz", positions, strict=True):
+            cloud[name] = values
         colours = np.zeros((*clipped.shape, 4), dtype=np.uint8)
         # 0x00RRGGBB, little-endian.
         colours[..., 2], colours[..., 1], colours[..., 0] = np.moveaxis(pixels, -1, 0)
         cloud["rgb"] = colours.view("<f4")[..., 0]
         return cloud
+
+
+def clip(
+    depths: Floats, nearest: float, furthest: float, *, beyond: Literal["nan", "inf"]
+) -> Floats:
+    """Returns depths in m of which those outside the limits are marked; see `DepthConfig`."""
+    # Limits are restricted to the range of float32.
+    near = depths <= max(-_FURTHEST, min(nearest, _FURTHEST))
+    far = depths >= max(-_FURTHEST, min(furthest, _FURTHEST))
+    if beyond == "nan":
+        # inf, where the ray hits nothing, also becomes nan if the limit is inf.
+        return np.where(near | far, np.float32(np.nan), depths)
+    return np.where(near, np.float32(-np.inf), np.where(far, np.float32(np.inf), depths))
+
+
+def to_millimetres(depths: Floats) -> NDArray[np.uint16]:
+    """Converts depths in m to mm; 0 if a depth is not finite or does not fit into 16 bits."""
+    whole = np.nan_to_num(depths * _MILLIMETRES, nan=0.0, posinf=0.0, neginf=0.0)
+    return np.where(whole > np.iinfo(np.uint16).max, 0, whole).astype("<u2")
+
+
+def points(
+    depths: Floats, right: Floats, down: Floats, *, infinite: bool, optical: bool
+) -> tuple[Floats, Floats, Floats]:
+    """Returns the coordinates of points, m.
+
+    Args:
+        depths: m.
+        right: Direction of each pixel to the right, at depth 1.
+        down: Direction of each pixel downward, at depth 1.
+        infinite: Points at an infinite depth have three infinite coordinates.
+        optical: x right, y down, z forward; otherwise x forward, y left, z up.
+    """
+    with np.errstate(invalid="ignore"):
+        right, down = right * depths, down * depths
+    if infinite:
+        # All three coordinates get the same infinity. Multiplying it by the slope of a ray
+        # would give the opposite sign on the left, and nan in the centre.
+        missing = ~np.isfinite(depths)
+        np.copyto(right, depths if optical else -depths, where=missing)
+        np.copyto(down, depths if optical else -depths, where=missing)
+    return (right, down, depths) if optical else (depths, -right, -down)
