@@ -1,0 +1,62 @@
+"""The joints of a drive: wheels, which follow a speed, and steering joints, which follow an angle."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from cartwheel.errors import Origin
+from cartwheel.simulation import Part
+
+
+class CommandedJoint(Protocol):
+    """A joint that a drive measures and commands."""
+
+    command: float
+    """Speed of a wheel, rad/s, or angle of a steering joint, rad."""
+
+    @property
+    def position(self) -> float:
+        """rad."""
+
+    @property
+    def velocity(self) -> float:
+        """rad/s."""
+
+
+class Wheel:
+    """A wheel with a motor.
+
+    Args:
+        part: The model's part of the simulation.
+        joint: Name of the joint.
+        max_effort: Maximum torque, N m; None: the effort limit of the joint.
+        origin: Origin for errors.
+
+    Raises:
+        UnknownNameError: The joint does not exist.
+    """
+
+    def __init__(
+        self, part: Part, joint: str, *, max_effort: float | None, origin: Origin | None
+    ) -> None:
+        self._joint = part.joint(joint, origin=origin)
+        self._motor = part.velocity_motor(joint, max_effort=max_effort, origin=origin)
+
+    @property
+    def position(self) -> float:
+        """rad."""
+        return self._joint.position
+
+    @property
+    def velocity(self) -> float:
+        """rad/s."""
+        return self._joint.velocity
+
+    @property
+    def command(self) -> float:
+        """Target speed, rad/s."""
+        return self._motor.target
+
+    @command.setter
+    def command(self, speed: float) -> None:
+        self._motor.command(speed)
