@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Literal
 
 from cartwheel.component import Scope
 from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
@@ -82,14 +83,14 @@ class MecanumWheelsConfig:
     """Radius of all wheels, m."""
     reach: float
     """Half the sum of the wheel base and the track, m."""
-    limits: tuple[Limits, Limits, Limits] = field(default=(Limits(), Limits(), Limits()))
+    limits: tuple[Limits, Limits, Limits] = (Limits(), Limits(), Limits())
     """Limits on the forward and sideways velocity and on the yaw rate."""
     offset: Vec3 | None = None
     """Pose of the base frame, which the commands and the odometry describe, relative to the wheels'
     centre: x and y, m, and yaw, rad. None: both are equal."""
-    subtracts: str = "rotations"
-    """Measure a rolled distance from the difference of two rotations, ``rotations``, or as the
-    difference of two distances, ``distances``. The results differ in rounding."""
+    subtracts: Literal["rotations", "distances"] = "rotations"
+    """What is subtracted to obtain the motion in a time step: the rotations of the wheels, or the
+    distances that they rolled. The results differ only in rounding."""
 
 
 class MecanumWheels:
@@ -97,8 +98,9 @@ class MecanumWheels:
 
     Args:
         config: Dimensions and limits.
-        wheels: The wheels at each corner. The first of them is measured.
+        wheels: The wheels at each corner. The first wheel of a corner is measured.
         servo: Pushes a robot whose wheels do not model rollers; see `has_rollers`.
+        reckoning: The estimate.
     """
 
     def __init__(
@@ -111,6 +113,129 @@ class MecanumWheels:
         self._config = config
         self._wheels = wheels
         self._servo = servo
-        self.reckoning = reckoning
+        self._reckoning = reckoning
         self._limiters = [Limiter(limits) for limits in config.limits]
-        self.restart()
+        self._positions: list[float] | None = None
+
+    def restart(self) -> None:
+        """Restarts the estimate at the origin, and forgets limited commands."""
+        self._positions = None
+        self._reckoning.restart()
+        for limiter in self._limiters:
+            limiter.reset()
+
+    def command(self, wanted: Vec3, seconds: float) -> Vec3:
+        """Commands the wheels.
+
+        Args:
+            wanted: Forward and sideways velocity of the base frame, m/s, and yaw rate, rad/s.
+            seconds: Time since the last command, s.
+
+        Returns:
+            The limited command.
+        """
+        forward, sideways, turn = (
+            limiter.step(value, seconds)
+            for limiter, value in zip(self._limiters, wanted, strict=True)
+        )
+        self.push(forward, sideways, turn)
+        config = self._config
+        center = (forward, sideways, turn)
+        if config.offset is not None:
+            center = at_center(center, config.offset)
+        for wheels, speed in zip(self._wheels, wheel_speeds(*center, config.reach), strict=True):
+            for wheel in wheels:
+                wheel.command = speed / config.radius
+        return forward, sideways, turn
+
+    def measure(self, seconds: float) -> None:
+        """Updates the estimate from the rotation in the last `seconds`.
+
+        The first call after a restart only measures the positions of the wheels.
+        """
+        config = self._config
+        early, late = (
+            (config.radius, 1.0) if config.subtracts == "distances" else (1.0, config.radius)
+        )
+        positions = [wheels[0].position * early for wheels in self._wheels]
+        if self._positions is not None:
+            front_left, front_right, back_left, back_right = (
+                (now - before) * late
+                for now, before in zip(positions, self._positions, strict=True)
+            )
+            motion = wheels_motion(
+                (front_left, front_right, back_left, back_right), config.reach
+            )
+            if config.offset is not None:
+                motion = at_base(motion, config.offset)
+            forward, sideways, turn = motion
+            self._reckoning.go(forward, turn, seconds, sideways=sideways)
+        self._positions = positions
+
+    def stop(self) -> None:
+        """Stops the wheels and the robot immediately."""
+        for wheels in self._wheels:
+            for wheel in wheels:
+                wheel.command = 0.0
+        self.push(0.0, 0.0, 0.0)
+
+    def push(self, forward: float, sideways: float, turn: float) -> None:
+        """Pushes a robot without rollers at velocities in m/s and rad/s."""
+        if self._servo is not None:
+            self._servo.command((forward, sideways, None), (None, None, turn))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MecanumDriveConfig:
+    front_left: tuple[str, ...]
+    """Joints of the front left wheels."""
+    front_right: tuple[str, ...]
+    """Joints of the front right wheels."""
+    back_left: tuple[str, ...]
+    """Joints of the back left wheels."""
+    back_right: tuple[str, ...]
+    """Joints of the back right wheels."""
+    wheels: MecanumWheelsConfig
+    """Dimensions and limits."""
+    drive: DriveConfig
+    """Topics and rates."""
+
+
+class MecanumDrive(Drive):
+    """Drives mecanum wheels from Twist commands and publishes odometry from their rotation.
+
+    A servo pushes robots whose wheels do not model rollers.
+
+    Raises:
+        UnknownNameError: A joint does not exist.
+    """
+
+    def __init__(self, scope: Scope, config: MecanumDriveConfig) -> None:
+        super().__init__(scope)
+        part, origin = self.part, self.origin
+        corners = (config.front_left, config.front_right, config.back_left, config.back_right)
+        wheels = [
+            [Wheel(part, name, max_effort=None, origin=origin) for name in names]
+            for names in corners
+        ]
+        servo = None if has_rollers(part.description) else part.body_drive(origin=origin)
+        self._reckoning = DeadReckoning()
+        self._wheels = MecanumWheels(config.wheels, wheels, servo, self._reckoning)
+        self._period = 1 / config.drive.control_rate
+        self.run(config.drive)
+
+    def reset(self) -> None:
+        super().reset()
+        self._command = (0.0, 0.0, 0.0)
+        self._wheels.restart()
+        self._wheels.push(*self._command)
+
+    def command(self, forward: float, sideways: float, turn: float) -> None:
+        self._command = (forward, sideways, turn)
+
+    def update(self, seconds: float) -> None:
+        self._wheels.command(self._command, self._period)
+        self._wheels.measure(seconds)
+
+    def motion(self) -> Motion:
+        return self._reckoning.motion()
