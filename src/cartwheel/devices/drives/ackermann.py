@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,6 +15,7 @@ from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
 from cartwheel.devices.drives.steering import angle_of_turn, rim_factors, wheel_angles
 from cartwheel.devices.elementwise import Number, clamp, copysign
 from cartwheel.messages import message_class
+from cartwheel.simulation.servo import ServoHandle
 
 _FIRST_PERIOD = 0.01
 """Duration of the first time step, in which the limits apply, s."""
@@ -42,10 +44,13 @@ class AckermannDriveConfig:
     turn: Literal["steering angle", "yaw rate"]
     """Meaning of ``angular.z``: the steering angle in rad, whose sign is inverted while the car
     reverses, or the yaw rate in rad/s."""
-    speed_limits: Limits = Limits()
+    speed_limits: Limits
     """Limits on the velocity."""
-    turn_limits: Limits = Limits()
+    turn_limits: Limits
     """Limits on ``angular.z``."""
+    steering_first: bool = False
+    """Whether the motors of the steering joints precede those of the wheels in the physics model.
+    The order only affects rounding."""
     encoded: bool = False
     """Compute the odometry from the rotation of the first two driven wheels. Otherwise, it is the
     ground-truth pose in the world."""
@@ -77,12 +82,16 @@ class AckermannDrive(Drive):
         super().__init__(scope)
         part, origin = self.part, self.origin
         self._config = config
+        steering = (config.steering_left, config.steering_right)
+        # The model contains the motors in the order in which they are requested.
+        if config.steering_first:
+            self._steering = self._servos(steering)
         self._driven = [
             [Wheel(part, name, max_effort=None, origin=origin) for name in names]
             for names in (config.left, config.right)
         ]
-        steering = (config.steering_left, config.steering_right)
-        self._steering = [part.servo(name, max_effort=None, origin=origin) for name in steering]
+        if not config.steering_first:
+            self._steering = self._servos(steering)
         self._steered = [part.joint(name, origin=origin) for name in steering]
         self._steering_wheel = None
         if config.steering_wheel is not None:
@@ -102,6 +111,9 @@ class AckermannDrive(Drive):
             for topic in (config.distance_topic, config.angle_topic)
         )
         self.run(config.drive)
+
+    def _servos(self, joints: Sequence[str]) -> list[ServoHandle]:
+        return [self.part.servo(name, max_effort=None, origin=self.origin) for name in joints]
 
     def reset(self) -> None:
         super().reset()

@@ -1,4 +1,4 @@
-"""The joints of a drive: wheels, which follow a speed, and steering joints, which follow an angle."""
+"""The joints of a drive: wheels follow a speed, and steering joints follow an angle."""
 
 from __future__ import annotations
 

@@ -25,16 +25,9 @@ class ForceBasedDriveConfig:
     """Force per linear velocity error, N s/m."""
     torque_gain: float
     """Torque per angular velocity error, N m s/rad."""
-    odometry_topic: str
-    """Topic of the odometry."""
-    odometry_frame: str
-    """Reference frame of the odometry."""
-    base: str
-    """Link whose pose is published; the root link if no link has this name."""
-    rate: float
-    """Publish rate, Hz. 0 or less: nothing is published."""
-    transform: bool
-    """Publish the transform of the odometry."""
+    odometry: OdometryConfig | None
+    """The odometry, whose covariances depend on the motion. Its base is the link whose pose is
+    published, or the root link if no link has this name. None: nothing is published."""
 
 
 class ForceBasedDrive(Component):
@@ -46,7 +39,6 @@ class ForceBasedDrive(Component):
 
     def __init__(self, scope: Scope, config: ForceBasedDriveConfig) -> None:
         super().__init__(scope)
-        self._base = self.link_or_root(config.base)
         self._start: Pose | None = None
         self.add(
             BodyVelocity(
@@ -58,23 +50,13 @@ class ForceBasedDrive(Component):
                 ),
             )
         )
-        if config.rate <= 0:
+        if config.odometry is None:
             return
-        self._odometry = self.add(
-            Odometry(
-                scope,
-                OdometryConfig(
-                    topic=config.odometry_topic,
-                    frame=config.odometry_frame,
-                    base=config.base,
-                    rate=config.rate,
-                    transform=config.transform,
-                ),
-            )
-        )
+        self._base = self.link_or_root(config.odometry.base)
+        self._odometry = self.add(Odometry(scope, config.odometry))
         # The initial pose must not depend on when the first subscriber appears.
         self.part.schedule(
-            config.rate,
+            config.odometry.rate,
             after=self._publish,
             active=lambda: self._start is None or self._odometry.wanted(),
         )

@@ -17,7 +17,7 @@ from cartwheel.geometry import Vec3
 from cartwheel.simulation.pushing import BodyDriveHandle
 
 Velocity = tuple[Number, Number, Number]
-"""Forward and sideways velocity, m/s, and yaw rate, rad/s. Or the motion during a time, m and rad."""
+"""Forward and sideways velocity, m/s, and yaw rate, rad/s; or distances, m, and a rotation, rad."""
 Corners = tuple[Number, Number, Number, Number]
 """A value for each wheel: front left, front right, back left, back right."""
 
@@ -83,7 +83,7 @@ class MecanumWheelsConfig:
     """Radius of all wheels, m."""
     reach: float
     """Half the sum of the wheel base and the track, m."""
-    limits: tuple[Limits, Limits, Limits] = (Limits(), Limits(), Limits())
+    limits: tuple[Limits, Limits, Limits]
     """Limits on the forward and sideways velocity and on the yaw rate."""
     offset: Vec3 | None = None
     """Pose of the base frame, which the commands and the odometry describe, relative to the wheels'
@@ -163,9 +163,7 @@ class MecanumWheels:
                 (now - before) * late
                 for now, before in zip(positions, self._positions, strict=True)
             )
-            motion = wheels_motion(
-                (front_left, front_right, back_left, back_right), config.reach
-            )
+            motion = wheels_motion((front_left, front_right, back_left, back_right), config.reach)
             if config.offset is not None:
                 motion = at_base(motion, config.offset)
             forward, sideways, turn = motion

@@ -79,7 +79,7 @@ def next_angle(angle: Number, target: Number, *, rate: float, seconds: float) ->
 class TricycleDrive(Drive):
     """Drives and steers one wheel from Twist commands and publishes odometry.
 
-    ``linear.x`` is the speed of the driven wheel in m/s, and ``angular.z`` its steering angle in rad.
+    ``linear.x`` is the speed of the driven wheel in m/s, ``angular.z`` its steering angle in rad.
 
     Raises:
         UnknownNameError: A joint does not exist.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
 from cartwheel.devices.drives.planar import PlanarDrive, PlanarDriveConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -76,22 +77,27 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 
     def configure(self) -> None:
         config = self.config
-        variances = (config.covariance_x, config.covariance_y, config.covariance_yaw)
+        covariance = planar_covariance(
+            config.covariance_x, config.covariance_y, config.covariance_yaw
+        )
         # The ROS 1 plugin leaves the covariance of the twist at zero.
         ros2 = self.tag.element.find("ros") is not None
+        odometry = OdometryConfig(
+            topic=config.odometry_topic if config.publish_odom else None,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=config.rate,
+            transform=config.publish_odom_tf,
+            pose_covariance=covariance,
+            twist_covariance=covariance if ros2 else NO_COVARIANCE,
+        )
         self.add(
             PlanarDrive(
                 self.scope,
                 PlanarDriveConfig(
                     command_topic=config.command_topic,
                     timeout=config.timeout if config.timeout >= 0 else None,
-                    odometry_topic=config.odometry_topic if config.publish_odom else None,
-                    odometry_frame=config.odometry_frame,
-                    base=config.base_frame,
-                    rate=config.rate,
-                    transform=config.publish_odom_tf,
-                    pose_variances=variances,
-                    twist_variances=variances if ros2 else None,
+                    odometry=odometry if config.rate > 0 else None,
                 ),
             )
         )

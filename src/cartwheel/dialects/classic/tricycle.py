@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
-from cartwheel.devices.drives.reckoning import AxleReckoning
-from cartwheel.devices.joints.states import JointStates, JointStatesConfig
-from cartwheel.dialects.steered_drive import SteeredDrive, toward
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.devices.drives.tricycle import TricycleDrive, TricycleDriveConfig
+from cartwheel.devices.joints.states import JointStatesConfig
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag, tags_of
-from cartwheel.geometry import Quat, Vec3
-
-_QUARTER = math.pi / 2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -162,7 +159,7 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 """Tags of ROS 2's plugin: unlike those of ROS 1, they contain no capital letters."""
 
 
-class TricycleDrive(SteeredDrive):
+class ClassicTricycleDrive(Plugin[TricycleParameters]):
     """Drives a tricycle with one driven, steered wheel from Twist commands and publishes odometry.
 
     A plugin tag that contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``, counts as
@@ -177,8 +174,7 @@ class TricycleDrive(SteeredDrive):
     parameters: ClassVar[type] = TricycleParameters
 
     def configure(self) -> None:
-        config: TricycleParameters = self.config
-        origin, part = self.tag.origin, self.part
+        config = self.config
         # The ROS 2 plugin with the same name publishes only what its tags enable, has less torque,
         # and does not put its topics below the model's name.
         ros2 = any(child.tag in _ROS2 for child in self.tag.element.children)
@@ -195,66 +191,44 @@ class TricycleDrive(SteeredDrive):
             encoderWheelSeparation=config.encoder_separation,
         )
         names = (config.steering_joint, config.wheel_joint, config.left_joint, config.right_joint)
-        joints = [part.joint(name, origin=origin) for name in names]
-        # Gazebo subtracts in the opposite order, so its odometry is mirrored.
-        self._reckoning = AxleReckoning(
-            joints[2],
-            joints[3],
-            radius=config.encoder_diameter / 2,
-            separation=config.encoder_separation,
+        rate, acceleration = config.update_rate, config.wheel_acceleration
+        # Without a limit on the acceleration, a limit on the deceleration has no effect.
+        deceleration = config.wheel_deceleration
+        if deceleration is None or acceleration <= 0:
+            deceleration = acceleration
+        odometry = OdometryConfig(
+            topic=config.odometry_topic if publishes else None,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=rate,
+            transform=publishes,
+            joints=names if config.publish_wheel_tf else (),
+            pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
         )
-        # Without a steering speed, Gazebo sets the angle immediately, with unlimited torque.
-        strength = torque if config.steering_speed > 0 else None
-        self._fork = part.servo(config.steering_joint, max_effort=strength, origin=origin)
-        self._motor = part.velocity_motor(config.wheel_joint, max_effort=torque, origin=origin)
-        self._encoded = config.source in ("encoder", "0")
-        rate = config.update_rate
-        self.odometry = self.add(
-            Odometry(
+        states = JointStatesConfig(joints=names, rate=rate, velocities=True, efforts=True)
+        self.add(
+            TricycleDrive(
                 self.scope,
-                OdometryConfig(
-                    topic=config.odometry_topic if publishes else None,
-                    frame=config.odometry_frame,
-                    base=config.base_frame,
-                    rate=rate,
-                    transform=publishes,
-                    joints=names if config.publish_wheel_tf else (),
-                    pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+                TricycleDriveConfig(
+                    wheel=config.wheel_joint,
+                    steering=config.steering_joint,
+                    left=config.left_joint,
+                    right=config.right_joint,
+                    wheel_radius=config.wheel_diameter / 2,
+                    free_radius=config.encoder_diameter / 2,
+                    separation=config.encoder_separation,
+                    torque=torque,
+                    acceleration=acceleration,
+                    deceleration=deceleration,
+                    steering_rate=config.steering_speed,
+                    # Gazebo subtracts right from left: its odometry is mirrored, unlike this one.
+                    encoded=config.source in ("encoder", "0"),
+                    drive=DriveConfig(
+                        command_topic=config.command_topic,
+                        control_rate=rate,
+                        odometry=odometry,
+                        joint_states=states if config.publish_joint_state else None,
+                    ),
                 ),
             )
         )
-        if config.publish_joint_state:
-            states = JointStatesConfig(joints=names, rate=rate, velocities=True, efforts=True)
-            self.joint_states = self.add(JointStates(self.scope, states))
-        self._run(
-            command_topic=config.command_topic,
-            base=config.base_frame,
-            control_rate=rate,
-            rate=rate,
-        )
-
-    def reset(self) -> None:
-        super().reset()
-        self._speed = self._angle = 0.0
-        self._reckoning.begin()
-
-    def _turn_wheels(self, seconds: float) -> None:
-        config: TricycleParameters = self.config
-        target = self._forward / (config.wheel_diameter / 2)
-        slows = abs(target) < abs(self._speed)
-        ramp = config.wheel_acceleration
-        if slows and config.wheel_deceleration is not None and ramp > 0:
-            ramp = config.wheel_deceleration
-        self._speed = toward(self._speed, target, ramp * seconds) if ramp > 0 else target
-        self._motor.command(self._speed)
-        angle = min(max(self._turn, -_QUARTER), _QUARTER)
-        swing = config.steering_speed
-        self._angle = toward(self._angle, angle, swing * seconds) if swing > 0 else angle
-        self._fork.command_position(self._angle)
-        if self._encoded:
-            self._reckoning.read(seconds)
-
-    def _motion(self) -> tuple[Vec3, Quat, Vec3, Vec3]:
-        if self._encoded:
-            return self._reckoning.motion()
-        return super()._motion()

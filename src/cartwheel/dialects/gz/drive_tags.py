@@ -8,12 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.codes import devices
+from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Bounds, Limits
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
+
+CONTROL_RATE = 100.0
+"""Rate of the control loops, which apply limits and measure the wheels, Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -194,4 +198,22 @@ def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> OdometryConfi
         base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
         rate=config.rate,
         tf_topic=gz_name(plugin, config.tf_topic, "tf"),
+    )
+
+
+def gz_drive(plugin: Plugin[Any], config: GzDriveParameters, *, topic: str = "") -> DriveConfig:
+    """Returns the topics and rates of a gz-sim drive.
+
+    Args:
+        plugin: The drive.
+        config: Its tags.
+        topic: Topic of the commands, if ``<topic>`` is not set.
+
+    Raises:
+        PluginError: The rate is negative.
+    """
+    return DriveConfig(
+        command_topic=gz_name(plugin, config.topic or topic, "cmd_vel"),
+        control_rate=CONTROL_RATE,
+        odometry=gz_odometry(plugin, config),
     )

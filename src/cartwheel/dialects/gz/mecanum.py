@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from cartwheel.devices.drives.limiter import Limiter
-from cartwheel.devices.drives.odometry import Odometry
-from cartwheel.devices.drives.reckoning import DeadReckoning
-from cartwheel.devices.drives.rollers import has_rollers
+from cartwheel.devices.drives.mecanum import (
+    MecanumDrive,
+    MecanumDriveConfig,
+    MecanumWheelsConfig,
+)
 from cartwheel.dialects.gz.drive_tags import (
     GzCommonLimits,
     common_limits,
-    gz_name,
-    gz_odometry,
+    gz_drive,
     report_limits,
 )
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-
-CONTROL_RATE = 100.0
-"""Rate in Hz at which limits are applied and the wheel rotation is integrated."""
-_CORNERS = ("front_left", "front_right", "back_left", "back_right")
-_SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
-_LEFT_RIGHT = (-1.0, 1.0, -1.0, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -57,7 +51,7 @@ class MecanumParameters(GzCommonLimits):
     wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
 
 
-class MecanumDrive(Plugin[MecanumParameters]):
+class GzMecanumDrive(Plugin[MecanumParameters]):
     """Drives four mecanum wheels from Twist commands and publishes odometry.
 
     If the wheel collisions model rollers (``<fdir1 gz:expressed_in="...">`` with different ``<mu>``
@@ -72,77 +66,29 @@ class MecanumDrive(Plugin[MecanumParameters]):
     parameters: ClassVar[type] = MecanumParameters
 
     def configure(self) -> None:
-        config, part, origin = self.config, self.part, self.tag.origin
+        config = self.config
         self.check_lengths(
             wheelbase=config.wheel_base,
             wheel_separation=config.wheel_separation,
             wheel_radius=config.wheel_radius,
         )
         report_limits(self, config)
-        self._limiters = [Limiter(common_limits(config)) for _ in range(3)]
-        self._wheels = [
-            [(part.joint(name, origin=origin), part.velocity_motor(name, max_effort=None))
-             for name in getattr(config, corner)]
-            for corner in _CORNERS
-        ]  # fmt: skip
-        rolls = has_rollers(part.description)
-        self._drive = None if rolls else part.body_drive(origin=origin)
-        self._reach = (config.wheel_base + config.wheel_separation) / 2
-        self._reckoning = DeadReckoning()
-        self._odometry = self.add(Odometry(self.scope, gz_odometry(self, config)))
-        self.subscribe(
-            gz_name(self, config.topic, "cmd_vel"), "geometry_msgs/msg/Twist", self._on_command
-        )
-        part.schedule(CONTROL_RATE, before=self._control)
-        part.schedule(config.rate, after=self._publish, active=self._odometry.wanted)
-        self.reset()
-
-    def reset(self) -> None:
-        self._command = (0.0, 0.0, 0.0)
-        for limiter in self._limiters:
-            limiter.reset()
-        self._turned: list[float] | None = None
-        self._updated_ns = 0
-        self._reckoning.restart()
-        self._push(0.0, 0.0, 0.0)
-
-    def _on_command(self, message: Any) -> None:
-        forward, sideways = float(message.linear.x), float(message.linear.y)
-        turn = float(message.angular.z)
-        self._command = (forward, sideways, turn)
-
-    def _push(self, forward: float, sideways: float, turn: float) -> None:
-        if self._drive is not None:
-            self._drive.command((forward, sideways, None), (None, None, turn))
-
-    def _control(self) -> None:
-        forward, sideways, turn = (
-            limiter.step(wanted, 1 / CONTROL_RATE)
-            for limiter, wanted in zip(self._limiters, self._command, strict=True)
-        )
-        self._push(forward, sideways, turn)
-        radius = self.config.wheel_radius
-        for wheels, across, side in zip(self._wheels, _SIDEWAYS, _LEFT_RIGHT, strict=True):
-            speed = (forward + across * sideways + side * self._reach * turn) / radius
-            for _, motor in wheels:
-                motor.command(speed)
-        self._integrate(radius)
-
-    def _integrate(self, radius: float) -> None:
-        """Updates the odometry from the rotation of the first wheel at each corner."""
-        now = self.part.time_ns
-        turned = [wheels[0][0].position * radius for wheels in self._wheels]
-        if self._turned is not None:
-            ways = [new - old for new, old in zip(turned, self._turned, strict=True)]
-            across = sum(sign * way for sign, way in zip(_SIDEWAYS, ways, strict=True)) / 4
-            around = sum(sign * way for sign, way in zip(_LEFT_RIGHT, ways, strict=True)) / 4
-            self._reckoning.go(
-                sum(ways) / 4,
-                around / self._reach,
-                (now - self._updated_ns) * 1e-9,
-                sideways=across,
+        limits = common_limits(config)
+        self.add(
+            MecanumDrive(
+                self.scope,
+                MecanumDriveConfig(
+                    front_left=config.front_left,
+                    front_right=config.front_right,
+                    back_left=config.back_left,
+                    back_right=config.back_right,
+                    wheels=MecanumWheelsConfig(
+                        radius=config.wheel_radius,
+                        reach=(config.wheel_base + config.wheel_separation) / 2,
+                        limits=(limits, limits, limits),
+                        subtracts="distances",
+                    ),
+                    drive=gz_drive(self, config),
+                ),
             )
-        self._turned, self._updated_ns = turned, now
-
-    def _publish(self) -> None:
-        self._odometry.publish(self.part.time_ns, *self._reckoning.motion())
+        )

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.force_based import ForceBasedDrive, ForceBasedDriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
@@ -80,6 +81,13 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
                 "<y_velocity_p_gain> has no effect: <x_velocity_p_gain> is used in both directions",
                 values={"parameter": "y_velocity_p_gain"},
             )
+        odometry = OdometryConfig(
+            topic=config.odometry_topic,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=config.rate,
+            transform=config.publish_tf,
+        )
         self.add(
             ForceBasedDrive(
                 self.scope,
@@ -88,11 +96,7 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
                     timeout=config.timeout,
                     force_gain=config.x_gain,
                     torque_gain=config.yaw_gain,
-                    odometry_topic=config.odometry_topic,
-                    odometry_frame=config.odometry_frame,
-                    base=config.base_frame,
-                    rate=config.rate,
-                    transform=config.publish_tf,
+                    odometry=odometry if config.rate > 0 else None,
                 ),
             )
         )

@@ -1,0 +1,120 @@
+"""``gz-sim-ackermann-steering-system``: a car."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.codes import devices
+from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveConfig
+from cartwheel.dialects.gz.drive_tags import (
+    GzLimitedParameters,
+    gz_drive,
+    report_limits,
+    separate_limits,
+)
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzAckermannParameters(GzLimitedParameters):
+    left_joint: tuple[str, ...] = tag(
+        "left_joint",
+        default=("left_joint",),
+        doc="Joint of a driven left wheel. Repeat the tag for each wheel.",
+    )
+    right_joint: tuple[str, ...] = tag(
+        "right_joint",
+        default=("right_joint",),
+        doc="Joint of a driven right wheel. Repeat the tag for each wheel.",
+    )
+    steer_left: str = tag(
+        "left_steering_joint",
+        default="left_steering_joint",
+        doc="Joint that steers the front left wheel.",
+    )
+    steer_right: str = tag(
+        "right_steering_joint",
+        default="right_steering_joint",
+        doc="Joint that steers the front right wheel.",
+    )
+    wheel_separation: float = tag(
+        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
+    )
+    kingpin_width: float = tag(
+        "kingpin_width", default=0.8, unit="m", doc="Distance between the steering axes."
+    )
+    wheel_base: float = tag(
+        "wheel_base", default=1.0, unit="m", doc="Distance between the front and rear axles."
+    )
+    steering_limit: float = tag(
+        "steering_limit", default=0.5, unit="rad", doc="Maximum steering angle."
+    )
+    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
+    steer_gain: float = tag(
+        "steer_p_gain", default=1.0, doc="No effect: a position servo steers the wheels."
+    )
+    sub_topic: str = tag(
+        "sub_topic",
+        default="",
+        doc="Topic of the Twist commands, relative to `/model/<model>`. Used if `<topic>` "
+        "is not set.",
+    )
+    steering_only: bool = tag("steering_only", default=False, doc="Not supported.")
+    actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
+
+
+class GzAckermannDrive(Plugin[GzAckermannParameters]):
+    """Drives and steers a car from Twist commands and publishes odometry from its wheels.
+
+    ``linear.x`` is the speed in m/s, and ``angular.z`` the yaw rate in rad/s. The odometry is
+    computed from the rotation of the driven wheels. Original plugin: ``AckermannSteering`` in
+    gz-sim.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)
+    parameters: ClassVar[type] = GzAckermannParameters
+
+    def configure(self) -> None:
+        config = self.config
+        self.check_lengths(
+            wheel_base=config.wheel_base,
+            wheel_separation=config.wheel_separation,
+            kingpin_width=config.kingpin_width,
+            wheel_radius=config.wheel_radius,
+            steering_limit=config.steering_limit,
+        )
+        for flag, what in (
+            (config.steering_only, "steering_only"),
+            (config.actuators, "use_actuator_msg"),
+        ):
+            if flag:
+                self.warn(
+                    devices.PLUGIN_PARAMETER_IGNORED,
+                    f"<{what}> has no effect: the car is driven by Twist messages",
+                    values={"parameter": what},
+                )
+        report_limits(self, config)
+        topic = f"/model/{self.part.name}/{config.sub_topic}" if config.sub_topic else ""
+        self.add(
+            AckermannDrive(
+                self.scope,
+                AckermannDriveConfig(
+                    left=config.left_joint,
+                    right=config.right_joint,
+                    steering_left=config.steer_left,
+                    steering_right=config.steer_right,
+                    radius=config.wheel_radius,
+                    wheel_base=config.wheel_base,
+                    driven_track=config.wheel_separation,
+                    steered_track=config.kingpin_width,
+                    max_steering=config.steering_limit,
+                    turn="yaw rate",
+                    speed_limits=separate_limits(config, "linear"),
+                    turn_limits=separate_limits(config, "angular"),
+                    encoded=True,
+                    drive=gz_drive(self, config, topic=topic),
+                ),
+            )
+        )
