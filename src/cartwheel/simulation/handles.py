@@ -326,6 +326,8 @@ class MotorHandle:
         self.model_name = model
         self.motor = motor
         self.target = 0.0
+        # Until the model is compiled, commands are only stored.
+        self._qvel, self._dof = np.zeros(1), 0
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""

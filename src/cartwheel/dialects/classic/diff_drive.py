@@ -6,15 +6,17 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import (
-    NO_COVARIANCE,
-    Odometry,
-    OdometryConfig,
-    planar_covariance,
+from cartwheel.devices.drives.differential import (
+    DifferentialDrive,
+    DifferentialDriveConfig,
+    WheelPair,
 )
-from cartwheel.devices.joints.states import JointStates, JointStatesConfig
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
+from cartwheel.devices.joints.states import JointStatesConfig
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import PluginError
 
 
@@ -141,7 +143,7 @@ class DiffDriveParameters:
     )
 
 
-class DiffDrive(WheelDrive):
+class DiffDrive(Plugin[DiffDriveParameters]):
     """Drives pairs of wheels from Twist commands and publishes odometry.
 
     A velocity servo with the maximum torque ``<wheelTorque>`` turns each wheel. A command stays in
@@ -159,7 +161,7 @@ class DiffDrive(WheelDrive):
     parameters: ClassVar[type] = DiffDriveParameters
 
     def configure(self) -> None:
-        config: DiffDriveParameters = self.config
+        config = self.config
         element = self.tag.element
         self.check_above_zero(wheelTorque=config.wheel_torque)
         if element.find("torque") and not element.find("wheelTorque"):
@@ -169,8 +171,8 @@ class DiffDrive(WheelDrive):
                 severity="info",
                 values={"parameter": "torque"},
             )
-        self._take_wheels(self._wheel_pairs(), torque=config.wheel_torque)
-        rate = config.update_rate
+        pairs = self._wheel_pairs()
+        self.check_not_negative("update_rate", "wheel_acceleration")
         # The ROS 2 plugin of the same name publishes only on request, without the model's name.
         ros2 = any(element.find(name) for name in ("left_joint", "right_joint", "ros"))
         if not ros2:
@@ -180,39 +182,45 @@ class DiffDrive(WheelDrive):
         covariance = planar_covariance(
             config.covariance_x, config.covariance_y, config.covariance_yaw
         )
-        self.odometry = self.add(
-            Odometry(
+        joints = tuple(name for pair in pairs for name in (pair.left, pair.right))
+        odometry = OdometryConfig(
+            topic=config.odometry_topic if config.publish_tf and publishes_odom else None,
+            frame=config.odometry_frame,
+            base=config.base_frame,
+            rate=config.update_rate,
+            transform=config.publish_tf and publishes_tf,
+            joints=joints if config.publish_wheel_tf else (),
+            pose_covariance=covariance,
+            twist_covariance=covariance if ros2 else NO_COVARIANCE,
+        )
+        states = None
+        if config.publish_joint_state:
+            # In Gazebo's order: right before left.
+            order = tuple(name for pair in pairs for name in (pair.right, pair.left))
+            states = JointStatesConfig(joints=order, rate=config.update_rate)
+        encoder = config.source in ("encoder", "0")
+        self.add(
+            DifferentialDrive(
                 self.scope,
-                OdometryConfig(
-                    topic=config.odometry_topic if config.publish_tf and publishes_odom else None,
-                    frame=config.odometry_frame,
-                    base=config.base_frame,
-                    rate=rate,
-                    transform=config.publish_tf and publishes_tf,
-                    joints=self.joint_names if config.publish_wheel_tf else (),
-                    pose_covariance=covariance,
-                    twist_covariance=covariance if ros2 else NO_COVARIANCE,
+                DifferentialDriveConfig(
+                    pairs=pairs,
+                    max_torque=config.wheel_torque,
+                    acceleration=config.wheel_acceleration,
+                    reverse=config.legacy_mode,
+                    odometry="positions" if encoder else "ground truth",
+                    drive=DriveConfig(
+                        command_topic=config.command_topic,
+                        control_rate=config.update_rate,
+                        odometry=odometry,
+                        joint_states=states,
+                    ),
                 ),
             )
         )
-        if config.publish_joint_state:
-            # In Gazebo's order: right before left.
-            order = tuple(self.joint_names[i ^ 1] for i in range(len(self.joint_names)))
-            self.joint_states = self.add(
-                JointStates(self.scope, JointStatesConfig(joints=order, rate=rate))
-            )
-        self._run_wheels(
-            command_topic=config.command_topic,
-            base=config.base_frame,
-            encoded=config.source in ("encoder", "0"),
-            control_rate=rate,
-            rate=rate,
-            acceleration=config.wheel_acceleration,
-            reverse=config.legacy_mode,
-        )
+        report_swapped_wheels(self, pairs)
 
-    def _wheel_pairs(self) -> list[WheelPair]:
-        config: DiffDriveParameters = self.config
+    def _wheel_pairs(self) -> tuple[WheelPair, ...]:
+        config = self.config
         lefts, rights = config.left_joint, config.right_joint
         if not len(lefts) == len(rights) == config.pairs:
             raise PluginError(
@@ -223,13 +231,5 @@ class DiffDrive(WheelDrive):
                 hint="Set <num_wheel_pairs> to the number of pairs of left and right wheels.",
                 values={"left": len(lefts), "right": len(rights)},
             )
-        separations, diameters = config.wheel_separation, config.wheel_diameter
-        return [
-            WheelPair(
-                left=left.strip(),
-                right=right.strip(),
-                separation=separations[min(index, len(separations) - 1)],
-                diameter=diameters[min(index, len(diameters) - 1)],
-            )
-            for index, (left, right) in enumerate(zip(lefts, rights, strict=True))
-        ]
+        joints = [(left.strip(), right.strip()) for left, right in zip(lefts, rights, strict=True)]
+        return wheel_pairs(self, joints, config.wheel_separation, config.wheel_diameter)

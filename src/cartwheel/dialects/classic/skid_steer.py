@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
+from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,7 +67,7 @@ class SkidSteerParameters:
     )
 
 
-class SkidSteerDrive(WheelDrive):
+class SkidSteerDrive(Plugin[SkidSteerParameters]):
     """Drives a skid-steered robot with four wheels from Twist commands and publishes odometry.
 
     The robot turns less than commanded because its tyres slide sideways. The odometry is the
@@ -76,40 +79,32 @@ class SkidSteerDrive(WheelDrive):
     parameters: ClassVar[type] = SkidSteerParameters
 
     def configure(self) -> None:
-        config: SkidSteerParameters = self.config
+        config = self.config
         self.check_above_zero(torque=config.torque)
-        pairs = [
-            WheelPair(
-                left=left,
-                right=right,
-                separation=config.wheel_separation,
-                diameter=config.wheel_diameter,
-            )
-            for left, right in (
-                (config.left_front, config.right_front),
-                (config.left_rear, config.right_rear),
-            )
-        ]
-        self._take_wheels(pairs, torque=config.torque)
-        self.odometry = self.add(
-            Odometry(
+        joints = [(config.left_front, config.right_front), (config.left_rear, config.right_rear)]
+        pairs = wheel_pairs(self, joints, [config.wheel_separation], [config.wheel_diameter])
+        self.check_not_negative("update_rate")
+        self.add(
+            DifferentialDrive(
                 self.scope,
-                OdometryConfig(
-                    topic=config.odometry_topic,
-                    frame=config.odometry_frame,
-                    base=config.base_frame,
-                    rate=config.update_rate,
-                    transform=config.broadcast_tf,
-                    pose_covariance=planar_covariance(
-                        config.covariance_x, config.covariance_y, config.covariance_yaw
+                DifferentialDriveConfig(
+                    pairs=pairs,
+                    max_torque=config.torque,
+                    drive=DriveConfig(
+                        command_topic=config.command_topic,
+                        control_rate=config.update_rate,
+                        odometry=OdometryConfig(
+                            topic=config.odometry_topic,
+                            frame=config.odometry_frame,
+                            base=config.base_frame,
+                            rate=config.update_rate,
+                            transform=config.broadcast_tf,
+                            pose_covariance=planar_covariance(
+                                config.covariance_x, config.covariance_y, config.covariance_yaw
+                            ),
+                        ),
                     ),
                 ),
             )
         )
-        self._run_wheels(
-            command_topic=config.command_topic,
-            base=config.base_frame,
-            encoded=False,
-            control_rate=config.update_rate,
-            rate=config.update_rate,
-        )
+        report_swapped_wheels(self, pairs)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.limiter import Limiter
-from cartwheel.devices.drives.odometry import Odometry
+from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.dialects.gz.drive_tags import (
     GzLimitedParameters,
     gz_name,
@@ -15,8 +15,9 @@ from cartwheel.dialects.gz.drive_tags import (
     report_limits,
     separate_limits,
 )
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import PluginError
 
 CONTROL_RATE = 100.0
@@ -41,7 +42,7 @@ class GzDiffDriveParameters(GzLimitedParameters):
     wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
 
 
-class GzDiffDrive(WheelDrive):
+class GzDiffDrive(Plugin[GzDiffDriveParameters]):
     """Drives left and right wheels from Twist commands and publishes odometry from their rotation.
 
     The wheel torque is limited only by the effort limits of the joints. Original plugin:
@@ -52,7 +53,7 @@ class GzDiffDrive(WheelDrive):
     parameters: ClassVar[type] = GzDiffDriveParameters
 
     def configure(self) -> None:
-        config: GzDiffDriveParameters = self.config
+        config = self.config
         if len(config.left_joint) != len(config.right_joint):
             raise PluginError(
                 f"the numbers of <left_joint> ({len(config.left_joint)}) and <right_joint> "
@@ -62,39 +63,23 @@ class GzDiffDrive(WheelDrive):
                 values={"left": len(config.left_joint), "right": len(config.right_joint)},
             )
         report_limits(self, config)
-        self._linear = Limiter(separate_limits(config, "linear"))
-        self._angular = Limiter(separate_limits(config, "angular"))
-        self._wanted_speed = (0.0, 0.0)
-        pairs = [
-            WheelPair(
-                left=left,
-                right=right,
-                separation=config.wheel_separation,
-                diameter=2 * config.wheel_radius,
+        joints = list(zip(config.left_joint, config.right_joint, strict=True))
+        pairs = wheel_pairs(self, joints, [config.wheel_separation], [2 * config.wheel_radius])
+        self.add(
+            DifferentialDrive(
+                self.scope,
+                DifferentialDriveConfig(
+                    pairs=pairs,
+                    linear=separate_limits(config, "linear"),
+                    angular=separate_limits(config, "angular"),
+                    limit_period=1 / CONTROL_RATE,
+                    odometry="positions",
+                    drive=DriveConfig(
+                        command_topic=gz_name(self, config.topic, "cmd_vel"),
+                        control_rate=CONTROL_RATE,
+                        odometry=gz_odometry(self, config),
+                    ),
+                ),
             )
-            for left, right in zip(config.left_joint, config.right_joint, strict=True)
-        ]
-        self._take_wheels(pairs, torque=None)
-        self.odometry = self.add(Odometry(self.scope, gz_odometry(self, config)))
-        self._run_wheels(
-            command_topic=gz_name(self, config.topic, "cmd_vel"),
-            base="",
-            encoded=True,
-            control_rate=CONTROL_RATE,
-            rate=config.rate,
         )
-
-    def reset(self) -> None:
-        self._wanted_speed = (0.0, 0.0)
-        self._linear.reset()
-        self._angular.reset()
-        super().reset()
-
-    def _aim(self, forward: float, turn: float) -> None:
-        self._wanted_speed = (forward, turn)
-
-    def _turn_wheels(self, seconds: float) -> None:
-        forward, turn = self._wanted_speed
-        period = 1 / CONTROL_RATE
-        super()._aim(self._linear.step(forward, period), self._angular.step(turn, period))
-        super()._turn_wheels(seconds)
+        report_swapped_wheels(self, pairs)

@@ -10,14 +10,17 @@ import numpy as np
 
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig
-from cartwheel.devices.joints.states import JointStates, JointStatesConfig
+from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig
+from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.classic.bumper import watched_collisions
 from cartwheel.dialects.inertial_unit import InertialUnit
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Array, yaw_of
 from cartwheel.messages import header, message_class
@@ -82,7 +85,7 @@ class KobukiParameters:
     )
 
 
-class Kobuki(WheelDrive):
+class Kobuki(Plugin[KobukiParameters]):
     """Drives a Kobuki base and publishes odometry and IMU, bumper, cliff and wheel drop data.
 
     The odometry uses the travelled distance of the wheels and the rotation from the gyroscope. A
@@ -96,60 +99,54 @@ class Kobuki(WheelDrive):
     parameters: ClassVar[type] = KobukiParameters
 
     def configure(self) -> None:
-        config: KobukiParameters = self.config
-        pair = WheelPair(
-            left=config.left_joint,
-            right=config.right_joint,
-            separation=config.separation,
-            diameter=config.diameter,
-        )
-        self._take_wheels([pair], torque=config.torque)
+        config = self.config
+        joints = config.left_joint, config.right_joint
+        pairs = wheel_pairs(self, [joints], [config.separation], [config.diameter])
+        self.check_not_negative("rate")
         self._take_sensors(config)
-        self.joint_states = self.add(
-            JointStates(
-                self.scope,
-                JointStatesConfig(
-                    joints=self.joint_names,
-                    rate=config.rate,
-                    velocities=True,
-                    efforts=True,
-                    frame="base_link",
-                ),
-            )
-        )
-        self.odometry = self.add(
-            Odometry(
-                self.scope,
-                OdometryConfig(
-                    topic="odom",
-                    frame="odom",
-                    base="base_footprint",
-                    rate=config.rate,
-                    transform=config.publish_tf,
-                    pose_covariance=_POSE_COVARIANCE,
-                ),
-            )
-        )
         self.subscribe(_BASE + "commands/motor_power", "kobuki_msgs/msg/MotorPower", self._on_power)
         self.subscribe(
             _BASE + "commands/reset_odometry",
             "std_msgs/msg/Empty",
-            lambda _: self._reckoning.restart(),
+            lambda _: self._drive.reckoning.restart(),
         )
-        self.part.schedule(0, before=self._watch)
         self.part.schedule(config.rate, after=self._sense, active=self._sensed)
-        self._run_wheels(
-            command_topic=_BASE + "commands/velocity",
-            base="base_footprint",
-            encoded=True,
-            control_rate=0.0,
-            rate=config.rate,
+        self._drive = self.add(
+            DifferentialDrive(
+                self.scope,
+                DifferentialDriveConfig(
+                    pairs=pairs,
+                    max_torque=config.torque,
+                    odometry="positions",
+                    drive=DriveConfig(
+                        command_topic=_BASE + "commands/velocity",
+                        timeout=config.timeout,
+                        control_rate=0.0,
+                        odometry=OdometryConfig(
+                            topic="odom",
+                            frame="odom",
+                            base="base_footprint",
+                            rate=config.rate,
+                            transform=config.publish_tf,
+                            pose_covariance=_POSE_COVARIANCE,
+                        ),
+                        joint_states=JointStatesConfig(
+                            joints=joints,
+                            rate=config.rate,
+                            velocities=True,
+                            efforts=True,
+                            frame="base_link",
+                        ),
+                    ),
+                ),
+                yaw_rate=lambda: self._unit.rates()[2],
+            )
         )
+        report_swapped_wheels(self, pairs)
+        self.reset()
 
     def reset(self) -> None:
         super().reset()
-        self._power = True
-        self._heard_ns = 0
         self._cliff = dict.fromkeys(_SIDES, False)
         self._pressed = dict.fromkeys(_SIDES, False)
         self._dropped = dict.fromkeys(("left", "right"), False)
@@ -200,20 +197,8 @@ class Kobuki(WheelDrive):
         self.part.read_sensors.add(name)
         return match
 
-    def _on_command(self, message: Any) -> None:
-        self._heard_ns = self.part.time_ns
-        super()._on_command(message)
-
     def _on_power(self, message: Any) -> None:
-        self._power = message.state == message.ON
-
-    def _watch(self) -> None:
-        late = (self.part.time_ns - self._heard_ns) * 1e-9 > self.config.timeout
-        if late or not self._power:
-            self._aim(0.0, 0.0)
-
-    def _reckon(self, seconds: float) -> None:
-        self._reckoning.read(seconds, turn=self._unit.rates()[2] * seconds)
+        self._drive.enabled = message.state == message.ON
 
     def _sensed(self) -> bool:
         return any(each.wanted for each in (self._imu, self._core, *self._events.values()))

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig, planar_covariance
+from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_drive import WheelDrive, WheelPair
+from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import PluginError
 
 
@@ -47,7 +50,7 @@ class MultiWheelParameters:
     publish_message: bool = tag("publishOdometryMsg", default=True, doc="Publish the odometry.")
 
 
-class MultiWheelDrive(WheelDrive):
+class MultiWheelDrive(Plugin[MultiWheelParameters]):
     """Drives any number of wheels on each side from Twist commands and publishes odometry.
 
     All wheels on a side turn at the same speed. The odometry is the ground-truth pose. Original
@@ -58,7 +61,7 @@ class MultiWheelDrive(WheelDrive):
     parameters: ClassVar[type] = MultiWheelParameters
 
     def configure(self) -> None:
-        config: MultiWheelParameters = self.config
+        config = self.config
         left, right = config.left.split(), config.right.split()
         if not left or not right:
             raise PluginError(
@@ -68,35 +71,31 @@ class MultiWheelDrive(WheelDrive):
                 values={"left": len(left), "right": len(right)},
             )
         # Extra wheels on one side are paired with the last wheel on the other side.
-        sides = itertools.zip_longest(left, right)
-        pairs = [
-            WheelPair(
-                left=one or left[-1],
-                right=two or right[-1],
-                separation=config.separation,
-                diameter=config.diameter,
-            )
-            for one, two in sides
+        joints = [
+            (one or left[-1], other or right[-1])
+            for one, other in itertools.zip_longest(left, right)
         ]
-        self._take_wheels(pairs, torque=config.torque)
-        covariance = planar_covariance(1e-5, 1e-5, 1e-3)
-        self.odometry = self.add(
-            Odometry(
+        pairs = wheel_pairs(self, joints, [config.separation], [config.diameter])
+        self.check_not_negative("rate")
+        self.add(
+            DifferentialDrive(
                 self.scope,
-                OdometryConfig(
-                    topic=config.odometry_topic if config.publish_message else None,
-                    frame=config.odometry_frame,
-                    base=config.base_frame,
-                    rate=config.rate,
-                    transform=config.publish_tf,
-                    pose_covariance=covariance,
+                DifferentialDriveConfig(
+                    pairs=pairs,
+                    max_torque=config.torque,
+                    drive=DriveConfig(
+                        command_topic=config.command_topic,
+                        control_rate=config.rate,
+                        odometry=OdometryConfig(
+                            topic=config.odometry_topic if config.publish_message else None,
+                            frame=config.odometry_frame,
+                            base=config.base_frame,
+                            rate=config.rate,
+                            transform=config.publish_tf,
+                            pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+                        ),
+                    ),
                 ),
             )
         )
-        self._run_wheels(
-            command_topic=config.command_topic,
-            base=config.base_frame,
-            encoded=False,
-            control_rate=config.rate,
-            rate=config.rate,
-        )
+        report_swapped_wheels(self, pairs)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from cartwheel.codes import devices, running
-from cartwheel.devices.drives.limiter import Limiter
+from cartwheel.devices.drives.differential import (
+    DifferentialDrive,
+    DifferentialDriveConfig,
+    WheelPair,
+)
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
@@ -43,21 +47,22 @@ class DiffDriveController(Controller):
                 f"(got {len(left)} and {len(right)})",
                 values={"left": len(left), "right": len(right)},
             )
-        self._left = [self.claim(name, "velocity") for name in left]
-        self._right = [self.claim(name, "velocity") for name in right]
-        for wheel in (*self._left, *self._right):
+        pairs = list(zip(left, right, strict=True))
+        claims = [self.claim(name, "velocity") for name in (*left, *right)]
+        for wheel in claims:
             check_axis(self, wheel.joint, LEFT)
-        separation = self._separation(settings, self._left[0].joint, self._right[0].joint)
-        radius = self._radius(settings, self._left[0].joint)
-        self._separation_used = separation * settings.number("wheel_separation_multiplier", 1.0)
+        first_left, first_right = claims[0].joint, claims[len(left)].joint
+        separation = self._separation(settings, first_left, first_right)
+        radius = self._radius(settings, first_left)
+        separation *= settings.number("wheel_separation_multiplier", 1.0)
         both = settings.number("wheel_radius_multiplier", 1.0)
-        self._left_radius = radius * settings.number("left_wheel_radius_multiplier", both)
-        self._right_radius = radius * settings.number("right_wheel_radius_multiplier", both)
-        self._linear = Limiter(read_limits(settings.section("linear/x")))
-        self._angular = Limiter(read_limits(settings.section("angular/z")))
+        left_radius = radius * settings.number("left_wheel_radius_multiplier", both)
+        right_radius = radius * settings.number("right_wheel_radius_multiplier", both)
+        linear = read_limits(settings.section("linear/x"))
+        angular = read_limits(settings.section("angular/z"))
         settings.ignore("wheels_per_side", "allow_multiple_cmd_vel_publishers")
-        self._open_loop = settings.boolean("open_loop", False)
-        self._by_position = settings.boolean("position_feedback", True)
+        open_loop = settings.boolean("open_loop", False)
+        by_position = settings.boolean("position_feedback", True)
         timeout = settings.number("cmd_vel_timeout", 0.5)
         settings.ignore("publish_wheel_joint_controller_state", "publish_wheel_data")
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
@@ -69,66 +74,58 @@ class DiffDriveController(Controller):
             transform=settings.boolean("enable_odom_tf", True),
             prefix=frame_prefix(self, settings) if ros2 else "",
         )
+        measured: Literal["positions", "velocities"] = "positions" if by_position else "velocities"
+        self._drive = self.add(
+            DifferentialDrive(
+                self.scope,
+                DifferentialDriveConfig(
+                    pairs=tuple(
+                        WheelPair(
+                            left=one,
+                            right=other,
+                            separation=separation,
+                            left_radius=left_radius,
+                            right_radius=right_radius,
+                        )
+                        for one, other in pairs
+                    ),
+                    linear=linear,
+                    angular=angular,
+                    odometry="commands" if open_loop else measured,
+                    measured_pairs=None,
+                    drive=None,
+                ),
+                wheel_of=self.claims.__getitem__,
+                reckoning=self._odometry.reckoning,
+            )
+        )
         published = settings.boolean("publish_limited_velocity" if ros2 else "publish_cmd", False)
-        self._out = (
+        self._limited = (
             self.advertise("cmd_vel_out", "geometry_msgs/msg/TwistStamped") if published else None
         )
-        self._turned = (0.0, 0.0)
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
         self._odometry.start(time_ns)
-        self._linear.reset()
-        self._angular.reset()
-        self._turned = self._positions()
+        self._drive.start()
 
     def update(self, time_ns: int, seconds: float) -> None:
-        self._reckon(seconds)
+        drive = self._drive
+        drive.measure(seconds)
         self._odometry.publish(time_ns)
-        forward, _, turn = self._command.at(time_ns)
-        forward = self._linear.step(forward, seconds)
-        turn = self._angular.step(turn, seconds)
-        half = turn * self._separation_used / 2
-        for joint in self._left:
-            joint.command = (forward - half) / self._left_radius
-        for joint in self._right:
-            joint.command = (forward + half) / self._right_radius
-        if self._out is not None and self._out.wanted:
-            self._publish_limited(time_ns, forward, turn)
+        drive.command(*self._command.at(time_ns))
+        drive.actuate(seconds)
+        if self._limited is not None and self._limited.wanted:
+            self._publish_limited(time_ns, drive.linear.value, drive.angular.value)
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         for joint in self.claims.values():
             joint.command = 0.0
 
-    def _reckon(self, seconds: float) -> None:
-        if self._open_loop:
-            forward, turn = self._linear.value, self._angular.value
-            self._odometry.reckoning.go(forward * seconds, turn * seconds, seconds)
-            return
-        if self._by_position:
-            left, right = self._positions()
-            ways = (left - self._turned[0], right - self._turned[1])
-            self._turned = (left, right)
-        else:
-            ways = (
-                seconds * _mean([joint.velocity for joint in self._left]),
-                seconds * _mean([joint.velocity for joint in self._right]),
-            )
-        left, right = ways[0] * self._left_radius, ways[1] * self._right_radius
-        self._odometry.reckoning.go(
-            (left + right) / 2, (right - left) / self._separation_used, seconds
-        )
-
-    def _positions(self) -> tuple[float, float]:
-        return (
-            _mean([joint.position for joint in self._left]),
-            _mean([joint.position for joint in self._right]),
-        )
-
     def _publish_limited(self, time_ns: int, forward: float, turn: float) -> None:
-        assert self._out is not None
+        assert self._limited is not None
         Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._out.publish(
+        self._limited.publish(
             message_class("geometry_msgs/msg/TwistStamped")(
                 header=header(time_ns, ""),
                 twist=message_class("geometry_msgs/msg/Twist")(
@@ -161,7 +158,3 @@ class DiffDriveController(Controller):
         if value <= 0:
             raise settings.invalid("wheel_radius", value, "positive")
         return value
-
-
-def _mean(values: list[float]) -> float:
-    return sum(values) / len(values)

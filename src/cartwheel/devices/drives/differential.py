@@ -1,0 +1,214 @@
+"""Differential drive: pairs of left and right wheels, which turn the robot by their difference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from cartwheel.component import Scope
+from cartwheel.devices.drives.drive import Drive, DriveConfig
+from cartwheel.devices.drives.kinematics import axle_motion, rim_speeds
+from cartwheel.devices.drives.limiter import Limiter, Limits
+from cartwheel.devices.drives.ramp import ramp
+from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
+from cartwheel.devices.drives.wheel import MotorWheel, Wheel
+
+NO_LIMITS = Limits()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WheelPair:
+    """Two wheels on one axle."""
+
+    left: str
+    """Joint of the left wheel."""
+    right: str
+    """Joint of the right wheel."""
+    separation: float
+    """Distance between the wheels, m."""
+    left_radius: float
+    """Radius of the left wheel, m."""
+    right_radius: float
+    """Radius of the right wheel, m."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DifferentialDriveConfig:
+    """Wheels, limits and odometry of a differential drive."""
+
+    pairs: tuple[WheelPair, ...]
+    """The wheels. The first pair's separation and radii are used for the odometry."""
+    max_torque: float | None = None
+    """Maximum torque of each wheel, N m; None: the joints' effort limits."""
+    acceleration: float = 0.0
+    """Maximum acceleration of the wheels' commanded rim speed, m/s²; 0: no limit."""
+    linear: Limits = NO_LIMITS
+    """Limits on the forward velocity."""
+    angular: Limits = NO_LIMITS
+    """Limits on the yaw rate."""
+    limit_period: float | None = None
+    """Time between two commands for `linear` and `angular`, s; None: the measured time."""
+    reverse: bool = False
+    """Invert the turning direction."""
+    odometry: Literal["ground truth", "positions", "velocities", "commands"] = "ground truth"
+    """Source of the odometry: the pose in the world, or dead reckoning from the wheels' positions
+    or velocities, or from the limited commands."""
+    measured_pairs: int | None = 1
+    """Number of pairs whose mean rotation is measured; None: all."""
+    drive: DriveConfig | None
+    """Topics and rates; None: the owner passes commands, calls `measure` and `actuate`, and
+    publishes."""
+
+
+class DifferentialDrive(Drive):
+    """Turns pairs of wheels so that the robot follows a forward velocity and a yaw rate.
+
+    Args:
+        scope: The robot and the names of topics.
+        config: Wheels, limits and odometry.
+        wheel_of: Returns the wheel of a joint. None: the drive requests a motor for each joint.
+        yaw_rate: Returns the yaw rate in rad/s that a gyroscope measures; None: the odometry uses
+            the wheels.
+        reckoning: The estimate to update; None: a new one.
+
+    Raises:
+        UnknownNameError: A joint does not exist.
+    """
+
+    _targets: list[float]
+    """Rim speeds that follow from the command, m/s."""
+    _speeds: list[float]
+    """Rim speeds after the ramp, m/s."""
+    _rotation: tuple[float, float] | None
+    """Mean rotation of the left and right wheels at the last update, rad."""
+
+    def __init__(
+        self,
+        scope: Scope,
+        config: DifferentialDriveConfig,
+        *,
+        wheel_of: Callable[[str], Wheel] | None = None,
+        yaw_rate: Callable[[], float] | None = None,
+        reckoning: DeadReckoning | None = None,
+    ) -> None:
+        super().__init__(scope)
+        self._config = config
+        self._yaw_rate = yaw_rate
+        wheel_of = wheel_of or self._motor_wheel
+        self._wheels = [wheel_of(name) for pair in config.pairs for name in (pair.left, pair.right)]
+        self._radii = [
+            radius for pair in config.pairs for radius in (pair.left_radius, pair.right_radius)
+        ]
+        count = config.measured_pairs
+        self._lefts = self._wheels[0::2][:count]
+        self._rights = self._wheels[1::2][:count]
+        self.linear, self.angular = Limiter(config.linear), Limiter(config.angular)
+        # Without limits, a scheduled drive computes the wheels' speeds once for each command.
+        self._is_limited = config.drive is None or not (
+            config.linear == config.angular == NO_LIMITS
+        )
+        self.reckoning = DeadReckoning() if reckoning is None else reckoning
+        self._rest()
+        if config.drive is not None:
+            self.run(config.drive)
+
+    def reset(self) -> None:
+        """Stops the wheels and forgets commands and odometry."""
+        super().reset()
+        self._rest()
+        for wheel in self._wheels:
+            wheel.command = 0.0
+
+    def start(self) -> None:
+        """Forgets commands and odometry, and measures distances from the wheels' rotation now."""
+        self._rest()
+        self._rotation = self._rotations()
+
+    def command(self, forward: float, sideways: float, turn: float) -> None:  # noqa: ARG002
+        turn = -turn if self._config.reverse else turn
+        self._command = (forward, turn)
+        if not self._is_limited:
+            self._set_targets(forward, turn)
+
+    def update(self, seconds: float) -> None:
+        self.actuate(seconds)
+        self.measure(seconds)
+
+    def actuate(self, seconds: float) -> None:
+        """Commands the wheels, `seconds` after the last call."""
+        config = self._config
+        if self._is_limited:
+            forward, turn = self._command
+            period = seconds if config.limit_period is None else config.limit_period
+            self._set_targets(self.linear.step(forward, period), self.angular.step(turn, period))
+        speeds = self._targets
+        if config.acceleration > 0:
+            most = config.acceleration * seconds
+            speeds = [
+                speed if speed == target else ramp(speed, target, most)
+                for speed, target in zip(self._speeds, self._targets, strict=True)
+            ]
+            self._speeds = speeds
+        for wheel, speed, radius in zip(self._wheels, speeds, self._radii, strict=True):
+            wheel.command = speed / radius
+
+    def measure(self, seconds: float) -> None:
+        """Adds the motion since the last call, `seconds` ago, to the dead reckoning."""
+        source = self._config.odometry
+        rotation = None if self._yaw_rate is None else self._yaw_rate() * seconds
+        if source == "ground truth":
+            return
+        if source == "commands":
+            forward, turn = self.linear.value * seconds, self.angular.value * seconds
+        else:
+            if source == "velocities":
+                left, right = (
+                    seconds * _mean([wheel.velocity for wheel in wheels])
+                    for wheels in (self._lefts, self._rights)
+                )
+            else:
+                before, self._rotation = self._rotation, self._rotations()
+                if before is None:
+                    return
+                left, right = self._rotation[0] - before[0], self._rotation[1] - before[1]
+            pair = self._config.pairs[0]
+            forward, turn = axle_motion(
+                left * pair.left_radius, right * pair.right_radius, pair.separation
+            )
+        self.reckoning.go(forward, turn if rotation is None else rotation, seconds)
+
+    def motion(self) -> Motion:
+        if self._config.odometry == "ground truth":
+            return super().motion()
+        return self.reckoning.motion()
+
+    def _rest(self) -> None:
+        self._command = (0.0, 0.0)
+        self._targets = [0.0] * len(self._wheels)
+        self._speeds = [0.0] * len(self._wheels)
+        self._rotation = None
+        self.linear.reset()
+        self.angular.reset()
+        self.reckoning.restart()
+
+    def _set_targets(self, forward: float, turn: float) -> None:
+        self._targets = [
+            speed
+            for pair in self._config.pairs
+            for speed in rim_speeds(forward, turn, pair.separation)
+        ]
+
+    def _rotations(self) -> tuple[float, float]:
+        return (
+            _mean([wheel.position for wheel in self._lefts]),
+            _mean([wheel.position for wheel in self._rights]),
+        )
+
+    def _motor_wheel(self, joint: str) -> Wheel:
+        torque = self._config.max_torque
+        return MotorWheel(self.part, joint, max_torque=torque, origin=self.origin)
+
+
+def _mean(values: list[float]) -> float:
+    return sum(values) / len(values)

@@ -1,0 +1,78 @@
+"""The wheel pairs in a plugin's tags: checked before and after the drive is created."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from cartwheel.codes import devices, robot
+from cartwheel.description.kinematics import link_poses
+from cartwheel.devices.drives.differential import WheelPair
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import SMALLEST
+from cartwheel.errors import PluginError
+from cartwheel.simulation.limits import FARTHEST
+
+
+def wheel_pairs(
+    plugin: Plugin[Any],
+    joints: Sequence[tuple[str, str]],
+    separations: Sequence[float],
+    diameters: Sequence[float],
+) -> tuple[WheelPair, ...]:
+    """Returns pairs of wheels.
+
+    Args:
+        plugin: The plugin whose tags state the pairs.
+        joints: Joints of the left and right wheel of each pair.
+        separations: Distance between the wheels of each pair, m. The last one applies to the
+            remaining pairs.
+        diameters: Diameter of both wheels of each pair, m. The last one applies to the remaining
+            pairs.
+
+    Raises:
+        PluginError: A separation or diameter is not allowed.
+    """
+    pairs = []
+    for index, (left, right) in enumerate(joints):
+        separation = separations[min(index, len(separations) - 1)]
+        diameter = diameters[min(index, len(diameters) - 1)]
+        for value, what in ((separation, "separation"), (diameter, "diameter or radius")):
+            if not SMALLEST <= value <= FARTHEST:
+                raise PluginError(
+                    f"the {what} of the wheels must be from {SMALLEST:g} to {FARTHEST:g} m "
+                    f"(got {value:g} m)",
+                    code=devices.PLUGIN_PARAMETER_INVALID,
+                    origin=plugin.origin,
+                    values={"parameter": what, "value": value},
+                )
+        radius = diameter / 2
+        pairs.append(
+            WheelPair(
+                left=left,
+                right=right,
+                separation=separation,
+                left_radius=radius,
+                right_radius=radius,
+            )
+        )
+    return tuple(pairs)
+
+
+def report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> None:
+    """Reports a left wheel on the right side, because the robot then turns the wrong way."""
+    description = plugin.part.description
+    poses = link_poses(description, {})
+    front = poses[description.canonical_link].inverse()
+    for pair in pairs:
+        joints = [description.joint(name) for name in (pair.left, pair.right)]
+        left, right = ((front @ poses[joint.child]).y for joint in joints if joint is not None)
+        if left < right:
+            plugin.warn(
+                robot.WHEELS_SWAPPED,
+                f'the left wheel ("{pair.left}") is to the right of the right wheel '
+                f'("{pair.right}"), so the robot turns the wrong way, as in Gazebo',
+                severity="info",
+                values={"left": pair.left, "right": pair.right},
+            )
+            return
