@@ -216,8 +216,12 @@ class Diagnostic:
 
     @property
     def identity(self) -> tuple[object, ...]:
-        """Equal for two reports of the same fault."""
-        return (self.code, self.message, str(self.origin), self.sorted_values)
+        """Equal for two reports of the same fault.
+
+        For unclassified diagnostics, the message is part of the identity.
+        """
+        message = self.message if self.code is UNCLASSIFIED else ""
+        return (self.code, message, str(self.origin), self.sorted_values)
 
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""

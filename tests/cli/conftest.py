@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
@@ -23,6 +23,7 @@ class Program:
 
     environment: dict[str, str]
     folder: Path
+    started: list[subprocess.Popen[str]] = field(default_factory=list)
 
     def __call__(
         self, *arguments: str | Path, stdin: str = "", timeout: float = 200, status: int | None = 0
@@ -45,7 +46,7 @@ class Program:
 
     def start(self, *arguments: str | Path, **options: object) -> subprocess.Popen[str]:
         """Starts a command and leaves it running."""
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [PROGRAM, *map(str, arguments)],
             stdin=options.pop("stdin", subprocess.DEVNULL),
             stdout=options.pop("stdout", subprocess.PIPE),
@@ -55,6 +56,15 @@ class Program:
             cwd=self.folder,
             **options,
         )
+        self.started.append(process)
+        return process
+
+    def close(self) -> None:
+        """Kills what a test that failed left running."""
+        for process in self.started:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
 
     def wait_until_up(self, process: subprocess.Popen[str]) -> None:
         """Waits for a started simulation."""
@@ -71,7 +81,9 @@ def make_program() -> Iterator[Program]:
     folder = Path(tempfile.mkdtemp(prefix="cw"))
     environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder)}
     environment.pop("CARTWHEEL_SIM", None)
-    yield Program(environment, folder)
+    made = Program(environment, folder)
+    yield made
+    made.close()
     shutil.rmtree(folder)
 
 

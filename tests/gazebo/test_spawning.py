@@ -1,8 +1,9 @@
 """Models in, by their text, and out again."""
 
+import errno
 import math
 import threading
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 
 import pytest
 from tests.coded import coded, raises
@@ -267,6 +268,22 @@ def test_a_hundred_comments_do_not_hang_the_search_for_a_light(api):
         "<model", "<!-- b -->" * 100 + "<model"
     )
     api.done("spawn_sdf_model", model_xml=text)
+
+
+def test_an_error_that_looks_like_a_wait_that_is_over_is_raised(api):
+    """The file system of another computer raises the error that a bounded wait ends with."""
+
+    def load():
+        raise TimeoutError(errno.ETIMEDOUT, "the file server does not answer")
+
+    spawning = Spawning(api.world.session, Entities(api.simulation), ())
+    with ThreadPoolExecutor() as pool:
+        future = pool.submit(spawning.on_owner, load)
+        while not future.done():
+            api.simulation.drain()
+            wait((future,), timeout=0.01)
+        with pytest.raises(TimeoutError):
+            future.result()
 
 
 def test_on_the_owners_own_thread(api):

@@ -226,8 +226,11 @@ class Spawning:
             try:
                 return future.result(timeout=_LOOK)
             except NotYet:
+                if future.done():
+                    # The function itself may have raised this error.
+                    return future.result()
                 ended = self._simulation.run_state is RunState.STOPPED
-                if not future.done() and ended and future.cancel():
+                if ended and future.cancel():
                     raise CartwheelError("the simulation has ended", code=GRAPH_CLOSED) from None
 
     def delete_model(self, request: Any) -> Answer:

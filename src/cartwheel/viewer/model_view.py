@@ -75,7 +75,7 @@ class ModelView:
         """Largest extent, m, used to scale drawn elements."""
         self._frames = [self._frame(link) for link in description.links]
         self._shown = np.full((len(self._frames), 7), np.nan)
-        self._told: set[str] = set()
+        self._told: set[tuple[object, ...]] = set()
         self._visuals = self.add_visuals(scene)
 
     @property
@@ -245,8 +245,9 @@ class ModelView:
 
     def _say(self, error: CartwheelError) -> None:
         """Reports a shape that cannot be drawn once, for all browsers."""
-        if str(error) not in self._told:
-            self._told.add(str(error))
+        identity = error.diagnostic().identity
+        if identity not in self._told:
+            self._told.add(identity)
             self._problem(error)
 
     def _mesh(
