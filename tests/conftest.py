@@ -31,6 +31,7 @@ from cartwheel.description.model import (
 )
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
+from cartwheel.messages import from_dict
 
 if os.environ.get("CARTWHEEL_CODES_ONLY"):
     from tests.codes_only import sitecustomize
@@ -257,3 +258,29 @@ def make_once() -> Iterator[Make]:
 @pytest.fixture(scope="session")
 def rosbots() -> RobotDescription:
     return load_robot("rosbots.xacro")
+
+
+@pytest.fixture
+def read():
+    """Returns the messages of a topic in the next seconds."""
+
+    def read(world, topic, seconds):
+        box = world.mailbox(topic, size=100_000)
+        world.run(seconds)
+        box.close()
+        return box.drain()
+
+    return read
+
+
+@pytest.fixture
+def ask():
+    """Calls a service, runs one step, and returns the response."""
+
+    def asked(world, name, **request):
+        kind = world.graph.service(name).type
+        future = world.graph.call(name, from_dict(f"{kind}_Request", request))
+        world.run(world.session.simulation.step_ns * 1e-9)
+        return future.result(timeout=60)
+
+    return asked

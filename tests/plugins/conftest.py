@@ -4,8 +4,6 @@ import math
 
 import pytest
 
-from cartwheel.messages import from_dict
-
 RADIUS = 0.1
 WIDTH = 0.04
 
@@ -69,33 +67,3 @@ def cart_sdf(wheels, plugin, *, forks=(), mu=1.0, mass=8.0, balls=()):
 def cart(make):
     """`cart_sdf` as a description."""
     return lambda wheels, plugin, **more: make.sdf(cart_sdf(wheels, plugin, **more))
-
-
-class Log:
-    """What a world's topics carried."""
-
-    @staticmethod
-    def read(world, topic, seconds):
-        """The messages of the next seconds."""
-        box = world.mailbox(topic, size=100_000)
-        world.run(seconds)
-        box.close()
-        return box.drain()
-
-
-@pytest.fixture
-def read():
-    return Log.read
-
-
-@pytest.fixture
-def ask():
-    """Calls a service, lets one step go by, and returns the answer."""
-
-    def asked(world, name, **request):
-        kind = world.graph.service(name).type
-        future = world.graph.call(name, from_dict(f"{kind}_Request", request))
-        world.run(world.session.simulation.step_ns * 1e-9)
-        return future.result(timeout=60)
-
-    return asked

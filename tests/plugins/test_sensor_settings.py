@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from tests.coded import coded, named
-from tests.plugins.cameras import pixels_of, sensor, take
+from tests.devices.cameras.sensors import pixels_of, sensor, take
 from tests.plugins.test_navigation import spherical
 
 from cartwheel.codes import devices, running

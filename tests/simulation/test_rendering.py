@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.plugins.cameras import pixels_of, sensor, take
+from tests.devices.cameras.sensors import pixels_of, sensor, take
 
 SHAPES = (
     "<box><size>{} {} {}</size></box>",

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.plugins.test_camera import camera, look
+from tests.devices.cameras.posts import camera, look
 
 from cartwheel.geometry import Pose
 

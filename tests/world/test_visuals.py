@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from PIL import Image
-from tests.plugins.cameras import SKY, pixels_of, sensor, take
+from tests.devices.cameras.sensors import SKY, pixels_of, sensor, take
 
 from cartwheel.geometry import Pose
 

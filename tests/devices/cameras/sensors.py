@@ -1,10 +1,11 @@
-"""Cameras that stand in the air, and what they publish."""
+"""Camera sensors and their messages, for tests."""
 
 import math
 
 import numpy as np
 
 RED = (0.9, 0.05, 0.05)
+
 SKY = 178
 """Gazebo's 0.7 as a byte."""
 

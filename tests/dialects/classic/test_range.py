@@ -4,42 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from tests.devices.rays.range_finders import finder, messages, wall
 
 from cartwheel.codes import devices
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
-
-RANGE = "libgazebo_ros_range.so"
-SONAR = "libhector_gazebo_ros_sonar.so"
-
-
-def finder(
-    tags="<topicName>front</topicName>",
-    *,
-    filename=RANGE,
-    rate=20,
-    least=0.05,
-    most=4.0,
-    noise="",
-):
-    """Five by five rays, a quarter rad to each side."""
-    angles = "<samples>5</samples><min_angle>-0.25</min_angle><max_angle>0.25</max_angle>"
-    return f"""<model name="post"><static>true</static><pose>0 0 2 0 0 0</pose>
-      <link name="nose"><sensor name="sonar" type="ray"><update_rate>{rate}</update_rate>
-        <ray><scan><horizontal>{angles}</horizontal><vertical>{angles}</vertical></scan>
-          <range><min>{least}</min><max>{most}</max></range>{noise}</ray>
-        <plugin name="range" filename="{filename}">{tags}</plugin></sensor></link></model>"""
-
-
-def wall(make, distance):
-    return make.box("wall", (1, 10, 10), static=True, pose=Pose((distance + 0.5, 0, 0)))
-
-
-def messages(world, topic="/front", seconds=0.2):
-    inbox = world.mailbox(topic, size=10_000)
-    world.run(seconds)
-    inbox.close()
-    return inbox.drain()
 
 
 def test_it_reads_the_nearest_thing_ahead(make):
@@ -104,33 +73,6 @@ def test_noise_stays_within_the_limits(make):
     readings = [message.range for message in told]
     assert min(readings) >= 0.05
     assert max(readings) == 4.0
-
-
-def test_hectors_sonar(make):
-    tags = "<topicName>sonar/front</topicName><frameId>ear</frameId><offset>0.1</offset>"
-    world = make.world(wall(make, 2.0), make.sdf(finder(tags, filename=SONAR)))
-    message = messages(world, "/sonar/front")[0]
-    assert message.range == pytest.approx(2.1)
-    assert message.header.frame_id == "ear"
-    assert message.radiation_type == message.ULTRASOUND
-    assert message.field_of_view == pytest.approx(0.5)
-
-
-def test_a_drift_wanders_slowly_with_the_spread_that_is_asked_for(make):
-    """A Gauss-Markov process of time constant T: the correlation over T is 1/e."""
-    spread, constant, rate = 0.05, 0.5, 100
-    tags = f"<drift>{spread}</drift><driftFrequency>{1 / constant}</driftFrequency>"
-    world = make.world(wall(make, 2.0), make.sdf(finder(tags, filename=SONAR, rate=rate)))
-    told = messages(world, "/sonar", seconds=200.0)
-    errors = np.array([message.range for message in told]) - 2.0
-    # As good as 200 s / 2 T independent values, and five standard errors.
-    free = 200.0 / (2 * constant)
-    assert errors.std() == pytest.approx(spread, rel=5 / math.sqrt(2 * free))
-    lag = int(constant * rate)
-    correlation = np.mean(errors[lag:] * errors[:-lag]) / errors.var()
-    assert correlation == pytest.approx(math.exp(-1), abs=5 / math.sqrt(free))
-    # From one reading to the next it moves little.
-    assert np.abs(np.diff(errors)).max() < spread
 
 
 @pytest.mark.parametrize(

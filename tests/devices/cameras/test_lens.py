@@ -1,11 +1,11 @@
-"""Bent images: a post where Brown and Conrady's formula puts it, and nothing else changed."""
+"""Lenses with distortion: where the formula images a point, the camera renders it."""
 
 import math
 
 import numpy as np
 import pytest
 from tests.coded import coded
-from tests.plugins.cameras import RED, SKY, depths_of, focal, pixels_of, reds, sensor, take
+from tests.devices.cameras.sensors import RED, SKY, depths_of, focal, pixels_of, reds, sensor, take
 
 from cartwheel.codes import devices
 from cartwheel.description.model import CameraIntrinsics
@@ -13,8 +13,11 @@ from cartwheel.devices.cameras.lens import Distortion, Lens
 from cartwheel.geometry import Pose
 
 BARREL = {"k1": -0.25, "k2": 0.05, "p1": 0.0, "p2": 0.0, "k3": 0.0}
+
 PINCUSHION = {"k1": 0.2, "k2": 0.1, "p1": 0.0, "p2": 0.0, "k3": 0.05}
+
 SKEW = {"k1": -0.1, "k2": 0.0, "p1": 0.01, "p2": -0.015, "k3": 0.0}
+
 FOV = 1.4
 
 

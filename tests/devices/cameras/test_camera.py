@@ -1,81 +1,14 @@
-"""Images against the pinhole model, their calibration against Gazebo's own numbers."""
+"""Camera images, by the geometry of a pinhole."""
 
-import importlib
 import io
 import math
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from tests.coded import coded
+from tests.devices.cameras.posts import RED, SKY, camera, look, reds, silhouette, take
 
-from cartwheel.codes import world as world_codes
 from cartwheel.geometry import Pose, quat_from_rpy
-
-RED = (0.9, 0.05, 0.05)
-SKY = 178
-"""Gazebo's 0.7 as a byte."""
-
-
-def camera(
-    *,
-    pose="0 0 1 0 0 0",
-    width=320,
-    height=240,
-    fov=1.04,
-    near=0.1,
-    far=50.0,
-    form="R8G8B8",
-    rate=30,
-    plugin="",
-    inside="",
-):
-    """A camera that stands in the air."""
-    return f"""
-    <model name="eye"><static>1</static><pose>{pose}</pose><link name="link">
-      <sensor name="cam" type="camera"><update_rate>{rate}</update_rate>
-        <camera><horizontal_fov>{fov}</horizontal_fov>
-          <image><width>{width}</width><height>{height}</height><format>{form}</format></image>
-          <clip><near>{near}</near><far>{far}</far></clip>{inside}
-        </camera>
-        <plugin name="p" filename="libgazebo_ros_camera.so">{plugin}</plugin>
-      </sensor></link></model>"""
-
-
-def look(world, topic="/cam/image_raw"):
-    """The next image, as an array."""
-    message = take(world, topic)
-    return np.asarray(message.data).reshape(message.height, message.width, -1)
-
-
-def take(world, topic):
-    box = world.mailbox(topic, size=100)
-    while not (messages := box.drain()):
-        world.run(0.005)
-    box.close()
-    return messages[0]
-
-
-def reds(pixels):
-    pixels = pixels.astype(int)
-    return (pixels[..., 0] > 60) & (pixels[..., 0] > 3 * pixels[..., 1])
-
-
-def silhouette(eye, box_pose, size, *, width, height, fov):
-    """Left, right, top and bottom of a box in pixels from the image's corner."""
-    focal = width / (2 * math.tan(fov / 2))
-    columns, rows = [], []
-    for corner in np.ndindex(2, 2, 2):
-        point = [(index - 0.5) * edge for index, edge in zip(corner, size, strict=True)]
-        x, y, z = eye.inverse().apply(box_pose.apply(point))
-        assert x > 0
-        columns.append(width / 2 - focal * y / x)
-        rows.append(height / 2 - focal * z / x)
-    return min(columns), max(columns), min(rows), max(rows)
 
 
 @pytest.mark.parametrize(("width", "height"), [(320, 240), (640, 480), (333, 111), (96, 200)])
@@ -295,116 +228,6 @@ def test_a_spawned_box_appears_and_a_deleted_one_goes(make):
     assert reds(look(world)).any()
     world.model("post").delete()
     assert np.array_equal(look(world), before)
-
-
-def resident_bytes():
-    pages = Path("/proc/self/statm").read_text().split()[1]
-    return int(pages) * os.sysconf("SC_PAGE_SIZE")
-
-
-def test_memory_does_not_grow_with_images(make):
-    world = make.world(make.sdf(camera(rate=200)))
-    images = []
-    world.subscribe("/cam/image_raw", lambda message: images.append(message.header.stamp))
-    world.run(1.0)
-    before = resident_bytes()
-    world.run(10.0)
-    assert len(images) == 2200
-    # A leak of one image in a hundred would be 4.6 MB.
-    assert resident_bytes() - before < 4e6
-
-
-def test_a_machine_without_opengl_says_so_once_and_drives_on(make, rosbots, monkeypatch):
-    from cartwheel.simulation import offscreen
-
-    real = importlib.import_module
-
-    def absent(name, *rest):
-        if name.startswith("mujoco."):
-            raise ImportError(f"{name}: no library")
-        return real(name, *rest)
-
-    monkeypatch.setattr(offscreen.importlib, "import_module", absent)
-    world = make.world()
-    world.session.spawn(rosbots, pose=Pose((0, 0, 0.05)))
-    images = world.mailbox("/rosbots/camera1/image_raw")
-    info, odometry = world.mailbox("/rosbots/camera1/camera_info"), world.mailbox("/odom")
-    world.publish("/part2_cmr/cmd_vel", linear_x=0.5)
-    world.run(2.0)
-    assert images.drain() == []
-    assert len(info.drain()) == 60
-    assert len(odometry.drain()) == 200
-    assert world.model("rosbots").pose.x > 0.5
-    (told,) = coded(
-        world, world_codes.OPENGL_MISSING, packages=("libegl1", "libgl1", "libgl1-mesa-dri")
-    )
-    assert told.severity == "warning"
-
-
-SCRIPT = """
-import cartwheel as cw
-world = cw.World("post")
-world.spawn("rosbots.xacro", z=0.05)
-box = world.mailbox("/rosbots/camera1/image_raw")
-world.run(0.1)
-image = box.drain()[-1]
-warnings = [d for d in world.diagnostics if d.severity != "info"]
-print(len(image.data), int(image.data.max()) > int(image.data.min()), len(warnings))
-"""
-
-
-@pytest.mark.parametrize("gl", [None, "egl", ""])
-def test_no_display_is_needed(gl):
-    environment = {
-        name: value
-        for name, value in os.environ.items()
-        if name not in ("DISPLAY", "MUJOCO_GL", "PYOPENGL_PLATFORM")
-    }
-    if gl is not None:
-        environment["MUJOCO_GL"] = gl
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    assert done.stdout.split() == ["230400", "True", "0"], done.stderr
-
-
-BLIND = """
-import cartwheel as cw
-world = cw.World("post")
-cart = world.spawn("rosbots.xacro", z=0.05)
-box = world.mailbox("/rosbots/camera1/image_raw")
-cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
-world.run(2.0)
-warnings = [d for d in world.diagnostics if d.severity != "info"]
-print(len(box.drain()), cart.pose.x > 0.5, len(warnings))
-print(warnings[0])
-"""
-
-
-def test_opengl_that_is_named_and_missing_is_told_and_no_more(tmp_path):
-    """MuJoCo's own package loads what MUJOCO_GL names while it is imported, or fails."""
-    (tmp_path / "OpenGL").mkdir()
-    (tmp_path / "OpenGL" / "__init__.py").write_text('raise ImportError("no OpenGL here")')
-    environment = {**os.environ, "MUJOCO_GL": "osmesa", "PYTHONPATH": str(tmp_path)}
-    # Left by pictures of tests before.
-    environment.pop("PYOPENGL_PLATFORM", None)
-    done = subprocess.run(
-        [sys.executable, "-c", BLIND],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    counts, *told = done.stdout.splitlines()
-    assert counts.split() == ["0", "True", "1"], done.stderr
-    assert "cameras need OpenGL" in told[0]
-    assert "no OpenGL here" in told[0]
 
 
 def test_a_camera_turned_on_its_link_looks_where_it_is_turned(make):

@@ -1,9 +1,9 @@
-"""The four sensors of a RealSense: topics, frames, depths in mm, bounds of their own."""
+"""A RealSense: four streams of one plugin."""
 
 import numpy as np
 import pytest
 from tests.coded import coded
-from tests.plugins.cameras import cloud_of, pixels_of, take, topic_names
+from tests.devices.cameras.sensors import cloud_of, pixels_of, take, topic_names
 
 from cartwheel.codes import devices, running
 from cartwheel.geometry import Pose

@@ -1,77 +1,13 @@
-"""What a laser scanner reads, by the geometry of what stands before it."""
+"""What a scanner measures, by the geometry of what stands before it."""
 
 import dataclasses
 import math
 
 import numpy as np
 import pytest
-from tests.coded import coded
+from tests.devices.rays.scanners import HEIGHT, angles, box, model, scan, scans, sensor, wall
 
-from cartwheel.codes import devices
-from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose, matrix_from_quat, quat_from_rpy
-
-HEIGHT = 0.5
-"""m, of the sensor above the ground."""
-
-
-def sensor(
-    *,
-    samples=181,
-    low=-math.pi / 2,
-    high=math.pi / 2,
-    least=0.1,
-    most=10.0,
-    rate=10,
-    resolution=1,
-    vertical="",
-    noise="",
-    pose="0 0 0 0 0 0",
-    kind="ray",
-    plugin="libgazebo_ros_laser.so",
-    tags="<topicName>scan</topicName><frameName>laser</frameName>",
-):
-    return f"""
-    <sensor name="lidar" type="{kind}"><pose>{pose}</pose><update_rate>{rate}</update_rate>
-      <ray><scan><horizontal><samples>{samples}</samples><resolution>{resolution}</resolution>
-        <min_angle>{low}</min_angle><max_angle>{high}</max_angle></horizontal>{vertical}</scan>
-        <range><min>{least}</min><max>{most}</max></range>{noise}</ray>
-      <plugin name="laser" filename="{plugin}">{tags}</plugin>
-    </sensor>"""
-
-
-def model(sensor_text, *, bodies="", pose=f"0 0 {HEIGHT} 0 0 0"):
-    """A post that stands still with a scanner at its frame."""
-    return f"""
-    <model name="post"><static>true</static><pose>{pose}</pose>
-      <link name="laser">{bodies}{sensor_text}</link></model>"""
-
-
-def box(name, size, pose="0 0 0 0 0 0", *, visual=False, retro=None):
-    kind = "visual" if visual else "collision"
-    told = f"<laser_retro>{retro}</laser_retro>" if retro is not None else ""
-    return f"""<{kind} name="{name}"><pose>{pose}</pose>{told}
-      <geometry><box><size>{size}</size></box></geometry></{kind}>"""
-
-
-def scans(world, seconds=0.05, topic="/scan"):
-    inbox = world.mailbox(topic, size=10_000)
-    world.run(seconds)
-    inbox.close()
-    return inbox.drain()
-
-
-def scan(world, topic="/scan"):
-    return scans(world, 0.2, topic)[0]
-
-
-def angles(message):
-    return message.angle_min + np.arange(len(message.ranges)) * message.angle_increment
-
-
-def wall(make, distance, *, width=50.0, name="wall"):
-    """Across the x axis; its near face at `distance`."""
-    return make.box(name, (1.0, width, 4.0), static=True, pose=Pose((distance + 0.5, 0, 0)))
 
 
 def test_a_wall_is_read_at_its_distance_over_the_cosine(make):
@@ -87,18 +23,6 @@ def test_a_wall_is_read_at_its_distance_over_the_cosine(make):
     assert message.ranges[seen] == pytest.approx(expected[seen], rel=1e-5)
     assert np.all(np.isposinf(message.ranges[~seen]))
     assert 0 < seen.sum() < 181
-
-
-def test_the_message_says_what_the_sensor_is(make):
-    world = make.world(wall(make, 2.0), make.sdf(model(sensor(low=-1.0, high=1.5, samples=11))))
-    message = scan(world)
-    assert message.header.frame_id == "laser"
-    assert (message.range_min, message.range_max) == (0.1, 10.0)
-    assert (message.angle_min, message.angle_max) == (-1.0, 1.5)
-    assert message.angle_increment == pytest.approx(0.25)
-    # All rays are measured in one moment, as in Gazebo.
-    assert (message.time_increment, message.scan_time) == (0.0, 0.0)
-    assert message.ranges.dtype == message.intensities.dtype == np.float32
 
 
 def test_a_scan_turns_to_the_left(make):
@@ -194,19 +118,6 @@ def test_own_shapes_one_behind_the_other_are_all_looked_past(make):
     assert set(world.session.simulation.model.geom_group.tolist()) == {1, 4}
 
 
-def test_a_gpu_sensor_sees_visuals_and_a_cpu_sensor_collisions(make):
-    ahead = f"""<model name="ahead"><static>true</static><link name="link">
-      {box("solid", "1 1 4", "3.5 0 0 0 0 0")}
-      {box("picture", "1 1 4", "2.5 0 0 0 0 0", visual=True)}</link></model>"""
-    for kind, plugin, expected in (
-        ("ray", "libgazebo_ros_laser.so", 3.0),
-        ("gpu_ray", "libgazebo_ros_gpu_laser.so", 2.0),
-    ):
-        text = sensor(samples=1, kind=kind, plugin=plugin)
-        world = make.world(make.sdf(ahead), make.sdf(model(text)))
-        assert scan(world).ranges == pytest.approx([expected])
-
-
 def test_intensities_are_the_laser_retro_of_what_is_hit(make):
     left = f"""<model name="bright"><static>true</static><link name="link">
       {box("solid", "1 1 4", "0 3.5 0 0 0 0", retro=120)}</link></model>"""
@@ -214,55 +125,6 @@ def test_intensities_are_the_laser_retro_of_what_is_hit(make):
     message = scan(world)
     assert message.ranges == pytest.approx([math.inf, 2.0, 3.0])
     assert message.intensities.tolist() == [0.0, 0.0, 120.0]
-
-
-@pytest.mark.parametrize(
-    ("samples", "resolution", "count"),
-    [(100, 2, 200), (100, 0.5, 50), (3, 1.5, 4), (66.7, 1, 66)],
-)
-def test_the_resolution_multiplies_the_samples(make, samples, resolution, count):
-    text = sensor(samples=samples, resolution=resolution, low=-1.0, high=1.0)
-    message = scan(make.world(wall(make, 2.0), make.sdf(model(text))))
-    assert len(message.ranges) == count
-    assert message.angle_increment == pytest.approx(2.0 / (count - 1))
-    assert message.ranges == pytest.approx(2.0 / np.cos(angles(message)), rel=1e-5)
-
-
-def test_a_single_ray_looks_to_the_middle(make):
-    """As it stands in worlds that others wrote: one sample at half the resolution."""
-    text = sensor(samples=1, resolution=0.5, low=-0.2, high=0.6)
-    message = scan(make.world(wall(make, 2.0), make.sdf(model(text))))
-    assert message.ranges == pytest.approx([2.0 / math.cos(0.2)])
-    assert message.angle_min == message.angle_max == pytest.approx(0.2)
-    assert message.angle_increment == 0.0
-
-
-def test_two_robots_have_their_own_topics_and_frames(make):
-    world = make.world(wall(make, 2.0))
-    described = make.sdf(model(sensor(samples=1)))
-    for index in (1, 2):
-        world.session.spawn(
-            described,
-            name=f"post_{index}",
-            pose=Pose((-index, 0, HEIGHT)),
-            namespace=f"robot_{index}",
-            frame_prefix=f"robot_{index}",
-        )
-    for index in (1, 2):
-        message = scan(world, f"/robot_{index}/scan")
-        assert message.header.frame_id == f"robot_{index}/laser"
-        # The second stands behind the first, of which a scanner alone is nothing to be seen.
-        assert message.ranges == pytest.approx([2.0 + index])
-
-
-@pytest.mark.parametrize(
-    ("named", "frame"), [("laser", "robot_1/laser"), ("/laser", "laser"), ("", "robot_1/laser")]
-)
-def test_a_namespace_goes_before_the_frame_where_there_is_no_prefix(make, named, frame):
-    tags = f"<topicName>scan</topicName><frameName>{named}</frameName>"
-    tags += "<robotNamespace>/robot_1</robotNamespace>"
-    world = make.world(make.sdf(model(sensor(samples=1, tags=tags))))
-    assert scan(world, "/robot_1/scan").header.frame_id == frame
 
 
 def test_who_listens_changes_nothing_of_what_happens(make):
@@ -310,70 +172,6 @@ def test_nobody_listens_and_nothing_is_measured(make, monkeypatch):
     assert len(scans(world, 0.1)) == len(casts) == 10
 
 
-NOISE = "<noise><type>gaussian</type><mean>{mean}</mean><stddev>{stddev}</stddev></noise>"
-
-
-def noisy(make, *, seed=0, mean=0.0, stddev=0.02, most=10.0, seconds=2.0):
-    text = sensor(
-        samples=1000,
-        low=-0.001,
-        high=0.001,
-        most=most,
-        noise=NOISE.format(mean=mean, stddev=stddev),
-    )
-    world = make.world(wall(make, 2.0), make.sdf(model(text)), seed=seed)
-    return np.array([m.ranges for m in scans(world, seconds)])
-
-
-def test_noise_has_the_mean_and_the_spread_that_are_asked_for(make):
-    readings = noisy(make, mean=0.05, stddev=0.02)
-    count = readings.size
-    assert count == 20_000
-    # Five standard errors of the mean and of the standard deviation.
-    assert readings.mean() == pytest.approx(2.05, abs=5 * 0.02 / math.sqrt(count))
-    assert readings.std() == pytest.approx(0.02, abs=5 * 0.02 / math.sqrt(2 * count))
-    # No ray and no moment repeats another's.
-    assert len(np.unique(readings)) > 0.9 * count
-
-
-def test_noise_stays_within_what_can_be_measured(make):
-    readings = noisy(make, stddev=0.5, most=2.2)
-    assert readings.max() == np.float32(2.2)
-    assert readings.min() >= 0.1
-
-
-def test_quantised_ranges_are_multiples_of_the_precision(make):
-    noise = "<noise><type>gaussian_quantized</type><mean>0</mean><stddev>0.1</stddev>"
-    noise += "<precision>0.25</precision></noise>"
-    text = sensor(samples=500, low=-0.001, high=0.001, noise=noise)
-    ranges = scan(make.world(wall(make, 2.0), make.sdf(model(text)))).ranges
-    assert set(ranges.tolist()) == {1.75, 2.0, 2.25}
-
-
-def test_a_bias_is_drawn_once(make):
-    noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0</stddev>"
-    noise += "<bias_mean>0.1</bias_mean><bias_stddev>0</bias_stddev></noise>"
-    signs = set()
-    for seed in range(8):
-        text = sensor(samples=1, noise=noise)
-        told = scans(make.world(wall(make, 2.0), make.sdf(model(text)), seed=seed), 1.0)
-        (value,) = {float(message.ranges[0]) for message in told}
-        assert abs(value - 2.0) == pytest.approx(0.1, abs=1e-6)
-        signs.add(value > 2.0)
-    # As in Gazebo it may have either sign.
-    assert signs == {True, False}
-
-
-def test_what_is_not_there_has_no_noise(make):
-    assert np.all(np.isposinf(noisy(make, most=1.5)))
-
-
-def test_the_seed_decides_the_noise(make):
-    first, again, other = noisy(make, seed=1), noisy(make, seed=1), noisy(make, seed=2)
-    assert np.array_equal(first, again)
-    assert not np.array_equal(first, other)
-
-
 def test_many_rays_at_once_read_what_one_alone_reads(make):
     """Against single rays, in a world of all kinds of shapes in which the bundle is culled."""
     import mujoco
@@ -414,48 +212,6 @@ def test_many_rays_at_once_read_what_one_alone_reads(make):
         expected.append(found if 0 <= found < 6.0 else math.inf)
     assert 50 < np.isfinite(expected).sum() < 350
     assert message.ranges == pytest.approx(expected, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "code"),
-    [
-        ({"samples": 0}, devices.SCAN_SAMPLES_INVALID),
-        ({"samples": "many"}, devices.PLUGIN_PARAMETER_INVALID),
-        ({"resolution": 0}, devices.SCAN_SAMPLES_INVALID),
-        ({"resolution": -1}, devices.SCAN_SAMPLES_INVALID),
-        ({"least": 2.0, "most": 1.0}, devices.SENSOR_RANGE_INVALID),
-        ({"least": -1.0}, devices.SENSOR_RANGE_INVALID),
-        ({"most": "nan"}, devices.PLUGIN_PARAMETER_INVALID),
-        ({"noise": NOISE.format(mean=0, stddev=-1)}, devices.PLUGIN_PARAMETER_INVALID),
-        ({"noise": "<noise><type>pink</type></noise>"}, devices.PLUGIN_PARAMETER_INVALID),
-        ({"samples": 100_000_000}, devices.SCAN_SAMPLES_INVALID),
-    ],
-)
-def test_a_sensor_that_cannot_be_is_refused_with_its_place(make, wrong, code):
-    described = make.sdf(model(sensor(**wrong)))
-    world = make.world()
-    with pytest.raises(CartwheelError) as error:
-        world.session.spawn(described)
-    assert error.value.code is code
-    assert error.value.origin is not None
-    assert error.value.origin.line > 0
-    # Nothing is left of it.
-    assert world.session.simulation.models == ("ground_plane",)
-    assert "/scan" not in {topic.name for topic in world.session.graph.topics()}
-
-
-def test_a_sensor_without_rays_is_refused(make):
-    text = """<sensor name="lidar" type="ray"><plugin name="p" filename="libgazebo_ros_laser.so"/>
-    </sensor>"""
-    with pytest.raises(CartwheelError) as caught:
-        make.world(make.sdf(model(text)))
-    assert caught.value.code is devices.SENSOR_INCOMPLETE
-
-
-def test_a_range_without_end_is_measured(make):
-    text = sensor(samples=2, low=0, high=math.pi / 2, most="inf")
-    message = scan(make.world(wall(make, 150.0), make.sdf(model(text))))
-    assert message.ranges == pytest.approx([150.0, math.inf])
 
 
 def test_a_scan_is_of_its_stamp(make):
@@ -540,20 +296,3 @@ def test_a_ray_passes_through_the_gap_of_a_mesh(make, tmp_path):
     assert message.ranges == pytest.approx(
         [math.hypot(2.0, 1.0), 5.0, math.hypot(2.0, 1.0)], rel=1e-5
     )
-
-
-def test_angles_the_wrong_way_round_are_swept_clockwise_and_told(make):
-    """As Gazebo casts them; a reader that adds up the steps sees everything where it is."""
-    pillar = make.box("pillar", (0.2, 0.2, 4), static=True, pose=Pose((1.5, 0.8, 0)))
-    world = make.world(pillar, make.sdf(model(sensor(samples=101, low=0.7, high=-0.3))))
-    message = scan(world)
-    assert (message.angle_min, message.angle_max) == pytest.approx((0.7, -0.3))
-    assert message.angle_increment == pytest.approx(-0.01)
-    hits = np.flatnonzero(np.isfinite(message.ranges))
-    angles = message.angle_min + hits * message.angle_increment
-    # From its corner behind on the left to its corner ahead on the right.
-    assert angles.max() == pytest.approx(math.atan2(0.9, 1.4), abs=0.0101)
-    assert angles.min() == pytest.approx(math.atan2(0.7, 1.6), abs=0.0101)
-    (told,) = coded(world, devices.SCAN_REVERSED)
-    assert told.severity == "info"
-    assert told.values == {"first": 0.7, "last": -0.3}

@@ -1,4 +1,4 @@
-"""A lidar as new Gazebo has it: no plugin of its own, a system at most."""
+"""Lidars of gz-sim: a scan and a point cloud, without a plugin."""
 
 import math
 
@@ -10,6 +10,7 @@ from cartwheel.codes import devices
 from cartwheel.geometry import Pose
 
 HEIGHT = 0.5
+
 SYSTEM = '<plugin name="s" filename="gz-sim-sensors-system"/>'
 
 
