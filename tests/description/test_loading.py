@@ -109,6 +109,8 @@ def test_missing_file_suggests_near_names(folder):
     assert failure("cart.udf") == "cart.udf file-missing cart.urdf"
     assert failure("robots.xacro") == "robots.xacro file-missing rosbots.xacro"
     assert failure("zzzzz") == "zzzzz file-missing"
+    assert failure("materials.xcro") == "materials.xcro file-missing"  # a part of rosbots.xacro
+    assert failure("traffic_con") == "traffic_con file-missing traffic_cone"
 
 
 @pytest.mark.wording
@@ -116,7 +118,11 @@ def test_missing_file_says_what_is_there(folder):
     write(folder / "cart.urdf", URDF)
     assert hint("cart.udf") == 'Did you mean "cart.urdf"?'
     assert hint("robot/cart.urdf") == 'The folder "robot" does not exist either.'
-    assert "Bundled descriptions:" in hint("zzzzz")
+    listed = hint("zzzzz").removeprefix("Bundled descriptions: ").removesuffix(".").split(", ")
+    assert {"rosbots.xacro", "empty.world", "object.urdf", "ramp"} <= set(listed)
+    for name in listed:
+        assert load(name).name
+    assert not {"materials.xacro", "rosbots.gazebo.xacro", "sun", "ground_plane"} & set(listed)
     write(folder / "several" / "a.urdf", URDF)
     write(folder / "several" / "b.urdf", URDF)
     assert hint("several") == "Pass one of: a.urdf, b.urdf."

@@ -14,6 +14,8 @@ from cartwheel.errors import DescriptionError, Origin
 SUFFIXES = (".urdf.xacro", ".xacro", ".urdf", ".sdf", ".world")
 _LISTED = 8
 """Maximum number of descriptions to list in a hint."""
+_IN_EVERY_WORLD = frozenset({"ground_plane"})
+"""Models that cannot be spawned because the built-in worlds already contain them."""
 
 
 def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Path:
@@ -70,6 +72,27 @@ def shipped_descriptions() -> Iterator[Path]:
         for path in sorted(root.glob(pattern)):
             if path.is_file() and path.name.endswith(SUFFIXES):
                 yield path
+
+
+def _spawnable_names() -> list[str]:
+    """Names of the built-in robots, worlds and models, without the parts of other descriptions."""
+    names = {
+        path.parent.name if path.name == "model.sdf" else path.name
+        for path in shipped_descriptions()
+        if _is_complete(path)
+    }
+    return sorted(names - _IN_EVERY_WORLD)
+
+
+def _is_complete(path: Path) -> bool:
+    """Whether a file describes a robot, a model or a world; xacro parts have no name."""
+    try:
+        root = xml.read_file(path)
+    except DescriptionError:
+        return False
+    if root.tag == "robot":
+        return "name" in root.attributes
+    return any(child.tag in ("model", "world") for child in root.children)
 
 
 def _resource_folders() -> list[Path]:
@@ -146,12 +169,12 @@ def _meant(given: Path) -> tuple[str, str]:
     """The likely file, or an empty string, and the hint."""
     if len(given.parts) != 1:
         return xml.near_files(given)
-    shipped = {path.name for path in shipped_descriptions()}
+    shipped = _spawnable_names()
     try:
         here = {entry.name for _, entry in zip(range(2000), Path.cwd().iterdir(), strict=False)}
     except OSError:
         here = set()
-    near = numbers.likely(given.name, here | shipped)
+    near = numbers.likely(given.name, here | set(shipped))
     if near:
         return near, f'Did you mean "{near}"?'
-    return "", f"Bundled descriptions: {', '.join(sorted(shipped))}." if shipped else ""
+    return "", f"Bundled descriptions: {', '.join(shipped)}." if shipped else ""

@@ -67,19 +67,19 @@ class AckermannParameters:
         "left_steering_pid_gain", default=None, doc="No effect: a position servo steers the wheel."
     )
     left_range: tuple[float, float] | None = tag(
-        "left_steering_i_range", default=None, doc="No effect."
+        "left_steering_i_range", default=None, doc="No effect: a position servo steers the wheel."
     )
     right_gain: tuple[float, float, float] | None = tag(
         "right_steering_pid_gain", default=None, doc="No effect: a position servo steers the wheel."
     )
     right_range: tuple[float, float] | None = tag(
-        "right_steering_i_range", default=None, doc="No effect."
+        "right_steering_i_range", default=None, doc="No effect: a position servo steers the wheel."
     )
     speed_gain: tuple[float, float, float] | None = tag(
         "linear_velocity_pid_gain", default=None, doc="No effect: velocity servos drive the wheels."
     )
     speed_range: tuple[float, float] | None = tag(
-        "linear_velocity_i_range", default=None, doc="No effect."
+        "linear_velocity_i_range", default=None, doc="No effect: velocity servos drive the wheels."
     )
     update_rate: float = tag(
         "update_rate",

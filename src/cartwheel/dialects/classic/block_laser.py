@@ -39,7 +39,7 @@ class BlockLaserParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="No effect: the sensor's `<update_rate>` is used.",
+        doc="No effect: the sensor's `<update_rate>` applies.",
     )
 
 

@@ -351,7 +351,7 @@ class TriggeredCamera(Camera):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ProsilicaParameters(CameraParameters):
     poll_service: str = tag(
-        "pollServiceName", default="request_image", doc="Not supported: the camera always streams."
+        "pollServiceName", default="request_image", doc="No effect: the camera always streams."
     )
 
 

@@ -49,9 +49,13 @@ class DepthCameraParameters(CameraParameters):
         doc="Publish depths as 16UC1 in mm, with 0 instead of NaN.",
     )
     baseline: float = tag("baseline", default=0.0, unit="m", doc="No effect.")
-    reflectance_topic: str = tag("reflectanceTopicName", default="", doc="Not supported.")
-    normals_topic: str = tag("normalsTopicName", default="", doc="Not supported.")
-    reduce_normals: int = tag("reduceNormals", default=50, doc="No effect.")
+    reflectance_topic: str = tag(
+        "reflectanceTopicName", default="", doc="No effect, as in Gazebo 11."
+    )
+    normals_topic: str = tag("normalsTopicName", default="", doc="No effect, as in Gazebo 11.")
+    reduce_normals: int = tag(
+        "reduceNormals", default=50, doc="No effect: normals are not published."
+    )
 
 
 class DepthCamera(RosCamera[DepthCameraParameters]):

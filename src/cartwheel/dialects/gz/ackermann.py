@@ -61,8 +61,12 @@ class GzAckermannParameters(GzLimitedParameters):
         doc="Topic of the Twist commands, relative to `/model/<model>`. Used if `<topic>` "
         "is not set.",
     )
-    steering_only: bool = tag("steering_only", default=False, doc="Not supported.")
-    actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
+    steering_only: bool = tag(
+        "steering_only", default=False, doc="No effect: the car is driven by Twist messages."
+    )
+    actuators: bool = tag(
+        "use_actuator_msg", default=False, doc="No effect: the car is driven by Twist messages."
+    )
 
 
 class GzAckermannDrive(Plugin[GzAckermannParameters]):

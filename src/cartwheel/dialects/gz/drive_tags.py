@@ -77,8 +77,12 @@ class GzCommonLimits(GzDriveParameters):
         unit="m/s² or rad/s²",
         doc="Maximum linear and angular acceleration. Default: no limit.",
     )
-    min_jerk: float | None = tag("min_jerk", default=None, unit="m/s³", doc="Not supported.")
-    max_jerk: float | None = tag("max_jerk", default=None, unit="m/s³", doc="Not supported.")
+    min_jerk: float | None = tag(
+        "min_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
+    )
+    max_jerk: float | None = tag(
+        "max_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,16 +120,16 @@ class GzLimitedParameters(GzCommonLimits):
         doc="Overrides `<max_acceleration>`.",
     )
     min_linear_jerk: float | None = tag(
-        "min_linear_jerk", default=None, unit="m/s³", doc="Not supported."
+        "min_linear_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
     )
     max_linear_jerk: float | None = tag(
-        "max_linear_jerk", default=None, unit="m/s³", doc="Not supported."
+        "max_linear_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
     )
     min_angular_jerk: float | None = tag(
-        "min_angular_jerk", default=None, unit="rad/s³", doc="Not supported."
+        "min_angular_jerk", default=None, unit="rad/s³", doc="No effect: jerk is not limited."
     )
     max_angular_jerk: float | None = tag(
-        "max_angular_jerk", default=None, unit="rad/s³", doc="Not supported."
+        "max_angular_jerk", default=None, unit="rad/s³", doc="No effect: jerk is not limited."
     )
 
 

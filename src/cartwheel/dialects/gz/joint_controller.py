@@ -30,7 +30,9 @@ class _Gains:
     cmd_offset: float = tag(
         "cmd_offset", default=0.0, unit="N m or N", doc="Constant added to the output."
     )
-    actuators: bool = tag("use_actuator_msg", default=False, doc="Not supported.")
+    actuators: bool = tag(
+        "use_actuator_msg", default=False, doc="No effect: the joint is driven by Float64 messages."
+    )
     topic: str = tag(
         "topic",
         default="",
