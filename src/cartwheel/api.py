@@ -76,6 +76,7 @@ class World:
         lenient: Skip plugins that refer to missing parts of their model and report a warning, as in
             `cartwheel run`. Otherwise `spawn` raises an error.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
+        plugins: Python files that define plugins. They are executed.
 
     Raises:
         DescriptionError: The world's file cannot be used.
@@ -89,11 +90,19 @@ class World:
         strict: bool = False,
         lenient: bool = False,
         bridge: Sequence[str | Path] = (),
+        plugins: Sequence[str | Path] = (),
     ) -> None:
         if not isinstance(world, WorldDescription):
             world = descriptions.load_world(world)
         files = [Path(file) for file in bridge]
-        self.session = Session(world, seed=seed, strict=strict, lenient=lenient, bridge=files)
+        self.session = Session(
+            world,
+            seed=seed,
+            strict=strict,
+            lenient=lenient,
+            bridge=files,
+            plugins=[Path(file) for file in plugins],
+        )
         self.session.simulation.drain()  # this thread is the owner
         self.lock = threading.RLock()
         """Held while a thread uses the world."""

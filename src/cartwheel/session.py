@@ -10,6 +10,7 @@ from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.component import Shared
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.gz.bridge_file import read_bridge
+from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
 from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.world_plugins import attach_world
@@ -36,6 +37,7 @@ class Session:
         lenient: Skip plugins that refer to missing parts of their model and report a warning, as
             Gazebo does. Otherwise such a model is rejected.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
+        plugins: Python files that define plugins. They are executed.
         allow_path: Folders with files that clients of the session's services may load.
 
     Raises:
@@ -50,6 +52,7 @@ class Session:
         strict: bool = False,
         lenient: bool = False,
         bridge: Sequence[Path] = (),
+        plugins: Sequence[Path] = (),
         allow_path: Sequence[Path] = (),
     ) -> None:
         self.allow_path = tuple(allow_path)
@@ -58,6 +61,8 @@ class Session:
         """Objects that all components of the simulation share."""
         for path in bridge:
             self.shared.renaming.add(read_bridge(path))
+        for path in plugins:
+            self.shared.get(PluginFiles).load(path)
         self.strict = strict
         self.simulation = Simulation(
             world,

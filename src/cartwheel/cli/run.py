@@ -59,6 +59,15 @@ def run(
             rich_help_panel=help.ROBOT,
         ),
     ] = None,
+    plugin: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--plugin",
+            metavar="FILE",
+            help="Execute this Python file and use the plugins that it defines. Can be repeated.",
+            rich_help_panel=help.ROBOT,
+        ),
+    ] = None,
     speed: Annotated[
         str,
         typer.Option(
@@ -230,6 +239,7 @@ def run(
             package_path=tuple(package_path or ()),
             allow_path=tuple(allow_path or ()),
             controllers=tuple(controllers or ()),
+            plugins=tuple(plugin or ()),
             bridge=tuple(bridge or ()),
             ros1_node=ros1_node if ros1 else None,
             ros2_node=ros2_node if ros2 else None,

@@ -240,3 +240,9 @@ BRIDGE_ENTRY_IGNORED = Code(
     "warning",
     "an entry in a ros_gz_bridge configuration file has no effect",
 )
+PLUGIN_FILE_INVALID = Code(
+    "CW480",
+    "plugin-file-invalid",
+    "error",
+    "a Python file with plugins is missing, fails or defines no plugin",
+)

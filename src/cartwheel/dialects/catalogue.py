@@ -11,12 +11,14 @@ import functools
 import importlib
 import importlib.metadata
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 from cartwheel.dialects.generated import PLUGINS, SENSORS
 from cartwheel.dialects.plugin import Plugin
 
 ROS_CONTROL = "gazebo_ros_control"
+Plugins = Sequence[type[Plugin[Any]]]
 
 
 def short_name(filename: str) -> str:
@@ -28,10 +30,16 @@ def short_name(filename: str) -> str:
     return re.sub(r"^(ignition-gazebo|gz-sim)\d*-", "gz-sim-", stem)
 
 
-def plugin_named(filename: str) -> type[Plugin[object]] | None:
-    """Returns the plugin for a file name, or None. Installed packages take precedence."""
+def plugin_named(filename: str, more: Plugins = ()) -> type[Plugin[object]] | None:
+    """Returns the plugin for a file name, or None.
+
+    Args:
+        filename: Name in a ``<plugin>`` tag.
+        more: Plugins that take precedence over those of installed packages, which take precedence
+            over Cartwheel's own.
+    """
     name = short_name(filename)
-    for plugin in _third():
+    for plugin in (*more, *_third()):
         if name in _names(plugin):
             return plugin
     if name not in PLUGINS and name.endswith(f"_{ROS_CONTROL}"):
@@ -41,18 +49,18 @@ def plugin_named(filename: str) -> type[Plugin[object]] | None:
     return next((plugin for plugin in ours if name in _names(plugin)), None)
 
 
-def plugin_serving(kind: str) -> type[Plugin[object]] | None:
+def plugin_serving(kind: str, more: Plugins = ()) -> type[Plugin[object]] | None:
     """Returns the plugin for sensors of a type that need no ``<plugin>``, or None."""
-    for plugin in _third():
+    for plugin in (*more, *_third()):
         if kind in plugin.serves:
             return plugin
     ours = _within(SENSORS[kind]) if kind in SENSORS else ()
     return next((plugin for plugin in ours if kind in plugin.serves), None)
 
 
-def plugin_names() -> list[str]:
+def plugin_names(more: Plugins = ()) -> list[str]:
     """Returns the short names of all plugins."""
-    return [*PLUGINS, *(name for plugin in _third() for name in _names(plugin))]
+    return [*PLUGINS, *(name for plugin in (*_third(), *more) for name in _names(plugin))]
 
 
 def all_plugins() -> list[type[Plugin[object]]]:
@@ -79,18 +87,7 @@ def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
     for entry in importlib.metadata.entry_points(group="cartwheel.plugins"):
         package = entry.dist.name if entry.dist else entry.value
         try:
-            plugin = entry.load()
-            if not (isinstance(plugin, type) and issubclass(plugin, Plugin)):
-                raise TypeError(f"{entry.value} must be a subclass of Plugin")
-            if isinstance(plugin.filenames, str):
-                raise TypeError(f"{entry.value}.filenames must be a tuple of strings, not a string")
-            names = (*plugin.filenames, *plugin.serves)
-            if not all(isinstance(name, str) for name in names):
-                raise TypeError(
-                    f"{entry.value}.filenames and {entry.value}.serves must contain only strings"
-                )
-            if not dataclasses.is_dataclass(plugin.parameters):
-                raise TypeError(f"{entry.value}.parameters must be a dataclass")
+            plugin = checked_plugin(entry.load(), entry.value)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - code in a different package
             broken.append(
                 f'The plugin "{entry.name}" of the installed package "{package}" cannot be '
@@ -99,6 +96,27 @@ def _installed() -> tuple[tuple[type[Plugin[object]], ...], tuple[str, ...]]:
         else:
             plugins.insert(0, plugin)
     return tuple(plugins), tuple(broken)
+
+
+def checked_plugin(plugin: object, name: str) -> type[Plugin[object]]:
+    """Returns a class from a different package if it is a complete plugin.
+
+    Args:
+        plugin: The class.
+        name: Name of the class for the error.
+
+    Raises:
+        TypeError: It is not a subclass of `Plugin`, or an attribute is missing or invalid.
+    """
+    if not (isinstance(plugin, type) and issubclass(plugin, Plugin)):
+        raise TypeError(f"{name} must be a subclass of Plugin")
+    if isinstance(getattr(plugin, "filenames", ""), str):
+        raise TypeError(f"{name}.filenames must be a tuple of strings")
+    if not all(isinstance(each, str) for each in (*plugin.filenames, *plugin.serves)):
+        raise TypeError(f"{name}.filenames and {name}.serves must contain only strings")
+    if not dataclasses.is_dataclass(getattr(plugin, "parameters", None)):
+        raise TypeError(f"{name}.parameters must be a dataclass")
+    return plugin
 
 
 def _names(plugin: type[Plugin[object]]) -> Iterator[str]:

@@ -8,6 +8,7 @@ from cartwheel.codes import devices
 from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.dialects.catalogue import (
+    Plugins,
     plugin_named,
     plugin_names,
     plugin_serving,
@@ -16,6 +17,7 @@ from cartwheel.dialects.catalogue import (
 )
 from cartwheel.dialects.gz.sensor_tags import own_tag, publishes
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
 from cartwheel.errors import (
@@ -55,15 +57,16 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
     systems = {short_name(tag.filename) for tag in (*part.world.plugins, *part.description.plugins)}
     in_world = any(model is part.description for model in part.world.models)
-    more: _Faults = (UnknownNameError,) if lenient else ()
+    unknown: _Faults = (UnknownNameError,) if lenient else ()
+    more = shared.get(PluginFiles).classes
     try:
         for tag, sensor in pairs:
-            plugin = plugin_named(tag.filename)
+            plugin = plugin_named(tag.filename, more)
             own_system = in_world and short_name(tag.filename).startswith("gz-sim-")
             if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
             if plugin is None:
-                _report_unknown(part, tag)
+                _report_unknown(part, tag, more)
             elif plugin.for_world or (plugin.for_sensor and sensor is None):
                 place = "world" if plugin.for_world else "sensor"
                 part.report(
@@ -75,13 +78,13 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
                     )
                 )
             else:
-                forgiven = _ANY if own_system else (*_HARMLESS, *more)
+                forgiven = _ANY if own_system else (*_HARMLESS, *unknown)
                 plugins += _create(part, shared, plugin, tag, sensor, forgiven=forgiven)
         alone = [
             one
             for one in sensors
             if one.name not in part.read_sensors
-            and not any(plugin_named(tag.filename) for tag in one.plugins)
+            and not any(plugin_named(tag.filename, more) for tag in one.plugins)
         ]
         plugins += _serve(part, shared, alone, systems)
     except Exception:
@@ -117,7 +120,7 @@ def _serve(
 ) -> Iterator[Plugin[object]]:
     """Creates plugins for sensors that have no ``<plugin>``."""
     for sensor in sensors:
-        plugin = plugin_serving(sensor.type)
+        plugin = plugin_serving(sensor.type, shared.get(PluginFiles).classes)
         wanted = publishes(sensor, systems)
         if wanted and plugin is not None:
             tag = own_tag(sensor, tags_of(plugin.parameters))
@@ -141,9 +144,9 @@ def _serve(
         )
 
 
-def _report_unknown(part: Part, tag: PluginTag) -> None:
+def _report_unknown(part: Part, tag: PluginTag, more: Plugins) -> None:
     # The cutoff is high because the names of different plugins are similar.
-    meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names()], cutoff=0.92)
+    meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names(more)], cutoff=0.92)
     broken = unloadable()
     suggested = f'Did you mean "{meant}"?' if meant else ""
     part.report(

@@ -9,6 +9,7 @@ from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.sensor_tags import SYSTEMS
+from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.errors import CartwheelError, Diagnostic, fault
 from cartwheel.simulation import Part
 from cartwheel.simulation.resident import Behaviour
@@ -68,7 +69,7 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
         name = short_name(tag.filename)
         if name in BUILT_IN:
             continue
-        plugin = plugin_named(tag.filename)
+        plugin = plugin_named(tag.filename, shared.get(PluginFiles).classes)
         if plugin is None:
             part.report(
                 devices.PLUGIN_UNKNOWN.diagnostic(

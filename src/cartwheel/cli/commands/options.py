@@ -38,6 +38,8 @@ class Options:
     """Folders with files that clients may access."""
     controllers: tuple[Path, ...] = ()
     """YAML files whose controllers are started."""
+    plugins: tuple[Path, ...] = ()
+    """Python files that define plugins."""
     bridge: tuple[Path, ...] = ()
     """Configuration files of ros_gz_bridge."""
     ros1_node: str | None = None

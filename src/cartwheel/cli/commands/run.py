@@ -100,6 +100,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         strict=options.strict,
         lenient=not options.strict,
         bridge=options.bridge,
+        plugins=options.plugins,
         allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
     )
     session.simulation.tolerant = not options.strict

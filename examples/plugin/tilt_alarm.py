@@ -22,7 +22,7 @@ class TiltAlarm(Plugin[TiltAlarmParameters]):
     filenames = ("libtilt_alarm.so",)
     parameters = TiltAlarmParameters
 
-    def configure(self):
+    def configure(self) -> None:
         self.check_above_zero(limit=self.config.limit)
         self.link = self.link_or_root("")
         self.publisher = self.advertise(self.config.topic, BOOL, rate=self.config.rate)
@@ -30,7 +30,7 @@ class TiltAlarm(Plugin[TiltAlarmParameters]):
             self.config.rate, after=self.publish, active=lambda: self.publisher.wanted
         )
 
-    def publish(self):
+    def publish(self) -> None:
         roll, pitch, _ = self.link.pose.rpy
         tilt = math.acos(math.cos(roll) * math.cos(pitch))
         self.publisher.publish(message_class(BOOL)(data=tilt > self.config.limit))

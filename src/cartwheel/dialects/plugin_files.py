@@ -1,0 +1,85 @@
+"""Plugins in Python files that the user specifies, with ``--plugin`` for example."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import traceback
+from pathlib import Path
+from typing import Any
+
+from cartwheel.codes import devices
+from cartwheel.dialects.catalogue import checked_plugin
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.errors import CartwheelError, Origin
+
+
+class PluginFiles:
+    """The plugins in the specified files of one simulation. Later files take precedence."""
+
+    def __init__(self) -> None:
+        self.classes: tuple[type[Plugin[Any]], ...] = ()
+
+    def load(self, path: Path) -> None:
+        """Executes a file and adds the plugins that it defines.
+
+        Raises:
+            CartwheelError: The file does not exist, raises an exception or defines no plugin.
+        """
+        self.classes = (*_plugins_in(path), *self.classes)
+
+
+def _plugins_in(path: Path) -> list[type[Plugin[Any]]]:
+    origin = Origin(file=str(path))
+    values = {"path": str(path)}
+    if not path.is_file():
+        raise CartwheelError(
+            f'the plugin file "{path}" does not exist',
+            code=devices.PLUGIN_FILE_INVALID,
+            values=values,
+        )
+    # A dataclass looks up its module in sys.modules while it is defined.
+    name = f"_cartwheel_plugin_{abs(hash(path.resolve())):x}"
+    specification = importlib.util.spec_from_file_location(name, path)
+    if specification is None or specification.loader is None:
+        raise CartwheelError(
+            f'the plugin file "{path}" must be a Python file',
+            code=devices.PLUGIN_FILE_INVALID,
+            hint="Its name must end in .py.",
+            values=values,
+        )
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[name] = module
+    try:
+        specification.loader.exec_module(module)
+        defined = [
+            checked_plugin(each, each.__name__)
+            for each in vars(module).values()
+            if isinstance(each, type) and issubclass(each, Plugin) and each.__module__ == name
+        ]
+    except (Exception, SystemExit) as error:
+        del sys.modules[name]
+        raise CartwheelError(
+            f"the plugin file cannot be loaded: {type(error).__name__}: {error}",
+            code=devices.PLUGIN_FILE_INVALID,
+            origin=Origin(file=str(path), line=_line(error, path)),
+            values=values,
+        ) from error
+    if not defined:
+        raise CartwheelError(
+            "the file defines no plugin",
+            code=devices.PLUGIN_FILE_INVALID,
+            origin=origin,
+            hint="A plugin is a subclass of cartwheel.plugin.Plugin.",
+            values=values,
+        )
+    return defined
+
+
+def _line(error: BaseException, path: Path) -> int:
+    """Returns the last line of the file that the exception passed through; 0 if there is none."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        return error.lineno or 0
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno or 0 for frame in frames if frame.filename == str(path)]
+    return lines[-1] if lines else 0
