@@ -1,11 +1,21 @@
-"""Formulas of mecanum wheels."""
+"""Mecanum wheels: their formulas, and the motion that they estimate."""
 
 import math
 
 import numpy as np
 import pytest
+from tests.devices.drives.joints import Joint
 
-from cartwheel.devices.drives.mecanum import at_base, at_center, wheel_speeds, wheels_motion
+from cartwheel.devices.drives.limiter import Limits
+from cartwheel.devices.drives.mecanum import (
+    MecanumWheels,
+    MecanumWheelsConfig,
+    at_base,
+    at_center,
+    wheel_speeds,
+    wheels_motion,
+)
+from cartwheel.devices.drives.reckoning import DeadReckoning
 
 REACH = 0.45
 MOTIONS = [(0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.6), (0.2, -0.1, 0.4)]
@@ -48,3 +58,24 @@ def test_arrays_give_the_bits_of_floats():
         together = np.array(function(*motions))
         for index, motion in enumerate(MOTIONS):
             assert together[:, index].tobytes() == np.array(function(*motion)).tobytes()
+
+
+@pytest.mark.parametrize("subtracts", ["rotations", "distances"])
+@pytest.mark.parametrize("offset", [None, (0.1, -0.05, 0.3)])
+def test_wheels_estimate_the_motion_that_they_command(subtracts, offset):
+    none = Limits()
+    config = MecanumWheelsConfig(
+        radius=0.1, reach=REACH, limits=(none, none, none), offset=offset, subtracts=subtracts
+    )
+    joints = [Joint(position=index) for index in range(4)]
+    reckoning = DeadReckoning()
+    wheels = MecanumWheels(config, [(joint,) for joint in joints], None, reckoning)
+    wheels.measure(0.0)
+    assert wheels.command((0.2, -0.1, 0.4), 0.1) == (0.2, -0.1, 0.4)
+    for joint in joints:
+        joint.position += 0.1 * joint.command
+    wheels.measure(0.1)
+    _, _, linear, angular = reckoning.motion()
+    assert (*linear[:2], angular[2]) == pytest.approx((0.2, -0.1, 0.4))
+    wheels.stop()
+    assert [joint.command for joint in joints] == [0.0] * 4

@@ -97,6 +97,19 @@ def rim_factors_in_place(middle: Number, base: Number, track: Number) -> tuple[N
     return 1 - half, 1 + half
 
 
+def axle_speed(forward: Number, turn: Number, base: Number, radius: Number) -> Number:
+    """Returns the speed in rad/s of a wheel in the middle of the unsteered axle.
+
+    Args:
+        forward: Velocity of the axle, m/s. At 0, the speed is that of a steered wheel at ±90°.
+        turn: Yaw rate, rad/s.
+        base: Distance between the axles, m.
+        radius: Radius of the wheel, m.
+    """
+    in_place = (forward == 0) & (turn != 0)
+    return where(in_place, abs(turn) * base / radius, forward / radius)
+
+
 def driven_wheel_speed(
     speed: Number, turn: Number, angle: Number, base: Number, radius: Number
 ) -> Number:

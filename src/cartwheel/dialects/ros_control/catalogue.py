@@ -35,9 +35,9 @@ def find_type(name: str, *, ros2: bool) -> type[Controller]:
     plain = name.strip().replace("::", "/")
     if not ros2 and plain == ACKERMANN:
         # ROS 1 and ROS 2 use this name for two different controllers.
-        from cartwheel.dialects.ros_control.controllers.steering import SingleSteering
+        from cartwheel.dialects.ros_control.controllers.steer_drive import SteerDriveController
 
-        return SingleSteering
+        return SteerDriveController
     if plain not in known:
         raise UnknownNameError("controller type", name, known, code=devices.CONTROLLER_TYPE_UNKNOWN)
     return known[plain]

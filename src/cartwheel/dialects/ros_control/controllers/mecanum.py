@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices, running
-from cartwheel.devices.drives.limiter import Limiter
+from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
@@ -27,8 +26,6 @@ from cartwheel.messages.store import TWIN
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
 _STATE = f"control_msgs{TWIN}/msg/MecanumDriveControllerState"
-_SIDEWAYS = (-1.0, 1.0, 1.0, -1.0)
-_AROUND = (-1.0, 1.0, -1.0, 1.0)
 
 
 class MecanumDriveController(Controller):
@@ -55,14 +52,14 @@ class MecanumDriveController(Controller):
                 settings.ignore(f"{corner}_wheel_state_joint_name")
             else:
                 names.append(settings.text(f"{plain}_wheel_joint", f"{plain}_wheel_joint"))
-        self._wheels = [self.claim(name, "velocity") for name in names]
-        names = [wheel.joint for wheel in self._wheels]
+        self._joints = [self.claim(name, "velocity") for name in names]
+        names = [wheel.joint for wheel in self._joints]
         for name in names:
             check_axis(self, name, LEFT)
         description = self.part.description
         nested = ros2 and not husarion
-        radius = settings.optional_number("kinematics/wheels_radius" if nested else "wheel_radius")
-        self._radius = radius or wheel_radius(description, names[0]) or 0.0
+        stated = settings.optional_number("kinematics/wheels_radius" if nested else "wheel_radius")
+        radius = stated or wheel_radius(description, names[0]) or 0.0
         reach = (
             settings.optional_number("kinematics/sum_of_robot_center_projection_on_X_Y_axis")
             if nested
@@ -77,21 +74,25 @@ class MecanumDriveController(Controller):
                 x *= settings.number("wheel_separation_x_multiplier", 1.0)
                 y *= settings.number("wheel_separation_y_multiplier", 1.0)
             reach = (x + y) / 2
-        self._reach = reach * settings.number("wheel_separation_multiplier", 1.0)
-        self._radius *= settings.number("wheel_radius_multiplier", 1.0)
-        if self._radius <= 0 or self._reach <= 0:
+        reach *= settings.number("wheel_separation_multiplier", 1.0)
+        radius *= settings.number("wheel_radius_multiplier", 1.0)
+        if radius <= 0 or reach <= 0:
             raise settings.error(
                 devices.CONTROLLER_PARAMETER_INVALID,
-                "the wheel radius and separations must be positive "
-                f"(got {self._radius:g} and {self._reach:g})",
-                values={"radius": self._radius, "reach": self._reach},
+                f"the wheel radius and separations must be positive (got {radius:g} and {reach:g})",
+                values={"radius": radius, "reach": reach},
             )
         offset = settings.section("kinematics/base_frame_offset")
-        self._offset = tuple(offset.number(axis, 0.0) for axis in ("x", "y", "theta"))
-        self._limiters = [
-            Limiter(read_limits(settings.section(name)))
-            for name in ("linear/x", "linear/y", "angular/z")
-        ]
+        config = MecanumWheelsConfig(
+            radius=radius,
+            reach=reach,
+            offset=(offset.number("x", 0.0), offset.number("y", 0.0), offset.number("theta", 0.0)),
+            limits=(
+                read_limits(settings.section("linear/x")),
+                read_limits(settings.section("linear/y")),
+                read_limits(settings.section("angular/z")),
+            ),
+        )
         stamped = ros2 and settings.boolean("use_stamped_vel", True)
         topic = "reference" if nested else "cmd_vel"
         if ros2 and not stamped:
@@ -122,7 +123,8 @@ class MecanumDriveController(Controller):
                         f'the parameter "{name}" has no effect',
                         values={"parameters": (name,)},
                     )
-        self._turned = [0.0] * 4
+        wheels = [(joint,) for joint in self._joints]
+        self._wheels = MecanumWheels(config, wheels, self.rig.push, self._odometry.reckoning)
         if self.rig.push is None and not has_rollers(description):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
@@ -133,68 +135,25 @@ class MecanumDriveController(Controller):
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
-        for limiter in self._limiters:
-            limiter.reset()
         self._odometry.start(time_ns)
-        self._turned = [wheel.position for wheel in self._wheels]
+        self._wheels.restart()
+        self._wheels.measure(0.0)
 
     def update(self, time_ns: int, seconds: float) -> None:
-        turned = [wheel.position for wheel in self._wheels]
-        ways = [(new - old) * self._radius for new, old in zip(turned, self._turned, strict=True)]
-        self._turned = turned
-        across = sum(sign * way for sign, way in zip(_SIDEWAYS, ways, strict=True)) / 4
-        around = sum(sign * way for sign, way in zip(_AROUND, ways, strict=True)) / 4
-        self._reckon(sum(ways) / 4, across, around / self._reach, seconds)
+        self._wheels.measure(seconds)
         self._odometry.publish(time_ns)
-        command = self._limited(self._command.at(time_ns), seconds)
-        forward, sideways, turn = self._at_centre(command)
-        for wheel, side, round_ in zip(self._wheels, _SIDEWAYS, _AROUND, strict=True):
-            speed = forward + side * sideways + round_ * self._reach * turn
-            wheel.command = speed / self._radius
-        if self.rig.push is not None:
-            forward, sideways, turn = command
-            self.rig.push.command((forward, sideways, None), (None, None, turn))
+        command = self._wheels.command(self._command.at(time_ns), seconds)
         if self._state is not None and self._state.wanted:
             self._state.publish(self._state_message(time_ns, command))
+
+    def stop(self, time_ns: int) -> None:  # noqa: ARG002
+        self._wheels.stop()
 
     def _state_message(self, time_ns: int, command: Vec3) -> Any:
         message = zero(_STATE)
         message.header = header(time_ns, self._frame)
-        for corner, wheel in zip(_CORNERS, self._wheels, strict=True):
+        for corner, wheel in zip(_CORNERS, self._joints, strict=True):
             setattr(message, f"{corner}_wheel_velocity", wheel.velocity)
         reference = message.reference_velocity
         reference.linear.x, reference.linear.y, reference.angular.z = command
         return message
-
-    def _limited(self, wanted: tuple[float, float, float], seconds: float) -> Vec3:
-        x, y, turn = (
-            limiter.step(command, seconds)
-            for limiter, command in zip(self._limiters, wanted, strict=True)
-        )
-        return x, y, turn
-
-    def _at_centre(self, command: Vec3) -> Vec3:
-        """Returns the motion of the wheels' centre for a commanded motion of the base frame."""
-        x, y, theta = self._offset
-        forward, sideways, turn = command
-        cos, sin = math.cos(theta), math.sin(theta)
-        return (
-            cos * forward - sin * sideways + y * turn,
-            sin * forward + cos * sideways - x * turn,
-            turn,
-        )
-
-    def _reckon(self, forward: float, sideways: float, turn: float, seconds: float) -> None:
-        """Updates the odometry of the base frame from the motion of the wheels' centre."""
-        x, y, theta = self._offset
-        forward, sideways = forward - y * turn, sideways + x * turn
-        cos, sin = math.cos(theta), math.sin(theta)
-        self._odometry.reckoning.go(
-            cos * forward + sin * sideways, turn, seconds, sideways=cos * sideways - sin * forward
-        )
-
-    def stop(self, time_ns: int) -> None:  # noqa: ARG002
-        for wheel in self._wheels:
-            wheel.command = 0.0
-        if self.rig.push is not None:
-            self.rig.push.command((0.0, 0.0, None), (None, None, 0.0))
