@@ -13,7 +13,7 @@ from cartwheel.simulation import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Noise:
-    """Noise on one measured quantity, in the quantity's unit. The fields have SDF's names."""
+    """Noise on one measured quantity, in the quantity's unit."""
 
     mean: float = 0.0
     """Constant error."""
@@ -142,7 +142,7 @@ class VectorNoise:
         bias = random.normal(
             [noise.bias_mean for noise in noises], [noise.bias_stddev for noise in noises]
         )
-        # As in Gazebo, the sign of the bias is random.
+        # The sign of the bias is random.
         self._fixed = self._mean + np.where(random.random(len(noises)) < 0.5, bias, -bias)
         time = np.array([noise.dynamic_bias_correlation_time for noise in noises])
         walk = np.where(time > 0, [noise.dynamic_bias_stddev for noise in noises], 0.0)

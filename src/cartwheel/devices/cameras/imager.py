@@ -32,7 +32,7 @@ _RATE = ReconfigureParameter(
     level=3,
     description="Frame rate, Hz",
 )
-"""From GazeboRosCamera.cfg in gazebo_plugins."""
+"""Name and limits. Source: GazeboRosCamera.cfg in gazebo_plugins."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -56,8 +56,8 @@ class ImagerConfig:
     set_info: bool = True
     """Whether the service ``set_camera_info`` is offered."""
     adjustable: bool = True
-    """Whether the frame rate and the compression can be changed with ROS 1's
-    dynamic_reconfigure."""
+    """Whether the frame rate and the compression can be changed with ROS 1's dynamic_reconfigure.
+    The topic ``<image_topic>/compressedDepth`` is then listed too."""
 
 
 class Imager:
@@ -111,7 +111,7 @@ class Imager:
                 owner, image, self._format, rate=listed_rate, adjustable=adjustable
             )
         if adjustable:
-            # Gazebo lists this topic for every camera; colour images have no depths to publish.
+            # This topic is only listed: colour images have no depths to publish.
             owner.advertise(f"{image}/compressedDepth", COMPRESSED, qos="sensor")
             owner.reconfigure(
                 f"{image}/compressedDepth", DEPTH_PARAMETERS, lambda _: None, preset=True
@@ -180,7 +180,7 @@ class Imager:
         )
 
     def _with_noise(self, pixels: Pixels) -> Pixels:
-        """Adds noise: one random number for each pixel, the same for all colours, as in Gazebo."""
+        """Adds noise: one random number for each pixel, the same for all colours."""
         mean, stddev = self._noise
         if stddev <= 0 and mean == 0:
             return pixels

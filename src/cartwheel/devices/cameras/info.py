@@ -43,7 +43,7 @@ class CalibrationConfig:
     focal_length: float = 0.0
     """Pixels; 0: computed from the field of view."""
     centre: tuple[float, float] = (0.0, 0.0)
-    """Principal point, pixels; 0: (size + 1) / 2, as in Gazebo."""
+    """Principal point, pixels; 0: (size + 1) / 2."""
     baseline: float = 0.0
     """Distance to the right of the left camera of a stereo pair, m."""
     rectified: Rectified = UNCHANGED

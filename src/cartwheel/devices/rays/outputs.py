@@ -152,10 +152,11 @@ class PointCloud2Output:
             if ordered by columns.
         """
         points = directions * np.where(hit, ranges, 1.0)[..., None]
-        intensities = np.maximum(intensities, self.intensity_floor)
+        if self.intensity_floor > -math.inf:
+            intensities = np.maximum(intensities, self.intensity_floor)
         if self.missing == "nan":
             points[~hit] = np.nan
-            intensities[~hit] = np.nan
+            intensities = np.where(hit, intensities, np.nan)
         elif self.missing == "inf":
             points[~hit] = np.inf
         cloud = np.zeros(ranges.shape, dtype=self.layout)

@@ -248,6 +248,7 @@ class RosCamera(Plugin[P]):
                 image_topic=topic_in(base, config.image_topic),
                 info_topic=topic_in(base, config.info_topic),
                 namespace=base,
+                # Gazebo lists compressedDepth for every camera in ROS 1.
                 adjustable=not self.is_ros2,
             )
 

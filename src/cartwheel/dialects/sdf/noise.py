@@ -40,7 +40,7 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
             values={"parameter": "noise", "value": name},
         )
     values = {}
-    # The fields have the names of the tags.
+    # The fields have the names of the tags. As in Gazebo, the sign of the bias is random.
     for tag in (field.name for field in fields(Noise)):
         child = element.find(tag)
         least = -LARGEST if tag in _SIGNED else 0.0
