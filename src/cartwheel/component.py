@@ -173,6 +173,14 @@ class Component:
         """Withdraws all topics and services, when the model is deleted."""
         self._open.close()
 
+    def drop_references(self) -> None:
+        """After `close`: clears the references of this component and its devices, which may form
+        cycles.
+        """
+        for device in self._devices:
+            device.drop_references()
+        vars(self).clear()
+
     def keep(self, item: K) -> K:
         """Registers an item that is closed with the component, and returns it."""
         self._open.callback(item.close)

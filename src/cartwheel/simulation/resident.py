@@ -29,6 +29,9 @@ class Behaviour(Protocol):
     def close(self) -> None:
         """The model is removed from the world."""
 
+    def drop_references(self) -> None:
+        """After `close`: the world ends, and all references between plugins and parts with it."""
+
 
 Attach = Callable[[Part], list[Behaviour]]
 """Creates the plugins of a model that is about to be spawned."""
@@ -119,7 +122,7 @@ class Resident:
         allocated until Python's garbage collector runs.
         """
         for behaviour in self.behaviours:
-            vars(behaviour).clear()
+            behaviour.drop_references()
         self.behaviours = []
         self.drives.clear()
         self.part.handles.clear()
