@@ -34,7 +34,7 @@ def view(
 ) -> None:
     """View a robot description without physics.
 
-    The browser shows its joints, frames and inertia.
+    The browser shows the joints, frames and inertia of the robot.
     """
     from cartwheel.cli.commands import view as work
 

@@ -117,7 +117,8 @@ def pub(
 ) -> None:
     """Publish a message to a topic.
 
-    The message is YAML, such as '{linear: {x: 0.5}}', or the values of its fields in order.
+    The message is YAML, such as '{linear: {x: 0.5}}'. Alternatively, pass one value for each field,
+    in the order of the fields.
     """
     from cartwheel.cli.commands import topics
 

@@ -77,5 +77,5 @@ VIEWER_FAULT = Code(
     "CW922", "viewer-fault", "error", "an unexpected error occurred in the web interface"
 )
 SCAN_NOT_SHOWN = Code(
-    "CW923", "scan-not-shown", "warning", "the frame of sensor data is not a link of its robot"
+    "CW923", "scan-not-shown", "warning", "the frame of a laser scan or point cloud is not a link"
 )

@@ -61,7 +61,7 @@ PLANE_NOT_STATIC = Code(
 )
 MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine rejects a model")
 PHYSICS_SETTING_IGNORED = Code(
-    "CW620", "physics-setting-ignored", "info", "a physical property that is not simulated"
+    "CW620", "physics-setting-ignored", "info", "a physical property is not simulated"
 )
 OPENGL_MISSING = Code("CW621", "opengl-missing", "warning", "cameras need OpenGL, which is missing")
 OPENGL_FORKED = Code(
