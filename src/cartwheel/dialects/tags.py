@@ -11,6 +11,7 @@ from typing import Any, TypeVar, get_args, get_origin
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.description.numbers import LARGEST
+from cartwheel.description.tag_roles import Role, TagRole
 from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
 
 C = TypeVar("C")
@@ -33,6 +34,8 @@ def tag(
     most: float | None = None,
     optional: bool = False,
     nested: bool = False,
+    role: Role = "",
+    wheels: tuple[str, ...] = (),
     doc: str,
 ) -> Any:
     """Declares a dataclass field that is read from a tag.
@@ -45,6 +48,9 @@ def tag(
         most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
         optional: Whether the plugin works without the joint that the default names.
         nested: Whether the tag contains other tags, which the plugin reads itself.
+        role: Meaning of the tag, for the rules of ``cartwheel check``.
+        wheels: For a role that is a size: the fields with the joints of the measured wheels, two of
+            them for a distance. Defaults to the fields whose roles are wheels.
         doc: Description for the plugin reference, one or two sentences. A last sentence
             ``Default: ...`` describes a default that depends on something else.
     """
@@ -54,6 +60,8 @@ def tag(
         "most": most,
         "optional": optional,
         "nested": nested,
+        "role": role,
+        "wheels": wheels,
         "doc": doc,
     }
     if default is dataclasses.MISSING:
@@ -64,6 +72,39 @@ def tag(
 def tags_of(cls: type) -> set[str]:
     """Returns all tags that a parameter dataclass reads."""
     return {name for item in dataclasses.fields(cls) for name in item.metadata["tags"]}
+
+
+def roles_of(cls: type) -> tuple[TagRole, ...]:
+    """Returns the tags of a parameter dataclass that have a role."""
+    fields = {item.name: item for item in dataclasses.fields(cls)}
+    sides: list[tuple[str, ...]] = [
+        tuple(
+            name
+            for item in fields.values()
+            if item.metadata["role"] in (f"{side}_wheel", f"{side}_wheels")
+            for name in item.metadata["tags"]
+        )
+        for side in ("left", "right")
+    ]
+    roles = []
+    for item in fields.values():
+        role: Role = item.metadata["role"]
+        if not role:
+            continue
+        default = item.default
+        if default in (dataclasses.MISSING, None):
+            default = ()
+        measured = [fields[name].metadata["tags"] for name in item.metadata["wheels"]] or sides
+        count = {"wheel_separation": 2, "wheel_base": 2, "wheel_radius": 1, "wheel_diameter": 1}
+        roles.append(
+            TagRole(
+                role=role,
+                tags=item.metadata["tags"],
+                default=default if isinstance(default, tuple) else (default,),
+                wheels=tuple(measured[: count.get(role, 0)]),
+            )
+        )
+    return tuple(roles)
 
 
 def default_joints(cls: type, element: Element) -> list[tuple[tuple[str, ...], str]]:

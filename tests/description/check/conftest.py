@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from tests.description.check.seeded import ROBOT
 
+from cartwheel.checks.knowledge import knowledge
 from cartwheel.codes import code_named, devices
 from cartwheel.description.check import PluginKnowledge, Report, check
 from cartwheel.description.model import PluginTag, Sensor
@@ -46,6 +47,7 @@ def judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None
 KNOWLEDGE = PluginKnowledge(
     filenames=tuple(_KNOWN),
     judge=judge,
+    roles=knowledge().roles,
     controller_types=(
         "diff_drive_controller/DiffDriveController",
         "effort_controllers/JointPositionController",

@@ -153,8 +153,10 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
     if root is None:
         cut |= _left_out(opened.root, read)
     lost = displaced(opened.root, tree) if root is not None else set()
+    roles = known.roles if known is not None else lambda _: ()
     robots = tuple(
-        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
+        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost, roles=roles)
+        for each in described
     )
     search = known.controller_files if known is not None else None
     return Subject(

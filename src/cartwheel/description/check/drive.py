@@ -12,7 +12,7 @@ from cartwheel.description.check.control import is_known
 from cartwheel.description.check.rule import rule
 from cartwheel.description.check.solids import Floats, Solid, bounds
 from cartwheel.description.check.subject import DRIVE_JOINT_TAGS, Drive, Robot, Subject
-from cartwheel.description.model import Cylinder, Element, Joint
+from cartwheel.description.model import Cylinder, Joint
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose, matrix_from_quat, rotate
 
@@ -74,9 +74,7 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Diagnostic]:
 def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in _pairs(subject):
         poses = [wheel_place(robot, joint) for joint in (left, right)]
-        element = _parameter(
-            drive, ("leftJoint", "left_joint", "left_wheel_joint_name", "leftFrontJoint")
-        )
+        element = drive.left_tag
         across = poses[0].y - poses[1].y
         # Left and right are known only if the wheels are beside each other, with x forward.
         if element is None or abs(poses[0].x - poses[1].x) > 0.1 * abs(across) or across >= 0:
@@ -290,10 +288,6 @@ def lowest(robot: Robot, *links: str) -> float | None:
 def wheel_place(robot: Robot, joint: Joint) -> Pose:
     """Pose of a wheel joint in the model frame; in SDF, the child link's frame may be elsewhere."""
     return robot.links[joint.child].pose @ joint.pose
-
-
-def _parameter(drive: Drive, names: tuple[str, ...]) -> Element | None:
-    return next((found for name in names if (found := drive.tag.element.find(name))), None)
 
 
 def _drives(subject: Subject) -> Iterator[tuple[Robot, Drive]]:

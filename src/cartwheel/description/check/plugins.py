@@ -105,11 +105,13 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
             if "gazebo_ros_diff_drive" not in drive.tag.filename:
                 continue
             torque, legacy = element.find("torque"), element.find("legacyMode")
-            known = any(element.find(name) for name in ("wheelTorque", "max_wheel_torque"))
-            if torque is not None and not known:
+            roles = {each.role: each for each in robot.roles(drive.tag.filename)}
+            stated = roles.get("wheel_torque")
+            known = stated and any(element.find(name) for name in stated.tags if name != "torque")
+            if torque is not None and stated is not None and not known:
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 ignores <torque>, so the wheels get 5 N m instead of "
-                    f"{torque.text.strip()} N m",
+                    message="Gazebo 11 ignores <torque>, so the wheels get "
+                    f"{stated.default[0]:g} N m instead of {torque.text.strip()} N m",
                     values={"tag": "torque", "plugin": drive.tag.name},
                     origin=torque.origin,
                     instead=nodes.written("wheelTorque", {}, torque.text.strip()),

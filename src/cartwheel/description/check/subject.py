@@ -14,6 +14,7 @@ from cartwheel.description.check.control_files import ControlFile
 from cartwheel.description.check.solids import Floats, Solid, bounds, solid_of
 from cartwheel.description.model import (
     Collision,
+    Element,
     Joint,
     Link,
     Mesh,
@@ -25,6 +26,7 @@ from cartwheel.description.model import (
 )
 from cartwheel.description.node import Node
 from cartwheel.description.packages import Packages
+from cartwheel.description.tag_roles import TagRole, wheels
 from cartwheel.errors import Diagnostic, Origin
 
 
@@ -38,6 +40,8 @@ class PluginKnowledge:
     """Diagnostics about a plugin's parameters; None for an unknown plugin."""
     default_joints: Callable[[PluginTag], Iterable[tuple[tuple[str, ...], str]]] | None = None
     """Default joints of a plugin: for each, the tag's spellings and the joint's name."""
+    roles: Callable[[str], tuple[TagRole, ...]] = lambda _: ()
+    """Returns the tags of a plugin whose meaning is known, by the plugin's file name."""
     controller_types: tuple[str, ...] = ()
     """Types such as ``effort_controllers/JointPositionController``; empty if unknown."""
     controller_files: Callable[[Path, Sequence[str]], Sequence[Path]] | None = None
@@ -48,10 +52,6 @@ ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
 """Codes for files, models and packages that do not exist locally."""
 GAZEBO_STEP = 0.001
 """Default time step, s."""
-DRIVES = ("diff_drive", "diffdrive", "diff-drive")
-SKIDS = ("skid_steer", "skid-steer")
-MULTI_WHEEL = "diffdrive_plugin_multi_wheel"
-KOBUKI = "gazebo_ros_kobuki"
 DRIVE_JOINT_TAGS = (
     "leftJoint", "left_joint", "rightJoint", "right_joint", "leftFrontJoint", "leftRearJoint",
     "rightFrontJoint", "rightRearJoint",
@@ -66,6 +66,8 @@ class Drive:
     left: tuple[str, ...]
     """Joint names."""
     right: tuple[str, ...]
+    left_tag: Element | None
+    """The tag of the first left joint; None if it contains several joints, or is missing."""
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -82,6 +84,7 @@ class Robot:
         mended: Links whose inertia was replaced.
         cut: Links that lost an unreadable element.
         displaced: Links whose joint is unreadable, so that their pose is unknown.
+        roles: Returns the tags of a plugin whose meaning is known, by the plugin's file name.
     """
 
     def __init__(
@@ -92,9 +95,11 @@ class Robot:
         mended: Iterable[str] = (),
         cut: Iterable[str] = (),
         displaced: Iterable[str] = (),
+        roles: Callable[[str], tuple[TagRole, ...]] = lambda _: (),
     ) -> None:
         self.description = description
         self.root = root
+        self.roles = roles
         self.mended = frozenset(mended)
         self.cut = frozenset(cut)
         self.links = {link.name: link for link in description.links}
@@ -207,40 +212,26 @@ class Robot:
 
     @cached_property
     def drives(self) -> tuple[Drive, ...]:
-        """Plugins that drive wheels, with the tags of Gazebo Classic and gz-sim."""
+        """Plugins that drive left and right wheels."""
         found = []
         for tag in self.description.plugins:
-            if MULTI_WHEEL in tag.filename:
-                both = [
-                    " ".join(_texts(tag, f"{side}Joints")).split() for side in ("left", "right")
-                ]
-                found.append(Drive(tag=tag, left=tuple(both[0]), right=tuple(both[1])))
-            elif KOBUKI in tag.filename:
-                found.append(
-                    Drive(
-                        tag=tag,
-                        left=_texts(tag, "left_wheel_joint_name"),
-                        right=_texts(tag, "right_wheel_joint_name"),
-                    )
+            roles = self.roles(tag.filename)
+            left, right = wheels(roles, "left"), wheels(roles, "right")
+            if not left:
+                continue
+            single = [name for each in left if each.role == "left_wheel" for name in each.tags]
+            names = (
+                tuple(joint for each in side for joint in each.joints(tag.element))
+                for side in (left, right)
+            )
+            found.append(
+                Drive(
+                    tag=tag,
+                    left=next(names),
+                    right=next(names),
+                    left_tag=next(filter(None, map(tag.element.find, single)), None),
                 )
-            elif any(name in tag.filename for name in DRIVES):
-                found.append(
-                    Drive(
-                        tag=tag,
-                        left=_texts(tag, "leftJoint", "left_joint") or ("left_joint",),
-                        right=_texts(tag, "rightJoint", "right_joint") or ("right_joint",),
-                    )
-                )
-            elif any(name in tag.filename for name in SKIDS):
-                sides = [
-                    tuple(
-                        text
-                        for end in ("Front", "Rear")
-                        for text in _texts(tag, f"{side}{end}Joint")
-                    )
-                    for side in ("left", "right")
-                ]
-                found.append(Drive(tag=tag, left=sides[0], right=sides[1]))
+            )
         return tuple(found)
 
     @cached_property
@@ -383,12 +374,3 @@ class Subject:
         if isinstance(self.read, WorldDescription) and self.read.physics.max_step_size:
             return self.read.physics.max_step_size
         return GAZEBO_STEP
-
-
-def _texts(tag: PluginTag, *names: str) -> tuple[str, ...]:
-    """Words in the first of these tags that is present, from all its occurrences."""
-    for name in names:
-        found = [text for child in tag.element.find_all(name) if (text := child.text.strip())]
-        if found:
-            return tuple(found)
-    return ()

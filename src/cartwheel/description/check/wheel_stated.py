@@ -11,6 +11,7 @@ from cartwheel.description.check import nodes
 from cartwheel.description.check.control_files import Controller, Value
 from cartwheel.description.check.subject import Robot, Subject
 from cartwheel.description.model import PluginTag
+from cartwheel.description.tag_roles import TagRole
 from cartwheel.errors import Origin, Place
 
 Measure = Literal["apart", "base", "reach", "radius", "diameter"]
@@ -40,115 +41,33 @@ class Stated:
     place: Place
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Size:
-    measure: Measure
-    tags: tuple[str, ...]
-    first: tuple[str, ...]
-    """Joint tags; the first spelling present is used."""
-    second: tuple[str, ...] = ()
-    default: float | None = None
-    """Default value; None if the plugin does not work without the tag."""
-
-
-_SIDES = (("leftJoint", "left_joint"), ("rightJoint", "right_joint"))
-_SEPARATION = ("wheelSeparation", "wheel_separation")
-_CORNERS = tuple(f"{corner}_joint" for corner in claimed.CORNERS)
-_SKID = ("leftFrontJoint", "leftRearJoint"), ("rightFrontJoint", "rightRearJoint")
-_ENCODERS = (
-    ("encoderWheelLeftJoint", "encoder_wheel_left_joint"),
-    ("encoderWheelRightJoint", "encoder_wheel_right_joint"),
-)
-_STEERING = ("left_steering_joint",), ("right_steering_joint",)
-
-_PLUGINS: Mapping[str, tuple[_Size, ...]] = {
-    "gazebo_ros_diff_drive": (
-        _Size(measure="apart", tags=_SEPARATION, first=_SIDES[0], second=_SIDES[1], default=0.34),
-        _Size(
-            measure="diameter", tags=("wheelDiameter", "wheel_diameter"), first=_SIDES[0],
-            default=0.15,
-        ),
-    ),
-    "gz-sim-diff-drive": (
-        _Size(measure="apart", tags=_SEPARATION, first=_SIDES[0], second=_SIDES[1], default=1.0),
-        _Size(measure="radius", tags=("wheel_radius",), first=_SIDES[0], default=0.2),
-    ),
-    "gazebo_ros_skid_steer_drive": (
-        _Size(measure="apart", tags=_SEPARATION, first=_SKID[0], second=_SKID[1], default=0.34),
-        _Size(measure="diameter", tags=("wheelDiameter",), first=_SKID[0], default=0.15),
-    ),
-    "diffdrive_plugin_multi_wheel": (
-        _Size(
-            measure="apart", tags=_SEPARATION, first=("leftJoints",), second=("rightJoints",),
-            default=0.34,
-        ),
-        _Size(measure="diameter", tags=("wheelDiameter",), first=("leftJoints",), default=0.15),
-    ),
-    "gazebo_ros_kobuki": (
-        _Size(
-            measure="apart", tags=("wheel_separation",), first=("left_wheel_joint_name",),
-            second=("right_wheel_joint_name",),
-        ),
-        _Size(measure="diameter", tags=("wheel_diameter",), first=("left_wheel_joint_name",)),
-    ),
-    "gazebo_ros_tricycle_drive": (
-        _Size(
-            measure="apart", tags=("encoderWheelSeparation", "wheel_separation"),
-            first=_ENCODERS[0], second=_ENCODERS[1], default=0.5,
-        ),
-        _Size(
-            measure="diameter", tags=("encoderWheelDiameter", "encoder_wheel_diameter"),
-            first=_ENCODERS[0], default=0.15,
-        ),
-        _Size(
-            measure="diameter", tags=("actuatedWheelDiameter", "actuated_wheel_diameter"),
-            first=("actuatedWheelJoint", "actuated_wheel_joint"), default=0.15,
-        ),
-    ),
-    "gz-sim-ackermann-steering": (
-        _Size(measure="apart", tags=_SEPARATION, first=_SIDES[0], second=_SIDES[1], default=1.0),
-        _Size(
-            measure="apart", tags=("kingpin_width",), first=_STEERING[0], second=_STEERING[1],
-            default=0.8,
-        ),
-        _Size(
-            measure="base", tags=("wheel_base",), first=_STEERING[0], second=_SIDES[0], default=1.0
-        ),
-        _Size(measure="radius", tags=("wheel_radius",), first=_SIDES[0], default=0.2),
-    ),
-    "gz-sim-mecanum-drive": (
-        _Size(
-            measure="apart", tags=_SEPARATION, first=_CORNERS[:1], second=_CORNERS[1:2], default=1.0
-        ),
-        _Size(
-            measure="base", tags=("wheelbase",), first=_CORNERS[:1], second=_CORNERS[2:3],
-            default=1.0,
-        ),
-        _Size(measure="radius", tags=("wheel_radius",), first=_CORNERS[:1], default=0.2),
-    ),
-}  # fmt: skip
-"""Sizes by a part of the plugin's file name, with the plugins' defaults."""
+_MEASURES: Mapping[str, Measure] = {
+    "wheel_separation": "apart",
+    "wheel_base": "base",
+    "wheel_radius": "radius",
+    "wheel_diameter": "diameter",
+}
+"""Measures by the role of a plugin's tag."""
 
 
 def stated(subject: Subject) -> Iterator[Stated]:
     """All wheel sizes stated in a description."""
     for robot in subject.robots:
         for tag in robot.description.plugins:
-            name = tag.filename.replace("ignition-gazebo", "gz-sim")
-            for part, sizes in _PLUGINS.items():
-                if part in name:
-                    for size in sizes:
-                        yield from _of_plugin(robot, tag, size)
+            for size in robot.roles(tag.filename):
+                if size.role in _MEASURES:
+                    yield from _of_plugin(robot, tag, size)
     for robot, file in subject.control:
         for controller in file.controllers:
             yield from _of_controller(robot, controller)
 
 
-def _of_plugin(robot: Robot, tag: PluginTag, size: _Size) -> Iterator[Stated]:
-    first = _joints(robot, tag, size.first)
-    second = _joints(robot, tag, size.second)
-    if not first or (size.second and not second):
+def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
+    measure = _MEASURES[size.role]
+    groups = [_joints(robot, tag, names) for names in size.wheels]
+    if not all(groups):
         return
+    first, second = groups if len(groups) == 2 else (groups[0], ())
     name = next((name for name in size.tags if tag.element.find(name) is not None), "")
     written = list(tag.element.find_all(name)) if name else []
     for index, element in enumerate(written):
@@ -159,7 +78,7 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: _Size) -> Iterator[Stated]:
             continue
         yield Stated(
             robot=robot,
-            measure=size.measure,
+            measure=measure,
             label=f"<{name}>",
             value=value,
             written=True,
@@ -171,13 +90,13 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: _Size) -> Iterator[Stated]:
             write=lambda number, name=name: nodes.written(name, {}, number),  # type: ignore[misc]
             place="element",
         )
-    if not written and size.default is not None:
+    if not written and size.default:
         name = size.tags[-1] if "gazebo_ros" in tag.filename and _is_new(tag) else size.tags[0]
         yield Stated(
             robot=robot,
-            measure=size.measure,
+            measure=measure,
             label=f"<{name}>",
-            value=size.default,
+            value=float(size.default[0]),
             written=False,
             first=first,
             second=second,

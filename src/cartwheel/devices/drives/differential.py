@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cartwheel.component import Scope
+from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import axle_motion, rim_speeds
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.ramp import ramp
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
-from cartwheel.devices.drives.wheel import MotorWheel, Wheel
 
 NO_LIMITS = Limits()
 
@@ -88,7 +88,7 @@ class DifferentialDrive(Drive):
         scope: Scope,
         config: DifferentialDriveConfig,
         *,
-        wheel_of: Callable[[str], Wheel] | None = None,
+        wheel_of: Callable[[str], CommandedJoint] | None = None,
         yaw_rate: Callable[[], float] | None = None,
         reckoning: DeadReckoning | None = None,
     ) -> None:
@@ -205,9 +205,9 @@ class DifferentialDrive(Drive):
             _mean([wheel.position for wheel in self._rights]),
         )
 
-    def _motor_wheel(self, joint: str) -> Wheel:
+    def _motor_wheel(self, joint: str) -> CommandedJoint:
         torque = self._config.max_torque
-        return MotorWheel(self.part, joint, max_torque=torque, origin=self.origin)
+        return Wheel(self.part, joint, max_effort=torque, origin=self.origin)
 
 
 def _mean(values: list[float]) -> float:

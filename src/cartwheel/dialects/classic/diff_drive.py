@@ -19,6 +19,9 @@ from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import PluginError
 
+_TORQUE = 5.0
+"""Default of the maximum torque of each wheel, N m."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DiffDriveParameters:
@@ -26,12 +29,14 @@ class DiffDriveParameters:
         "leftJoint",
         "left_joint",
         default=("left_joint",),
+        role="left_wheel",
         doc="Joint of the left wheel. Repeat the tag for each pair.",
     )
     right_joint: tuple[str, ...] = tag(
         "rightJoint",
         "right_joint",
         default=("right_joint",),
+        role="right_wheel",
         doc="Joint of the right wheel. Repeat the tag for each pair.",
     )
     pairs: int = tag("num_wheel_pairs", default=1, doc="Number of wheel pairs.")
@@ -40,6 +45,7 @@ class DiffDriveParameters:
         "wheel_separation",
         default=(0.34,),
         unit="m",
+        role="wheel_separation",
         doc="Distance between the left and right wheel. Repeat the tag for each pair. The "
         "last value applies to the remaining pairs.",
     )
@@ -48,6 +54,7 @@ class DiffDriveParameters:
         "wheel_diameter",
         default=(0.15,),
         unit="m",
+        role="wheel_diameter",
         doc="Diameter of both wheels. Repeat the tag for each pair. The last value applies "
         "to the remaining pairs.",
     )
@@ -55,8 +62,9 @@ class DiffDriveParameters:
         "wheelTorque",
         "max_wheel_torque",
         "torque",
-        default=5.0,
+        default=_TORQUE,
         unit="N m",
+        role="wheel_torque",
         doc="Maximum torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
     )
     wheel_acceleration: float = tag(
@@ -167,7 +175,7 @@ class DiffDrive(Plugin[DiffDriveParameters]):
         if element.find("torque") and not element.find("wheelTorque"):
             self.warn(
                 devices.PLUGIN_PARAMETER_OBSOLETE,
-                "<torque> is read as <wheelTorque>; Gazebo 11 ignores it and uses 5 N m",
+                f"<torque> is read as <wheelTorque>; Gazebo 11 ignores it and uses {_TORQUE:g} N m",
                 severity="info",
                 values={"parameter": "torque"},
             )

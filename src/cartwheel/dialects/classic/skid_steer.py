@@ -16,22 +16,42 @@ from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SkidSteerParameters:
     left_front: str = tag(
-        "leftFrontJoint", default="left_front_joint", doc="Joint of the left front wheel."
+        "leftFrontJoint",
+        default="left_front_joint",
+        role="left_wheel",
+        doc="Joint of the left front wheel.",
     )
     right_front: str = tag(
-        "rightFrontJoint", default="right_front_joint", doc="Joint of the right front wheel."
+        "rightFrontJoint",
+        default="right_front_joint",
+        role="right_wheel",
+        doc="Joint of the right front wheel.",
     )
     left_rear: str = tag(
-        "leftRearJoint", default="left_rear_joint", doc="Joint of the left rear wheel."
+        "leftRearJoint",
+        default="left_rear_joint",
+        role="left_wheel",
+        doc="Joint of the left rear wheel.",
     )
     right_rear: str = tag(
-        "rightRearJoint", default="right_rear_joint", doc="Joint of the right rear wheel."
+        "rightRearJoint",
+        default="right_rear_joint",
+        role="right_wheel",
+        doc="Joint of the right rear wheel.",
     )
     wheel_separation: float = tag(
-        "wheelSeparation", default=0.4, unit="m", doc="Distance between the left and right wheels."
+        "wheelSeparation",
+        default=0.4,
+        unit="m",
+        role="wheel_separation",
+        doc="Distance between the left and right wheels.",
     )
     wheel_diameter: float = tag(
-        "wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels."
+        "wheelDiameter",
+        default=0.15,
+        unit="m",
+        role="wheel_diameter",
+        doc="Diameter of all wheels.",
     )
     torque: float = tag(
         "torque", "wheelTorque", default=5.0, unit="N m", doc="Maximum torque of each motor."

@@ -44,6 +44,8 @@ class TricycleParameters:
         "actuated_wheel_diameter",
         default=0.15,
         unit="m",
+        role="wheel_diameter",
+        wheels=("wheel_joint",),
         doc="Diameter of the driven wheel.",
     )
     encoder_diameter: float = tag(
@@ -51,6 +53,8 @@ class TricycleParameters:
         "encoder_wheel_diameter",
         default=0.15,
         unit="m",
+        role="wheel_diameter",
+        wheels=("left_joint",),
         doc="Diameter of the passive wheels.",
     )
     encoder_separation: float = tag(
@@ -58,6 +62,8 @@ class TricycleParameters:
         "wheel_separation",
         default=0.5,
         unit="m",
+        role="wheel_separation",
+        wheels=("left_joint", "right_joint"),
         doc="Distance between the passive wheels.",
     )
     wheel_torque: float | None = tag(

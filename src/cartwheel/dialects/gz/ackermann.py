@@ -40,18 +40,40 @@ class GzAckermannParameters(GzLimitedParameters):
         doc="Joint that steers the front right wheel.",
     )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
+        "wheel_separation",
+        default=1.0,
+        unit="m",
+        role="wheel_separation",
+        wheels=("left_joint", "right_joint"),
+        doc="Distance between the left and right wheels.",
     )
     kingpin_width: float = tag(
-        "kingpin_width", default=0.8, unit="m", doc="Distance between the steering axes."
+        "kingpin_width",
+        default=0.8,
+        unit="m",
+        role="wheel_separation",
+        wheels=("steer_left", "steer_right"),
+        doc="Distance between the steering axes.",
     )
     wheel_base: float = tag(
-        "wheel_base", default=1.0, unit="m", doc="Distance between the front and rear axles."
+        "wheel_base",
+        default=1.0,
+        unit="m",
+        role="wheel_base",
+        wheels=("steer_left", "left_joint"),
+        doc="Distance between the front and rear axles.",
     )
     steering_limit: float = tag(
         "steering_limit", default=0.5, unit="rad", doc="Maximum steering angle."
     )
-    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
+    wheel_radius: float = tag(
+        "wheel_radius",
+        default=0.2,
+        unit="m",
+        role="wheel_radius",
+        wheels=("left_joint",),
+        doc="Radius of all wheels.",
+    )
     steer_gain: float = tag(
         "steer_p_gain", default=1.0, doc="No effect: a position servo steers the wheels."
     )

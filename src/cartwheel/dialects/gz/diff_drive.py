@@ -29,17 +29,25 @@ class GzDiffDriveParameters(GzLimitedParameters):
     left_joint: tuple[str, ...] = tag(
         "left_joint",
         default=("left_joint",),
+        role="left_wheel",
         doc="Joint of a left wheel. Repeat the tag for each wheel.",
     )
     right_joint: tuple[str, ...] = tag(
         "right_joint",
         default=("right_joint",),
+        role="right_wheel",
         doc="Joint of a right wheel. Repeat the tag for each wheel.",
     )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
+        "wheel_separation",
+        default=1.0,
+        unit="m",
+        role="wheel_separation",
+        doc="Distance between the left and right wheels.",
     )
-    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
+    wheel_radius: float = tag(
+        "wheel_radius", default=0.2, unit="m", role="wheel_radius", doc="Radius of all wheels."
+    )
 
 
 class GzDiffDrive(Plugin[GzDiffDriveParameters]):

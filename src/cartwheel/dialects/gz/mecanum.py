@@ -43,12 +43,29 @@ class MecanumParameters(GzCommonLimits):
         doc="Joint of the back right wheel. Repeat the tag for additional wheels.",
     )
     wheel_base: float = tag(
-        "wheelbase", default=1.0, unit="m", doc="Distance between the front and back axles."
+        "wheelbase",
+        default=1.0,
+        unit="m",
+        role="wheel_base",
+        wheels=("front_left", "back_left"),
+        doc="Distance between the front and back axles.",
     )
     wheel_separation: float = tag(
-        "wheel_separation", default=1.0, unit="m", doc="Distance between the left and right wheels."
+        "wheel_separation",
+        default=1.0,
+        unit="m",
+        role="wheel_separation",
+        wheels=("front_left", "front_right"),
+        doc="Distance between the left and right wheels.",
     )
-    wheel_radius: float = tag("wheel_radius", default=0.2, unit="m", doc="Radius of all wheels.")
+    wheel_radius: float = tag(
+        "wheel_radius",
+        default=0.2,
+        unit="m",
+        role="wheel_radius",
+        wheels=("front_left",),
+        doc="Radius of all wheels.",
+    )
 
 
 class GzMecanumDrive(Plugin[MecanumParameters]):

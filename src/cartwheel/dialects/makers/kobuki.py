@@ -38,10 +38,18 @@ _MOST = 4095
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KobukiParameters:
-    left_joint: str = tag("left_wheel_joint_name", doc="Joint of the left wheel.")
-    right_joint: str = tag("right_wheel_joint_name", doc="Joint of the right wheel.")
-    separation: float = tag("wheel_separation", unit="m", doc="Distance between the wheels.")
-    diameter: float = tag("wheel_diameter", unit="m", doc="Diameter of both wheels.")
+    left_joint: str = tag(
+        "left_wheel_joint_name", role="left_wheel", doc="Joint of the left wheel."
+    )
+    right_joint: str = tag(
+        "right_wheel_joint_name", role="right_wheel", doc="Joint of the right wheel."
+    )
+    separation: float = tag(
+        "wheel_separation", unit="m", role="wheel_separation", doc="Distance between the wheels."
+    )
+    diameter: float = tag(
+        "wheel_diameter", unit="m", role="wheel_diameter", doc="Diameter of both wheels."
+    )
     torque: float = tag("torque", unit="N m", doc="Maximum torque of each motor.")
     timeout: float = tag(
         "velocity_command_timeout",

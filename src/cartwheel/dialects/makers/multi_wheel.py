@@ -19,15 +19,31 @@ from cartwheel.errors import PluginError
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MultiWheelParameters:
     left: str = tag(
-        "leftJoints", default="left_joint", doc="Joints of the left wheels, separated by spaces."
+        "leftJoints",
+        default="left_joint",
+        role="left_wheels",
+        doc="Joints of the left wheels, separated by spaces.",
     )
     right: str = tag(
-        "rightJoints", default="right_joint", doc="Joints of the right wheels, separated by spaces."
+        "rightJoints",
+        default="right_joint",
+        role="right_wheels",
+        doc="Joints of the right wheels, separated by spaces.",
     )
     separation: float = tag(
-        "wheelSeparation", default=0.34, unit="m", doc="Distance between the left and right wheels."
+        "wheelSeparation",
+        default=0.34,
+        unit="m",
+        role="wheel_separation",
+        doc="Distance between the left and right wheels.",
     )
-    diameter: float = tag("wheelDiameter", default=0.15, unit="m", doc="Diameter of all wheels.")
+    diameter: float = tag(
+        "wheelDiameter",
+        default=0.15,
+        unit="m",
+        role="wheel_diameter",
+        doc="Diameter of all wheels.",
+    )
     torque: float = tag("torque", default=5.0, unit="N m", doc="Maximum torque of each motor.")
     command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")

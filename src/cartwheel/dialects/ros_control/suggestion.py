@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from cartwheel.description.check.subject import DRIVE_JOINT_TAGS
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.files import (
@@ -17,6 +16,7 @@ from cartwheel.dialects.ros_control.files import (
     ros1_entries,
     ros2_file,
 )
+from cartwheel.dialects.tags import roles_of
 from cartwheel.errors import CartwheelError
 
 _ROS2_CONTROL = "gz_ros2_control-system"
@@ -33,10 +33,12 @@ def suggested(robot: RobotDescription) -> list[Path]:
     wheels that a plugin drives are left out, because both would command the wheels.
     """
     driven = {
-        part.text.strip()
+        joint
         for tag in robot.plugins
-        for part in tag.element.children
-        if part.tag in DRIVE_JOINT_TAGS
+        if (plugin := plugin_named(tag.filename)) is not None
+        for role in roles_of(plugin.parameters)
+        if role.role in ("left_wheel", "right_wheel", "left_wheels", "right_wheels")
+        for joint in role.joints(tag.element)
     }
     joints = [
         each.name for each in robot.joints if each.type != "fixed" and each.name not in driven

@@ -1,0 +1,57 @@
+"""The meaning of a plugin's tags, for rules that compare them with the robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from cartwheel.description.model import Element
+
+Role = Literal[
+    "",
+    "left_wheel",
+    "right_wheel",
+    "left_wheels",
+    "right_wheels",
+    "wheel_separation",
+    "wheel_base",
+    "wheel_radius",
+    "wheel_diameter",
+    "wheel_torque",
+]
+"""Meaning of a tag.
+
+The tag ``left_wheel`` contains the joint of a driven wheel, and ``left_wheels`` joints separated by
+spaces. ``wheel_separation`` is the distance between wheels across the robot, and ``wheel_base``
+along it.
+"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TagRole:
+    """A tag with a meaning."""
+
+    role: Role
+    tags: tuple[str, ...]
+    """Spellings of the tag; the first one that exists is read."""
+    default: tuple[float | str, ...]
+    """Value without the tag; empty if the tag is required or the value depends on others."""
+    wheels: tuple[tuple[str, ...], ...] = ()
+    """For a size: the tags of the measured wheels' joints. A distance has two groups of them."""
+
+    def joints(self, element: Element) -> tuple[str, ...]:
+        """Returns the joints in the tag, or the default joints; `element` contains the tag."""
+        for name in self.tags:
+            texts = [text for child in element.find_all(name) if (text := child.text.strip())]
+            if texts:
+                break
+        else:
+            texts = [str(joint) for joint in self.default]
+        if self.role in ("left_wheels", "right_wheels"):
+            return tuple(" ".join(texts).split())
+        return tuple(texts)
+
+
+def wheels(roles: tuple[TagRole, ...], side: Literal["left", "right"]) -> tuple[TagRole, ...]:
+    """Returns the tags with the joints of driven wheels on one side."""
+    return tuple(each for each in roles if each.role in (f"{side}_wheel", f"{side}_wheels"))
