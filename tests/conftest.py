@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from tests.devices.drives.carts import cart_sdf
 
 import cartwheel as cw
 from cartwheel.description import load_robot, load_text
@@ -284,3 +285,9 @@ def ask():
         return future.result(timeout=60)
 
     return asked
+
+
+@pytest.fixture
+def cart(make):
+    """`cart_sdf` as a description."""
+    return lambda wheels, plugin, **more: make.sdf(cart_sdf(wheels, plugin, **more))

@@ -1,7 +1,7 @@
 """Files of ros_gz_bridge: topics have the names and types that they have in ROS."""
 
 import pytest
-from tests.plugins.conftest import cart_sdf
+from tests.devices.drives.carts import cart_sdf
 
 import cartwheel as cw
 from cartwheel.codes import devices

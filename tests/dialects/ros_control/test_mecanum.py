@@ -4,7 +4,7 @@ import math
 
 import pytest
 from tests.coded import coded
-from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading, rollers
+from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading, rollers
 
 from cartwheel.codes import devices
 

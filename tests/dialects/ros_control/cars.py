@@ -10,6 +10,10 @@ RADIUS, BASE, TRACK = 0.1, 0.5, 0.4
 CORNERS = {"front_left": (1, 1), "front_right": (1, -1), "rear_left": (-1, 1),
            "rear_right": (-1, -1)}  # fmt: skip
 
+REAR = {"rear_left": (-BASE / 2, TRACK / 2, False), "rear_right": (-BASE / 2, -TRACK / 2, False)}
+FRONT = {"front": (BASE / 2, 0.0, True)}
+"""Wheels of a tricycle, for `car`."""
+
 
 def _wheel(name, parent, x, y):
     return f"""<link name="{name}"><inertial><mass value="0.5"/><inertia ixx="0.00125" iyy="0.0025"

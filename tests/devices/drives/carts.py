@@ -1,8 +1,10 @@
-"""Robots on wheels for the tests of drives, made in a line."""
+"""Carts for the tests of drives: their wheels, plugins and paths."""
 
 import math
 
-import pytest
+import numpy as np
+
+from cartwheel.geometry import Pose, yaw_of
 
 RADIUS = 0.1
 WIDTH = 0.04
@@ -63,7 +65,59 @@ def cart_sdf(wheels, plugin, *, forks=(), mu=1.0, mass=8.0, balls=()):
     return f'<model name="cart">{"".join(parts)}{plugin}</model>'
 
 
-@pytest.fixture
-def cart(make):
-    """`cart_sdf` as a description."""
-    return lambda wheels, plugin, **more: make.sdf(cart_sdf(wheels, plugin, **more))
+FOUR = {
+    "left_front": (0.2, 0.15),
+    "right_front": (0.2, -0.15),
+    "left_rear": (-0.2, 0.15),
+    "right_rear": (-0.2, -0.15),
+}
+"""Wheels at the corners of a rectangle."""
+CAR = {
+    "front_left": (0.4, 0.15),
+    "front_right": (0.4, -0.15),
+    "rear_left": (0.0, 0.15),
+    "rear_right": (0.0, -0.15),
+}
+"""Wheels of a car, whose front wheels are steered."""
+FRONT = ("front_left", "front_right")
+PLANAR = """<plugin name="drive" filename="libgazebo_ros_planar_move.so">
+  <robotBaseFrame>base_link</robotBaseFrame>{}</plugin>"""
+START = Pose((0, 0, 0.002))
+
+
+def ackermann(tags=""):
+    return f"""<plugin name="drive" filename="libgazebo_ros_ackermann_drive.so">
+      <left_steering_joint>front_left_steering</left_steering_joint>
+      <right_steering_joint>front_right_steering</right_steering_joint>
+      <publish_odom>true</publish_odom><publish_distance>true</publish_distance>
+      <publish_steerangle>true</publish_steerangle><robot_base_frame>base_link</robot_base_frame>
+      <left_steering_pid_gain>1 0 0</left_steering_pid_gain>{tags}</plugin>"""
+
+
+def where(message):
+    place, turn = message.pose.pose.position, message.pose.pose.orientation
+    return place.x, place.y, yaw_of((turn.x, turn.y, turn.z, turn.w))
+
+
+def path(messages):
+    return np.array([where(message)[:2] for message in messages])
+
+
+def turned(messages):
+    """rad, summed along the messages."""
+    yaws = np.unwrap([where(message)[2] for message in messages])
+    return yaws[-1] - yaws[0]
+
+
+def circle(points):
+    """Radius of the circle through points, by least squares: |p|² = 2 c·p + (r² - |c|²)."""
+    rows = np.column_stack([2 * points, np.ones(len(points))])
+    (cx, cy, rest), *_ = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)
+    return math.sqrt(rest + cx * cx + cy * cy)
+
+
+def spawn(make, model, pose=START, **more):
+    world = make.world(**more)
+    world.session.spawn(model, pose=pose)
+    world.run(0.5)
+    return world

@@ -3,19 +3,22 @@
 import math
 
 import pytest
-from tests.coded import coded
-from tests.plugins.control import cars
-from tests.plugins.control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading
-
-from cartwheel.codes import robot
+from tests.dialects.ros_control.cars import (
+    BASE,
+    FRONT,
+    RADIUS,
+    REAR,
+    TRACK,
+    Car,
+    four_wheels,
+    heading,
+)
 
 SPEED, TURN = 0.4, 0.4
 CIRCLE = SPEED / TURN
 """m: radius of the circle of the rear axle's middle."""
 MIDDLE = math.atan(BASE / CIRCLE)
 """rad: how a wheel in the middle of the front axle points, about the same centre."""
-REAR = {"rear_left": (-BASE / 2, TRACK / 2, False), "rear_right": (-BASE / 2, -TRACK / 2, False)}
-FRONT = {"front": (BASE / 2, 0.0, True)}
 
 
 @pytest.fixture
@@ -145,52 +148,3 @@ def test_a_tricycle_steers_one_wheel_and_drives_two(make, tmp_path):
     before = made.place[2]
     made.go(1.0, x=SPEED, turn=-TURN)
     assert made.place[2] - before == pytest.approx(-TURN, rel=0.06)
-
-
-def test_a_tricycle_of_one_driven_wheel(make, tmp_path):
-    """``tricycle_controller``: the front wheel's rim goes a longer way than the rear axle."""
-    wheels = {**FRONT, **REAR}
-    made = Car(
-        make, tmp_path, wheels, "cmd_vel",
-        type="tricycle_controller/TricycleController",
-        traction_joint_name="front_joint", steering_joint_name="front_steer",
-        wheelbase=BASE, wheel_radius=RADIUS, cmd_vel_timeout=500,
-    )  # fmt: skip
-    made.go(1.0, x=SPEED, turn=TURN)
-    assert made.joint("front_steer") == pytest.approx(MIDDLE, abs=1e-3)
-    rim = SPEED / math.cos(MIDDLE) / RADIUS
-    assert made.speeds("front_joint")[0] == pytest.approx(rim, rel=0.01)
-    before = made.place[2]
-    made.go(1.0, x=SPEED, turn=TURN)
-    assert made.place[2] - before == pytest.approx(TURN, rel=0.06)
-    told = made.odometry("/base/odom")
-    assert told.twist.twist.linear.x == pytest.approx(SPEED, rel=0.03)
-    assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.03)
-
-
-def test_a_tricycle_takes_plain_twists_where_it_is_told(make, tmp_path):
-    made = Car(
-        make, tmp_path, {**FRONT, **REAR}, "cmd_vel",
-        type="tricycle_controller/TricycleController",
-        traction_joint_name="front_joint", steering_joint_name="front_steer",
-        wheelbase=BASE, wheel_radius=RADIUS, use_stamped_vel=False,
-    )  # fmt: skip
-    made.world.publish("/base/cmd_vel", linear_x=SPEED)
-    made.world.run(0.3)
-    assert made.speeds("front_joint")[0] == pytest.approx(SPEED / RADIUS, rel=0.01)
-
-
-def test_an_axis_that_points_the_wrong_way_is_told(make, tmp_path, monkeypatch):
-    """Published robots have such, and steer right where they are told left."""
-    plain = cars.car
-    upside_down = ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>')
-    monkeypatch.setattr(cars, "car", lambda *parts: plain(*parts).replace(*upside_down))
-    made = Car(
-        make, tmp_path, {**FRONT, **REAR}, "cmd_vel",
-        type="tricycle_controller/TricycleController",
-        traction_joint_name="front_joint", steering_joint_name="front_steer",
-        wheelbase=BASE, wheel_radius=RADIUS,
-    )  # fmt: skip
-    (told,) = coded(made.world, robot.WHEEL_AXIS_MISALIGNED, axis="-z")
-    assert told.values["joint"] == "front_steer"
-    assert str(told.origin).startswith(str(tmp_path / "car.urdf"))

@@ -1,0 +1,76 @@
+"""Planar move: its paths, walls and timeouts."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.devices.drives.carts import (
+    FOUR,
+    PLANAR,
+    RADIUS,
+    START,
+    circle,
+    path,
+    spawn,
+    where,
+)
+
+from cartwheel.codes import running
+from cartwheel.errors import PluginError
+from cartwheel.geometry import Pose
+
+
+def test_planar_move_goes_sideways_in_its_own_frame(make, cart, read):
+    world = spawn(make, cart(FOUR, PLANAR.format("")), Pose.from_xyz_rpy((0, 0, 0.002), (0, 0, 1)))
+    world.publish("/cmd_vel", linear_x=0.2, linear_y=0.4)
+    world.run(0.5)
+    told = read(world, "/odom", 4.0)
+    assert len(told) == 80
+    (x0, y0, yaw), (x1, y1, _) = where(told[0]), where(told[-1])
+    seconds = 79 / 20
+    cos, sin = math.cos(1), math.sin(1)
+    # The tyres' friction mu g takes 1/5 of what the servo has: 0.05 / 5 m/s.
+    assert (x1 - x0) / seconds == pytest.approx(0.2 * cos - 0.4 * sin, abs=0.012)
+    assert (y1 - y0) / seconds == pytest.approx(0.2 * sin + 0.4 * cos, abs=0.012)
+    assert yaw == pytest.approx(1.0, abs=0.01)
+    twist = told[-1].twist.twist
+    assert (twist.linear.x, twist.linear.y) == pytest.approx((0.2, 0.4), abs=0.012)
+
+
+def test_planar_move_closes_a_circle_looking_outwards(make, cart, read):
+    """Sideways at v and turning at ω: round a centre ahead or behind at v/ω."""
+    speed, turn = 0.4, 0.8
+    world = spawn(make, cart(FOUR, PLANAR.format(""), mu=0.1))
+    world.publish("/cmd_vel", linear_y=speed, angular_z=turn)
+    world.run(1.0)
+    told = read(world, "/odom", 2 * math.pi / turn)
+    assert circle(path(told)) == pytest.approx(speed / turn, rel=0.02)
+    assert np.linalg.norm(path(told)[-1] - path(told)[0]) < 0.06
+
+
+def test_planar_move_stops_at_a_wall(make, cart):
+    wall = make.box("wall", (0.1, 4, 1), static=True, pose=Pose((1.05, 0, 0.5)))
+    world = make.world(wall)
+    world.session.spawn(cart(FOUR, PLANAR.format("")), pose=START)
+    world.publish("/cmd_vel", linear_x=0.5)
+    world.run(6.0)
+    # Its front wheels touch the wall's face at 1 m, with the give of a contact.
+    assert world.model("cart").pose.x == pytest.approx(1.0 - 0.2 - RADIUS, abs=0.02)
+    assert abs(world.model("cart").pose.yaw) < 0.05
+
+
+def test_planar_move_stands_after_its_timeout(make, cart, read):
+    world = spawn(make, cart(FOUR, PLANAR.format("<cmdTimeout>0.5</cmdTimeout>")))
+    world.publish("/cmd_vel", linear_x=0.4)
+    world.run(0.4)
+    assert read(world, "/odom", 0.05)[-1].twist.twist.linear.x > 0.35
+    world.run(0.5)
+    assert abs(read(world, "/odom", 0.05)[-1].twist.twist.linear.x) < 0.01
+
+
+def test_planar_move_of_what_is_fixed_is_refused(make):
+    plugin = PLANAR.format("")
+    model = f'<model name="post"><static>1</static><link name="link"/>{plugin}</model>'
+    with pytest.raises(PluginError) as caught:
+        spawn(make, make.sdf(model))
+    assert caught.value.code is running.MODEL_NOT_MOVABLE
