@@ -139,8 +139,6 @@ def driven_wheel_motion(distance: Number, angle: Number, base: Number) -> tuple[
 def alignment(error: Number) -> Number:
     """Returns the factor by which a driven wheel slows down until it is steered.
 
-    Source: tricycle_controller.
-
     Args:
         error: Difference between the wanted and the current steering angle, rad.
     """

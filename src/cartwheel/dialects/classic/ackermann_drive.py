@@ -146,6 +146,7 @@ class ClassicAckermannDrive(Plugin[AckermannParameters]):
             config.front_left, config.front_right, config.rear_left, config.rear_right,
             config.steer_left, config.steer_right,
         )  # fmt: skip
+        # All joints must exist, including the front wheels, which the device does not command.
         for name in names:
             self.part.joint(name, origin=self.origin)
         wheel = self.part.description.joint(config.steering_wheel)
@@ -223,9 +224,9 @@ class ClassicAckermannDrive(Plugin[AckermannParameters]):
                 )
             collision = link.collisions[0]
             shape = collision.shape
-            round_one = isinstance(shape, Cylinder | Sphere | Capsule)
+            is_round = isinstance(shape, Cylinder | Sphere | Capsule)
             # The frame of a mesh can be anywhere, so the wheel is placed at its joint.
-            place = collision.pose if round_one or joint is None else joint.pose
+            place = collision.pose if is_round or joint is None else joint.pose
             centres.append(poses[link.name].apply(place.position))
         if not isinstance(shape, Cylinder | Sphere | Capsule):
             raise PluginError(
