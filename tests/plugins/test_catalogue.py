@@ -86,7 +86,7 @@ def test_only_what_is_named_is_imported():
             "import sys; from cartwheel.dialects.catalogue import plugin_named;"
             "assert plugin_named('libgazebo_ros_imu.so');"
             "print('cartwheel.dialects.classic.imu' in sys.modules);"
-            "print('cartwheel.dialects.makers.gps' in sys.modules)",
+            "print('cartwheel.dialects.makers.hector_gps' in sys.modules)",
         ],
         capture_output=True,
         text=True,

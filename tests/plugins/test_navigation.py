@@ -7,7 +7,7 @@ import pytest
 
 from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
-from cartwheel.dialects.geodesy import EQUATOR, FLATTENING, Datum, from_earth, to_earth
+from cartwheel.devices.position.geodesy import EQUATOR, FLATTENING, Datum, from_earth, to_earth
 from cartwheel.errors import Origin, PluginError
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
 from cartwheel.messages import message_class

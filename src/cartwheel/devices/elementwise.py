@@ -72,8 +72,13 @@ def copysign(value: Number, sign: Number) -> Number:
     return math.copysign(value, sign)
 
 
+def power(value: Number, exponent: float) -> Number:
+    """Returns a number that is not negative, raised to a positive exponent."""
+    return _POW(value, exponent) if isinstance(value, np.ndarray) else math.pow(value, exponent)
+
+
 # NumPy's own sine and its relatives round differently from those in `math`.
-_SIN, _COS, _TAN, _ATAN, _ATAN2 = (
+_SIN, _COS, _TAN, _ATAN, _ATAN2, _POW = (
     np.vectorize(function, otypes=[float])
-    for function in (math.sin, math.cos, math.tan, math.atan, math.atan2)
+    for function in (math.sin, math.cos, math.tan, math.atan, math.atan2, math.pow)
 )

@@ -120,17 +120,28 @@ class _Drift:
         return self._value
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VectorNoiseConfig:
+    """Configuration of a `VectorNoise`."""
+
+    name: str
+    """Name of the random sequence."""
+    noises: tuple[Noise, ...]
+    """Noise on each quantity."""
+    rate: float
+    """Measurement rate, Hz; 0: every step."""
+
+
 class VectorNoise:
     """Noise on several quantities that are measured together.
 
     Args:
         part: Provides the seed and the time.
-        name: Name of the random sequence.
-        noises: Noise on each quantity.
-        rate: Measurement rate in Hz; 0: every step.
+        config: Noise of each quantity.
     """
 
-    def __init__(self, part: Part, name: str, noises: Sequence[Noise], *, rate: float) -> None:
+    def __init__(self, part: Part, config: VectorNoiseConfig) -> None:
+        name, noises = config.name, config.noises
         self._part, self._name = part, name
         self._stddev = np.array([noise.stddev for noise in noises])
         self._mean = np.array([noise.mean for noise in noises])
@@ -149,7 +160,7 @@ class VectorNoise:
         self._drift = _Drift(
             part,
             name,
-            rate=rate,
+            rate=config.rate,
             deviation=stationary_deviation(walk, time),
             frequency=1.0 / np.where(time > 0, time, 1.0),
             settled=False,
@@ -164,6 +175,9 @@ class VectorNoise:
         total: Array = self._fixed + self._drift.now()
         return total
 
+    def restart(self) -> None:
+        """Has no effect: the bias is constant, and its drift restarts when time is reset."""
+
     def add(self, values: Sequence[float]) -> Sequence[float]:
         """Adds noise to the values, as measured at the current time."""
         if self._none:
@@ -177,6 +191,26 @@ class VectorNoise:
         return result
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DriftingErrorConfig:
+    """Configuration of a `DriftingError`. Sequences have one number for each quantity."""
+
+    name: str
+    """Name of the random sequence."""
+    rate: float
+    """Measurement rate, Hz; 0: every step."""
+    offset: Sequence[float]
+    """Constant error."""
+    drift: Sequence[float]
+    """Standard deviation of the drift."""
+    frequency: Sequence[float]
+    """Inverse of the drift's time constant, 1/s."""
+    noise: Sequence[float]
+    """Standard deviation of the noise."""
+    scale: Sequence[float]
+    """Factor on the true value."""
+
+
 class DriftingError:
     """Scale factor, offset, drift and white noise on quantities that are measured together.
 
@@ -185,35 +219,20 @@ class DriftingError:
 
     Args:
         part: Provides the seed and the time.
-        name: Name of the random sequence.
-        rate: Measurement rate in Hz; 0: every step.
-        offset: Constant error.
-        drift: Standard deviation of the drift.
-        frequency: Inverse of the drift's time constant, 1/s.
-        noise: Standard deviation of the noise.
-        scale: Factor on the true value.
+        config: Errors of each quantity.
     """
 
-    def __init__(
-        self,
-        part: Part,
-        name: str,
-        *,
-        rate: float,
-        offset: Sequence[float],
-        drift: Sequence[float],
-        frequency: Sequence[float],
-        noise: Sequence[float],
-        scale: Sequence[float],
-    ) -> None:
-        self._part, self._name = part, name
-        self._offset, self._noise, self._scale = (np.array(v) for v in (offset, noise, scale))
+    def __init__(self, part: Part, config: DriftingErrorConfig) -> None:
+        self._part, self._name = part, config.name
+        self._offset, self._noise, self._scale = (
+            np.array(values) for values in (config.offset, config.noise, config.scale)
+        )
         self._drift = _Drift(
             part,
-            name,
-            rate=rate,
-            deviation=np.array(drift),
-            frequency=np.array(frequency),
+            config.name,
+            rate=config.rate,
+            deviation=np.array(config.drift),
+            frequency=np.array(config.frequency),
             settled=True,
         )
         self.variance = self._noise**2
@@ -233,8 +252,20 @@ class DriftingError:
         total: Array = self._offset + self._drift.now()
         return total
 
-    def add(self, values: Sequence[float] | Array) -> Array:
-        """Adds all errors to the values, as measured at the current time, shape (n,)."""
+    def add(self, values: Sequence[float]) -> Sequence[float]:
+        """Adds all errors to the values, as measured at the current time."""
         noise = self._part.random(self._name).normal(0.0, self._noise)
         measured: Array = np.asarray(values) * self._scale + self.bias + noise
-        return measured
+        result: list[float] = measured.tolist()
+        return result
+
+
+ErrorConfig = VectorNoiseConfig | DriftingErrorConfig
+"""Errors of a sensor that supports both models."""
+
+
+def sensor_error(part: Part, config: ErrorConfig) -> VectorNoise | DriftingError:
+    """Returns the errors that a configuration describes."""
+    if isinstance(config, VectorNoiseConfig):
+        return VectorNoise(part, config)
+    return DriftingError(part, config)

@@ -5,7 +5,7 @@ import pytest
 import cartwheel as cw
 from cartwheel.codes import devices
 from cartwheel.description import load_text
-from cartwheel.dialects.gz.air_pressure import pressure_at
+from cartwheel.devices.position.barometer import pressure_at
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError
 

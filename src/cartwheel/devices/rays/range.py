@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cartwheel.component import Component, Scope
-from cartwheel.devices.noise import DriftingError
+from cartwheel.devices.noise import DriftingError, DriftingErrorConfig
 from cartwheel.devices.rays.messages import range_message
 from cartwheel.devices.rays.scan import Scanner, ScannerConfig
 from cartwheel.messages import header
@@ -57,13 +57,15 @@ class RangeFinder(Component):
         self._frame = self.frame(config.frame)
         self._error = DriftingError(
             self.part,
-            f"range {config.scanner.name}",
-            rate=config.rate,
-            offset=[config.offset],
-            drift=[config.drift],
-            frequency=[config.drift_frequency],
-            noise=[config.noise or 0.0],
-            scale=[1.0],
+            DriftingErrorConfig(
+                name=f"range {config.scanner.name}",
+                rate=config.rate,
+                offset=[config.offset],
+                drift=[config.drift],
+                frequency=[config.drift_frequency],
+                noise=[config.noise or 0.0],
+                scale=[1.0],
+            ),
         )
         self._publisher = self.advertise(
             config.topic, "sensor_msgs/msg/Range", rate=config.rate or None, qos="sensor"
@@ -82,7 +84,7 @@ class RangeFinder(Component):
         if value < pattern.maximum:
             if config.noise is None:
                 (value,) = self._scanner.error.add([value])
-            value = float(self._error.add([value])[0])
+            (value,) = self._error.add([value])
             value = min(max(value, pattern.minimum), pattern.maximum)
         moment = header(self.part.time_ns, self._frame)
         self._publisher.publish(

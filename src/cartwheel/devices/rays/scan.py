@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cartwheel.devices.noise import Noise, VectorNoise, quantize
+from cartwheel.devices.noise import Noise, VectorNoise, VectorNoiseConfig, quantize
 from cartwheel.geometry import Array, Pose
 from cartwheel.simulation import Part
 
@@ -126,7 +126,10 @@ class Scanner:
             maximum=pattern.maximum,
             visuals=config.visuals,
         )
-        self.error = VectorNoise(part, self._name, [pattern.noise], rate=config.rate)
+        self.error = VectorNoise(
+            part,
+            VectorNoiseConfig(name=self._name, noises=(pattern.noise,), rate=config.rate),
+        )
         """Error of a single range. All rays share its mean and bias."""
 
     def measure(self, *, noisy: bool = True) -> Scan:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Sensor
-from cartwheel.devices.noise import VectorNoise
+from cartwheel.devices.noise import VectorNoise, VectorNoiseConfig
 from cartwheel.dialects.gz.sensor_tags import frame_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.noise import read_noise
@@ -172,13 +172,16 @@ class JointLoad:
             "parent_to_child"
         ):
             self._sign = -1.0
-        noises = [
+        noises = tuple(
             read_noise(element.find(f"{what}/{axis}/noise"), part.report)
             for what in ("force", "torque")
             for axis in _AXES
-        ]
+        )
         self._noise = VectorNoise(
-            part, f"force {sensor.joint} {sensor.name}", noises, rate=sensor.update_rate
+            part,
+            VectorNoiseConfig(
+                name=f"force {sensor.joint} {sensor.name}", noises=noises, rate=sensor.update_rate
+            ),
         )
         joint = part.description.joint(sensor.joint or "")
         assert joint is not None

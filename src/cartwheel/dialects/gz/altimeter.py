@@ -1,18 +1,16 @@
-"""``altimeter`` sensors: height and vertical velocity."""
+"""Altimeters in gz-sim, which need no plugin."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.noise import VectorNoise
+from cartwheel.devices.noise import VectorNoiseConfig
+from cartwheel.devices.position import altimeter
 from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.noise import read_noise
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header, message_class
-
-_KIND = "ros_gz_interfaces/msg/Altimeter"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,27 +41,20 @@ class Altimeter(Plugin[AltimeterParameters]):
     def configure(self) -> None:
         sensor, part = self.sensor, self.part
         assert sensor is not None
-        self._link, self._mount = part.link(sensor.link), sensor.pose.position
-        described = part.description.link(sensor.link)
-        assert described is not None
-        self._reference = (part.start @ described.pose).apply(self._mount)[2]
-        self._frame = self.frame(self.config.frame or sensor.link)
-        noises = [
-            read_noise(sensor.element.find(f"altimeter/{what}/noise"), part.report)
-            for what in ("vertical_position", "vertical_velocity")
-        ]
-        self._noise = VectorNoise(
-            part, f"altimeter {sensor.link} {sensor.name}", noises, rate=sensor.update_rate
+        height, velocity = (
+            read_noise(sensor.element.find(f"altimeter/{name}/noise"), part.report)
+            for name in ("vertical_position", "vertical_velocity")
         )
-        self._Altimeter = message_class(_KIND)
-        topic = self.config.topic or default_topic(part, sensor, "altimeter")
-        rate = sensor.update_rate
-        self._publisher = self.advertise(topic, _KIND, rate=rate or None, qos="sensor")
-        part.schedule(rate, after=self._measure, active=lambda: self._publisher.wanted)
-
-    def _measure(self) -> None:
-        place = self._link.pose.apply(self._mount)
-        (_, _, rising), _ = self._link.motion_at(place)
-        height, speed = self._noise.add([place[2] - self._reference, rising])
-        head = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._Altimeter(head, height, speed, self._reference))
+        device = altimeter.AltimeterConfig(
+            link=sensor.link,
+            mount=sensor.pose.position,
+            topic=self.config.topic or default_topic(part, sensor, "altimeter"),
+            frame=self.config.frame or sensor.link,
+            rate=sensor.update_rate,
+            error=VectorNoiseConfig(
+                name=f"altimeter {sensor.link} {sensor.name}",
+                noises=(height, velocity),
+                rate=sensor.update_rate,
+            ),
+        )
+        self.add(altimeter.Altimeter(self.scope, device))

@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
+from cartwheel.devices.inertial.imu import Imu, ImuConfig
 from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.classic.bumper import watched_collisions
-from cartwheel.dialects.classic.imu import ImuBase
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -180,7 +181,7 @@ class Create3ImuParameters:
     )
 
 
-class Create3Imu(ImuBase):
+class Create3Imu(Plugin[Create3ImuParameters]):
     """Publishes the measurements of an IMU sensor. Accelerations exclude gravity.
 
     Original plugin: ``gazebo_ros_imu`` in the package ``irobot_create_gazebo_plugins``, which also
@@ -191,21 +192,18 @@ class Create3Imu(ImuBase):
     parameters: ClassVar[type] = Create3ImuParameters
     for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "imu"
-    with_gravity: ClassVar[bool] = False
 
     def configure(self) -> None:
         sensor = self.sensor
         assert sensor is not None
-        config: Create3ImuParameters = self.config
-        self.start(
-            link=sensor.link,
-            mount=sensor.pose,
+        device = ImuConfig(
+            unit=read_inertial_unit(self.part, sensor),
             topic=out_topic(self),
-            frame=config.frame or sensor.link,
-            noise=0.0,
+            frame=self.config.frame or sensor.link,
             rate=sensor.update_rate,
-            sensor=sensor,
+            gravity=False,
         )
+        self.add(Imu(self.scope, device))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

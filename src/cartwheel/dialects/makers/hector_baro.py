@@ -5,14 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.noise import DriftingError
+from cartwheel.devices.noise import DriftingErrorConfig
+from cartwheel.devices.position.barometer import BarometricAltimeter, BarometricAltimeterConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header, message_class
-
-_SCALE_HEIGHT = 44330.0
-"""m; the formula gives a pressure of 0 at this altitude."""
-_EXPONENT = 5.263157
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,49 +59,29 @@ class HectorBaro(Plugin[HectorBaroParameters]):
     parameters: ClassVar[type] = HectorBaroParameters
 
     def configure(self) -> None:
-        config, part, origin = self.config, self.part, self.tag.origin
+        config = self.config
         self.check_not_negative("update_rate", "drift", "frequency", "noise")
-        name = config.body or part.description.canonical_link
-        self._link = part.link(name, origin=origin)
-        self._frame = self.frame(config.frame or name)
-        self._error = DriftingError(
-            part,
-            f"baro {config.topic} {config.altimeter_topic}",
-            rate=config.update_rate,
-            offset=[config.offset],
-            drift=[config.drift],
-            frequency=[config.frequency],
-            noise=[config.noise],
-            scale=[config.scale],
-        )
-        self._PointStamped = message_class("geometry_msgs/msg/PointStamped")
-        self._Point = message_class("geometry_msgs/msg/Point")
-        self._Altimeter = message_class("hector_uav_msgs/msg/Altimeter")
-        rate = config.update_rate or None
-        self._heights, self._altitudes = (
-            self.advertise(topic, kind, rate=rate, qos="sensor") if topic else None
-            for topic, kind in (
-                (config.topic, "geometry_msgs/msg/PointStamped"),
-                (config.altimeter_topic, "hector_uav_msgs/msg/Altimeter"),
+        link = config.body or self.part.description.canonical_link
+        self.add(
+            BarometricAltimeter(
+                self.scope,
+                BarometricAltimeterConfig(
+                    link=link,
+                    elevation=config.elevation,
+                    qnh=config.qnh,
+                    height_topic=config.topic or None,
+                    altitude_topic=config.altimeter_topic or None,
+                    frame=config.frame or link,
+                    rate=config.update_rate,
+                    error=DriftingErrorConfig(
+                        name=f"baro {config.topic} {config.altimeter_topic}",
+                        rate=config.update_rate,
+                        offset=[config.offset],
+                        drift=[config.drift],
+                        frequency=[config.frequency],
+                        noise=[config.noise],
+                        scale=[config.scale],
+                    ),
+                ),
             )
         )
-        part.schedule(config.update_rate, after=self._measure, active=self._wanted)
-
-    def reset(self) -> None:
-        self._error.restart()
-
-    def _wanted(self) -> bool:
-        return any(each is not None and each.wanted for each in (self._heights, self._altitudes))
-
-    def _measure(self) -> None:
-        config = self.config
-        (_, _, z), _ = self._link.place()
-        height = float(self._error.add([z])[0])
-        head = header(self.part.time_ns, self._frame)
-        if self._heights is not None and self._heights.wanted:
-            self._heights.publish(self._PointStamped(head, self._Point(0.0, 0.0, height)))
-        if self._altitudes is not None and self._altitudes.wanted:
-            altitude = height + config.elevation
-            share = max(1.0 - altitude / _SCALE_HEIGHT, 0.0)
-            pressure = config.qnh * share**_EXPONENT
-            self._altitudes.publish(self._Altimeter(head, altitude, pressure, config.qnh))

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-import numpy as np
-
-from cartwheel.devices.noise import DriftingError
+from cartwheel.devices.inertial.imu import Imu, ImuConfig
+from cartwheel.devices.inertial.unit import InertialUnitConfig
+from cartwheel.devices.noise import DriftingErrorConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.geometry import (
-    Pose,
-    matrix_from_quat,
-    quat_from_rpy,
-    quat_multiply,
-    quat_normalize,
-    rotate,
-)
-from cartwheel.messages import header, message_class
+from cartwheel.geometry import Pose, quat_from_rpy
 
 _NONE = (0.0, 0.0, 0.0)
 _HOUR = 1 / 3600.0
@@ -162,80 +154,61 @@ class HectorImu(Plugin[HectorImuParameters]):
     parameters: ClassVar[type] = HectorImuParameters
 
     def configure(self) -> None:
-        config, part, origin = self.config, self.part, self.tag.origin
+        config = self.config
         self.check_not_negative(
             "update_rate", "noise",
             "accel_drift", "accel_frequency", "accel_noise",
             "rate_drift", "rate_frequency", "rate_noise",
             "yaw_drift", "yaw_frequency", "yaw_noise",
         )  # fmt: skip
-        name = config.body or part.description.canonical_link
-        self._link = part.link(name, origin=origin)
-        self._mount = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
-        self._turn = matrix_from_quat(self._mount.orientation).T
-        self._frame = self.frame(config.frame or name)
-        both = (config.noise,) * 3
-        self._accel = self._error(
-            "accel",
-            (config.accel_offset, config.accel_drift, config.accel_frequency),
-            both if config.noise > 0 else config.accel_noise,
-            config.accel_scale,
-        )
-        self._rate = self._error(
-            "rate",
-            (config.rate_offset, config.rate_drift, config.rate_frequency),
-            both if config.noise > 0 else config.rate_noise,
-            config.rate_scale,
-        )
-        self._yaw = self._error(
-            "yaw",
-            ((config.yaw_offset,), (config.yaw_drift,), (config.yaw_frequency,)),
-            (config.yaw_noise,),
-            (1.0,),
-        )
-        self._Imu = message_class("sensor_msgs/msg/Imu")
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        gravity = math.hypot(*part.world.gravity)
-        tilt = self._accel.variance / gravity**2 if gravity > 0 else np.array([-1.0, -1.0, 0.0])
-        self._gravity = gravity
-        self._covariances = [
-            np.diag([tilt[0], tilt[1], self._yaw.variance[0]]).ravel(),
-            np.diag(self._rate.variance).ravel(),
-            np.diag(self._accel.variance).ravel(),
-        ]
-        self._offer()
-
-    def _offer(self) -> None:
-        config = self.config
-        rate = config.update_rate
-        self._publisher = self.advertise(
-            config.topic, "sensor_msgs/msg/Imu", rate=rate or None, qos="sensor"
-        )
-        bias = f"{config.topic}/bias" if config.bias_topic is None else config.bias_topic
-        self._biases = self.advertise(bias, "sensor_msgs/msg/Imu", rate=rate or None)
-        service = f"{config.topic}/calibrate" if config.service is None else config.service
-        self.serve(service, "std_srvs/srv/Empty", self._calibrate)
-        for name, error in (("accel", self._accel), ("rate", self._rate)):
-            self.serve(
-                f"{config.topic}/set_{name}_bias",
-                "hector_gazebo_plugins/srv/SetBias",
-                self._setter(error),
+        link = config.body or self.part.description.canonical_link
+        mount = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
+        topic = config.topic
+        self.add(
+            Imu(
+                self.scope,
+                ImuConfig(
+                    unit=InertialUnitConfig(link=link, mount=mount),
+                    topic=topic,
+                    frame=config.frame or link,
+                    rate=config.update_rate,
+                    acceleration_error=self._error(
+                        "accel",
+                        (config.accel_offset, config.accel_drift, config.accel_frequency),
+                        (config.noise,) * 3 if config.noise > 0 else config.accel_noise,
+                        config.accel_scale,
+                    ),
+                    rate_error=self._error(
+                        "rate",
+                        (config.rate_offset, config.rate_drift, config.rate_frequency),
+                        (config.noise,) * 3 if config.noise > 0 else config.rate_noise,
+                        config.rate_scale,
+                    ),
+                    yaw_error=self._error(
+                        "yaw",
+                        ((config.yaw_offset,), (config.yaw_drift,), (config.yaw_frequency,)),
+                        (config.yaw_noise,),
+                        (1.0,),
+                    ),
+                    bias_topic=_or(config.bias_topic, f"{topic}/bias"),
+                    calibration_service=_or(config.service, f"{topic}/calibrate"),
+                    acceleration_bias_service=f"{topic}/set_accel_bias",
+                    rate_bias_service=f"{topic}/set_rate_bias",
+                ),
             )
-        self.part.schedule(
-            rate,
-            after=self._measure,
-            active=lambda: self._publisher.wanted or self._biases.wanted,
         )
 
     def _error(
-        self, name: str, drift: tuple[Any, Any, Any], noise: Any, scale: Any
-    ) -> DriftingError:
+        self,
+        name: str,
+        drift: tuple[Sequence[float], Sequence[float], Sequence[float]],
+        noise: Sequence[float],
+        scale: Sequence[float],
+    ) -> DriftingErrorConfig:
         offset, deviation, frequency = drift
         # In the original plugin, the standard deviation of the drift depends on the step length.
-        return DriftingError(
-            self.part,
-            f"imu {self.config.topic} {name}",
+        return DriftingErrorConfig(
+            name=f"imu {self.config.topic} {name}",
             rate=self.config.update_rate,
             offset=offset,
             drift=deviation,
@@ -244,56 +217,6 @@ class HectorImu(Plugin[HectorImuParameters]):
             scale=scale,
         )
 
-    def reset(self) -> None:
-        for error in (self._accel, self._rate, self._yaw):
-            error.restart()
 
-    def _calibrate(self, _: Any) -> Any:
-        self._rate.put((0.0, 0.0, 0.0))
-        return message_class("std_srvs/srv/Empty_Response")()
-
-    @staticmethod
-    def _setter(error: DriftingError) -> Any:
-        response = message_class("hector_gazebo_plugins/srv/SetBias_Response")
-
-        def handle(request: Any) -> Any:
-            error.put((request.bias.x, request.bias.y, request.bias.z))
-            return response()
-
-        return handle
-
-    def _measure(self) -> None:
-        _, turned = self._link.place()
-        _, turning = self._link.motion(local=True)
-        accel = self._accel.add(self._turn @ self._link.proper_acceleration(self._mount.position))
-        rate = self._rate.add(self._turn @ np.array(turning))
-        mounted = quat_multiply(turned, self._mount.orientation)
-        # An accelerometer error of b tilts the estimated vertical by b/g.
-        bias = self._accel.bias.tolist()
-        x, y, _ = rotate(mounted, bias)
-        g = self._gravity or math.inf
-        yaw = float(self._yaw.add([0.0])[0])
-        error = quat_multiply(
-            (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)), (y / (2 * g), -x / (2 * g), 0.0, 1.0)
-        )
-        head = header(self.part.time_ns, self._frame)
-        if self._publisher.wanted:
-            self._publisher.publish(
-                self._imu(head, quat_multiply(quat_normalize(error), mounted), rate, accel)
-            )
-        if self._biases.wanted:
-            self._biases.publish(
-                self._imu(head, quat_normalize(error), self._rate.bias, self._accel.bias)
-            )
-
-    def _imu(self, head: Any, turn: Any, rate: Any, accel: Any) -> Any:
-        of_turn, of_rate, of_accel = self._covariances
-        return self._Imu(
-            head,
-            self._Quaternion(*turn),
-            of_turn,
-            self._Vector3(*rate.tolist()),
-            of_rate,
-            self._Vector3(*accel.tolist()),
-            of_accel,
-        )
+def _or(stated: str | None, default: str) -> str:
+    return default if stated is None else stated

@@ -13,11 +13,13 @@ from cartwheel.description.model import Sensor
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
+from cartwheel.devices.inertial.messages import imu_message
+from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.classic.bumper import watched_collisions
-from cartwheel.dialects.inertial_unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -31,7 +33,7 @@ _SIDES = ("left", "center", "right")
 _LOWEST, _HIGHEST = 0.01, 0.13
 """m above the root link: contacts between these heights press the bumper."""
 _POSE_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel()
-_UNIT_COVARIANCE = np.diag([1e6, 1e6, 0.05]).ravel()
+_IMU_COVARIANCES = (*[np.diag([1e6, 1e6, 0.05]).ravel()] * 2, np.zeros(9))
 _MOST = 4095
 """Largest reading of a cliff sensor's A/D converter."""
 
@@ -171,7 +173,7 @@ class Kobuki(Plugin[KobukiParameters]):
             "right": watched_collisions(self, self._sensor(config.drop_right)),
         }
         imu = self._sensor(config.imu)
-        self._unit = InertialUnit(self.part, imu.link, imu.pose, sensor=imu)
+        self._unit = InertialUnit(self.part, read_inertial_unit(self.part, imu))
         self._root = self.part.link(self.part.description.canonical_link)
         self._frame = self.frame("base_link")
         kinds = {
@@ -185,9 +187,6 @@ class Kobuki(Plugin[KobukiParameters]):
             name: self.advertise(f"{_BASE}events/{name}", kind) for name, kind in types.items()
         }
         rate = config.rate or None
-        self._Imu = message_class("sensor_msgs/msg/Imu")
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
         self._imu = self.advertise(_BASE + "sensors/imu_data", "sensor_msgs/msg/Imu", rate=rate)
         self._Core = message_class("kobuki_msgs/msg/SensorState")
         self._core = self.advertise(
@@ -213,18 +212,8 @@ class Kobuki(Plugin[KobukiParameters]):
 
     def _sense(self) -> None:
         if self._imu.wanted:
-            (x, y, z, w), rate, acceleration = self._unit.measure()
-            self._imu.publish(
-                self._Imu(
-                    header(self.part.time_ns, self._frame),
-                    self._Quaternion(x, y, z, w),
-                    _UNIT_COVARIANCE,
-                    self._Vector3(*rate),
-                    _UNIT_COVARIANCE,
-                    self._Vector3(*acceleration),
-                    np.zeros(9),
-                )
-            )
+            moment = header(self.part.time_ns, self._frame)
+            self._imu.publish(imu_message(moment, *self._unit.measure(), _IMU_COVARIANCES))
         self._check_cliffs()
         self._check_contacts()
         if self._core.wanted:

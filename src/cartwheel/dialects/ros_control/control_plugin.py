@@ -8,14 +8,15 @@ from typing import Any
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
 from cartwheel.devices.drives.rollers import has_rollers
+from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.dialects.classic.ft_sensor import JointLoad
-from cartwheel.dialects.inertial_unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.controller import Rig, SensedLink
 from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
 from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
 from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.ordering import in_order
+from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.errors import CartwheelError
 from cartwheel.simulation.pushing import BodyDriveHandle
 
@@ -68,9 +69,7 @@ class ControlPlugin(Plugin[Any]):
     def _unit(self, sensor: Sensor) -> InertialUnit | JointLoad:
         if sensor.type == "force_torque":
             return JointLoad(self.part, sensor)
-        return InertialUnit(
-            self.part, sensor.link, sensor.pose, sensor=sensor, origin=sensor.origin
-        )
+        return InertialUnit(self.part, read_inertial_unit(self.part, sensor), origin=sensor.origin)
 
     def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:
         """Returns a servo of the whole robot if one of the controller types needs it."""

@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import running
+from cartwheel.devices.inertial.messages import imu_message
+from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.dialects.classic.ft_sensor import JointLoad
-from cartwheel.dialects.inertial_unit import InertialUnit
 from cartwheel.dialects.ros_control.controller import Controller, Rhythm, SensedLink
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import UnknownNameError
@@ -107,18 +108,7 @@ class ImuBroadcaster(_SensorBroadcaster):
 
     def measure(self, sensed: SensedLink, head: Any) -> Any:
         assert isinstance(sensed.unit, InertialUnit)
-        turned, rate, acceleration = sensed.unit.measure()
-        Vector3 = message_class("geometry_msgs/msg/Vector3")
-        of_orientation, of_rates, of_accelerations = self._covariances
-        return message_class("sensor_msgs/msg/Imu")(
-            header=head,
-            orientation=message_class("geometry_msgs/msg/Quaternion")(*turned),
-            orientation_covariance=of_orientation,
-            angular_velocity=Vector3(*rate),
-            angular_velocity_covariance=of_rates,
-            linear_acceleration=Vector3(*acceleration),
-            linear_acceleration_covariance=of_accelerations,
-        )
+        return imu_message(head, *sensed.unit.measure(), self._covariances)
 
 
 class ForceTorqueBroadcaster(_SensorBroadcaster):

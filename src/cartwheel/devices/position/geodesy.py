@@ -1,12 +1,10 @@
-"""Conversion of world positions to latitude, longitude and height (WGS 84)."""
+"""Latitude, longitude and height of positions in the world, on the ellipsoid WGS 84."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from cartwheel.description.model import Element
-from cartwheel.dialects.tags import number as stated
 from cartwheel.geometry import Vec3
 
 EQUATOR = 6378137.0
@@ -72,23 +70,52 @@ class Datum:
             z + cos_lat * north + sin_lat * up,
         )
 
+    def locate_degrees(self, place: Vec3) -> Vec3:
+        """Returns latitude and longitude in degrees and height in m of a position in the world."""
+        latitude, longitude, height = self.locate(place)
+        return math.degrees(latitude), math.degrees(longitude), height
 
-def world_datum(spherical: Element | None) -> Datum | None:
-    """Returns the origin of a world's ``<spherical_coordinates>``, or None without them.
+    def geographic(self, vector: Vec3) -> Vec3:
+        """Converts a vector from the world frame to east, north and up."""
+        return self.east_north(vector)
 
-    Raises:
-        PluginError: A value is not a number.
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FlatDatum:
+    """Position and heading of a world's origin on an Earth that is flat around the origin.
+
+    Within a few kilometres, the error is below 1 m.
     """
-    if spherical is None:
-        return None
 
-    def number(name: str) -> float:
-        child = spherical.find(name)
-        return stated(child) if child is not None else 0.0
+    latitude: float
+    """Degrees."""
+    longitude: float
+    """Degrees."""
+    height: float
+    """m above the ellipsoid."""
+    heading: float
+    """Angle of the world's x axis, clockwise from north, rad. At 0, y points west."""
 
-    return Datum(
-        latitude=math.radians(number("latitude_deg")),
-        longitude=math.radians(number("longitude_deg")),
-        height=number("elevation"),
-        heading=math.radians(number("heading_deg")),
-    )
+    def locate_degrees(self, place: Vec3) -> Vec3:
+        """Returns latitude and longitude in degrees and height in m of a position in the world."""
+        north, west, up = self.geographic(place)
+        to_north, to_east = radii(math.radians(self.latitude))
+        return (
+            self.latitude + math.degrees(north / to_north),
+            self.longitude - math.degrees(west / to_east),
+            self.height + up,
+        )
+
+    def geographic(self, vector: Vec3) -> Vec3:
+        """Converts a vector from the world frame to north, west and up."""
+        x, y, z = vector
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        return cos * x + sin * y, cos * y - sin * x, z
+
+
+def radii(latitude: float) -> tuple[float, float]:
+    """Returns the distances per rad of latitude and of longitude, m, at a latitude in rad."""
+    sin = math.sin(latitude)
+    bend = 1 / (1 - ECCENTRICITY2 * sin * sin)
+    across = EQUATOR * math.sqrt(bend)
+    return across * (1 - ECCENTRICITY2) * bend, across * math.cos(latitude)

@@ -1,0 +1,1 @@
+"""Sensors of position, height and direction: GPS, magnetometer, barometer, ground truth."""

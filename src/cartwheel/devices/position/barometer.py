@@ -1,0 +1,166 @@
+"""Barometers: air pressure, and the height that is computed from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cartwheel.component import Component, Scope
+from cartwheel.devices.elementwise import Number, maximum, power
+from cartwheel.devices.noise import ErrorConfig, sensor_error
+from cartwheel.geometry import Vec3
+from cartwheel.messages import header, message_class
+
+SEA_LEVEL = 101325.0
+"""Pressure at sea level, Pa."""
+TEMPERATURE = 288.15
+"""Temperature at sea level, K."""
+LAPSE = 0.0065
+"""Decrease of the temperature with height, K/m."""
+EXPONENT = 9.80665 * 0.0289644 / (8.31446 * LAPSE)
+_SCALE_HEIGHT = 44330.0
+"""Altitude at which `pressure_by_qnh` is 0, m."""
+_QNH_EXPONENT = 5.263157
+
+
+def pressure_at(height: Number) -> Number:
+    """Returns the air pressure in Pa at a height in m above sea level.
+
+    The formula is that of the International Standard Atmosphere, which is valid up to 11 km. Above
+    44 km the result is 0.
+    """
+    return SEA_LEVEL * power(maximum(1 - LAPSE * height / TEMPERATURE, 0.0), EXPONENT)
+
+
+def pressure_by_qnh(altitude: Number, qnh: Number) -> Number:
+    """Returns the air pressure at an altitude in m, in the unit of the pressure at sea level."""
+    return qnh * power(maximum(1.0 - altitude / _SCALE_HEIGHT, 0.0), _QNH_EXPONENT)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PressureSensorConfig:
+    """Configuration of a `PressureSensor`."""
+
+    link: str
+    """Link that carries the sensor."""
+    mount: Vec3
+    """Position of the sensor in the link, m."""
+    elevation: float
+    """Height of the world's origin above sea level, m."""
+    topic: str
+    """Topic of the FluidPressure messages."""
+    frame: str
+    """Frame ID of the messages, without the robot's prefix."""
+    rate: float
+    """Publish rate, Hz; 0: every step."""
+    error: ErrorConfig
+    """Error of the pressure, Pa."""
+
+
+class PressureSensor(Component):
+    """Publishes the air pressure of the International Standard Atmosphere at a sensor.
+
+    Args:
+        scope: The sensor's model and names.
+        config: Link, topic and errors.
+
+    Raises:
+        UnknownNameError: The link does not exist.
+    """
+
+    def __init__(self, scope: Scope, config: PressureSensorConfig) -> None:
+        super().__init__(scope)
+        self._config = config
+        self._link = self.part.link(config.link, origin=self.origin)
+        self._frame = self.frame(config.frame)
+        self._error = sensor_error(self.part, config.error)
+        self._variance = float(self._error.variance[0])
+        self._FluidPressure = message_class("sensor_msgs/msg/FluidPressure")
+        self._publisher = self.advertise(
+            config.topic, "sensor_msgs/msg/FluidPressure", rate=config.rate or None, qos="sensor"
+        )
+        self.part.schedule(config.rate, after=self._measure, active=lambda: self._publisher.wanted)
+
+    def reset(self) -> None:
+        """Starts a new drift."""
+        super().reset()
+        self._error.restart()
+
+    def _measure(self) -> None:
+        _, _, height = self._link.pose.apply(self._config.mount)
+        (pressure,) = self._error.add([pressure_at(self._config.elevation + height)])
+        moment = header(self.part.time_ns, self._frame)
+        self._publisher.publish(self._FluidPressure(moment, pressure, self._variance))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BarometricAltimeterConfig:
+    """Configuration of a `BarometricAltimeter`."""
+
+    link: str
+    """Link that carries the altimeter."""
+    elevation: float
+    """Altitude of the world's origin above sea level, m."""
+    qnh: float
+    """Pressure at sea level, hPa."""
+    height_topic: str | None
+    """Topic of the height in the world (PointStamped). None: not published."""
+    altitude_topic: str | None
+    """Topic of the altitude and pressure (Altimeter). None: not published."""
+    frame: str
+    """Frame ID of the messages, without the robot's prefix."""
+    rate: float
+    """Publish rate, Hz; 0: every step."""
+    error: ErrorConfig
+    """Error of the height, m."""
+
+
+class BarometricAltimeter(Component):
+    """Publishes the height of a link, and the altitude and pressure that belong to it.
+
+    Args:
+        scope: The altimeter's model and names.
+        config: Link, topics and errors.
+
+    Raises:
+        UnknownNameError: The link does not exist.
+    """
+
+    def __init__(self, scope: Scope, config: BarometricAltimeterConfig) -> None:
+        super().__init__(scope)
+        self._config = config
+        self._link = self.part.link(config.link, origin=self.origin)
+        self._frame = self.frame(config.frame)
+        self._error = sensor_error(self.part, config.error)
+        self._PointStamped = message_class("geometry_msgs/msg/PointStamped")
+        self._Point = message_class("geometry_msgs/msg/Point")
+        self._Altimeter = message_class("hector_uav_msgs/msg/Altimeter")
+        self._heights, self._altitudes = (
+            self.advertise(topic, kind, rate=config.rate or None, qos="sensor")
+            if topic is not None
+            else None
+            for topic, kind in (
+                (config.height_topic, "geometry_msgs/msg/PointStamped"),
+                (config.altitude_topic, "hector_uav_msgs/msg/Altimeter"),
+            )
+        )
+        self.part.schedule(config.rate, after=self._measure, active=self._wanted)
+
+    def reset(self) -> None:
+        """Starts a new drift."""
+        super().reset()
+        self._error.restart()
+
+    def _wanted(self) -> bool:
+        return any(each is not None and each.wanted for each in (self._heights, self._altitudes))
+
+    def _measure(self) -> None:
+        config = self._config
+        (_, _, z), _ = self._link.place()
+        (height,) = self._error.add([z])
+        moment = header(self.part.time_ns, self._frame)
+        if self._heights is not None and self._heights.wanted:
+            self._heights.publish(self._PointStamped(moment, self._Point(0.0, 0.0, height)))
+        if self._altitudes is not None and self._altitudes.wanted:
+            altitude = height + config.elevation
+            pressure = pressure_by_qnh(altitude, config.qnh)
+            self._altitudes.publish(self._Altimeter(moment, altitude, pressure, config.qnh))

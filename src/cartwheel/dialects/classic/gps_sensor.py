@@ -1,0 +1,47 @@
+"""``libgazebo_ros_gps_sensor.so``: publishes a ``gps`` sensor in ROS 2."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.position.gps import Gps
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.gps import read_gps
+from cartwheel.dialects.tags import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GpsSensorParameters:
+    frame: str = tag(
+        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
+    )
+
+
+class GpsSensor(Plugin[GpsSensorParameters]):
+    """Publishes the geographic position and the velocity of a ``gps`` sensor.
+
+    NavSatFix messages are published on ``~/out``. The velocity toward east, north and up is
+    published on ``~/vel``. The noise in the sensor's ``<gps>`` is applied, in m and m/s. The
+    position is relative to the world's ``<spherical_coordinates>``. Original plugin:
+    ``gazebo_ros_gps_sensor`` in the ROS 2 package ``gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
+    parameters: ClassVar[type] = GpsSensorParameters
+    for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "gps"
+
+    def configure(self) -> None:
+        sensor = self.sensor
+        assert sensor is not None
+        name = self.tag.name or "gps"
+        device = read_gps(
+            self.part,
+            sensor,
+            "gps",
+            topic="out" if self.remaps("out") else f"{name}/out",
+            velocity_topic="vel" if self.remaps("vel") else f"{name}/vel",
+            frame=self.config.frame or sensor.link,
+        )
+        self.add(Gps(self.scope, device))

@@ -1,0 +1,110 @@
+"""``libgazebo_ros_imu_sensor.so``: publishes an ``imu`` sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.inertial.imu import Imu, ImuConfig
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.imu import read_inertial_unit
+from cartwheel.dialects.sdf.rates import slowest
+from cartwheel.dialects.tags import tag
+from cartwheel.geometry import Pose, quat_from_rpy
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImuSensorParameters:
+    topic: str = tag("topicName", "topic", default="imu_data", doc="Topic of the Imu messages.")
+    body: str = tag("bodyName", default="", doc="No effect: the IMU is on the sensor's link.")
+    frame: str = tag(
+        "frameName",
+        "frame_name",
+        default="",
+        doc="Frame ID of the messages. Default: the sensor's link.",
+    )
+    noise: float = tag(
+        "gaussianNoise",
+        default=0.0,
+        unit="rad/s and m/s²",
+        doc="Standard deviation of the noise on angular velocity and acceleration.",
+    )
+    rpy_offset: tuple[float, float, float] = tag(
+        "rpyOffset",
+        "rpyOffsets",
+        default=(0.0, 0.0, 0.0),
+        unit="rad",
+        doc="Roll, pitch and yaw of the IMU relative to the sensor's pose.",
+    )
+    xyz_offset: tuple[float, float, float] = tag(
+        "xyzOffset",
+        "xyzOffsets",
+        default=(0.0, 0.0, 0.0),
+        unit="m",
+        doc="Position of the IMU relative to the sensor's pose.",
+    )
+    update_rate: float = tag(
+        "updateRateHZ",
+        "updateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
+    )
+    initial_orientation: bool = tag(
+        "initialOrientationAsReference",
+        "initial_orientation_as_reference",
+        default=False,
+        doc="Publish the orientation relative to the initial orientation instead of the world "
+        "(REP 145). The sensor's `<orientation_reference_frame>` takes precedence.",
+    )
+
+
+class ImuSensor(Plugin[ImuSensorParameters]):
+    """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
+
+    With ``<ros>`` (ROS 2), the default topic is ``~/out``, which a ``<remapping>`` can rename.
+    Without ``<ros>`` (ROS 1), the topic is in the namespace ``<robotNamespace>``. If this tag is
+    missing and the model is part of a world file, the namespace is the model's name.
+
+    The orientation is relative to the world, or to the sensor's ``<orientation_reference_frame>``.
+    If ``<enable_orientation>`` is false, the orientation is not measured and the first element of
+    its covariance is -1. Original plugin: ``gazebo_ros_imu_sensor`` in the package
+    ``gazebo_plugins``. See also REP 145.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
+    parameters: ClassVar[type] = ImuSensorParameters
+    for_sensor: ClassVar[bool] = True
+    sensor_type: ClassVar[str] = "imu"
+
+    def configure(self) -> None:
+        sensor, config = self.sensor, self.config
+        assert sensor is not None
+        self.under_model()
+        self.check_not_negative("update_rate", "noise")
+        offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
+        unit = read_inertial_unit(
+            self.part,
+            sensor,
+            mount=sensor.pose @ offset,
+            from_first=config.initial_orientation,
+        )
+        self.add(
+            Imu(
+                self.scope,
+                ImuConfig(
+                    unit=unit,
+                    topic=self._topic(),
+                    frame=config.frame or sensor.link,
+                    rate=slowest(config.update_rate, sensor.update_rate),
+                    noise=config.noise,
+                ),
+            )
+        )
+
+    def _topic(self) -> str:
+        element = self.tag.element
+        stated = element.find("topicName") or element.find("topic")
+        if element.find("ros") is None or stated is not None:
+            return self.config.topic
+        return "out" if self.remaps("out") else f"{self.tag.name or 'imu'}/out"

@@ -1,0 +1,49 @@
+"""Satellite navigation in gz-sim, which needs no plugin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.position.gps import Gps
+from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.gps import read_gps
+from cartwheel.dialects.tags import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzNavSatParameters:
+    topic: str = tag(
+        "topic",
+        default="",
+        doc="Topic of the NavSatFix messages. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/navsat`.",
+    )
+    frame: str = frame_tag()
+
+
+class GzNavSat(Plugin[GzNavSatParameters]):
+    """Publishes the geographic position of a ``navsat`` sensor.
+
+    The position is relative to the world's ``<spherical_coordinates>``. The noise in the sensor's
+    ``<navsat>`` is applied, in m. Original sensor: ``NavSatSensor`` in gz-sensors.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type] = GzNavSatParameters
+    for_sensor: ClassVar[bool] = True
+    serves: ClassVar[tuple[str, ...]] = ("navsat", "gps")
+
+    def configure(self) -> None:
+        sensor, config = self.sensor, self.config
+        assert sensor is not None
+        device = read_gps(
+            self.part,
+            sensor,
+            "navsat" if sensor.element.find("navsat") else "gps",
+            topic=config.topic or default_topic(self.part, sensor, "navsat"),
+            velocity_topic=None,
+            frame=config.frame or sensor.link,
+        )
+        self.add(Gps(self.scope, device))

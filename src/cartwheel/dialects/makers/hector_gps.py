@@ -1,0 +1,192 @@
+"""``libhector_gazebo_ros_gps.so``: a receiver of satellite navigation with drift."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.devices.noise import DriftingErrorConfig
+from cartwheel.devices.position.geodesy import Datum, FlatDatum
+from cartwheel.devices.position.gps import Gps, GpsConfig
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.spherical_coordinates import read_datum
+from cartwheel.dialects.tags import tag
+
+_NONE = (0.0, 0.0, 0.0)
+_HOUR = (1 / 3600.0,) * 3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HectorGpsParameters:
+    body: str = tag("bodyName", default="", doc="Link of the receiver. Default: the root link.")
+    topic: str = tag("topicName", default="fix", doc="Topic of the NavSatFix messages.")
+    velocity_topic: str = tag(
+        "velocityTopicName",
+        default="fix_velocity",
+        doc="Topic of the velocity (Vector3Stamped). Its components are north, west and up.",
+    )
+    frame: str = tag("frameId", default="/world", doc="Frame ID of the messages.")
+    update_rate: float = tag(
+        "updateRate", default=4.0, unit="Hz", doc="Publish rate. 0: every step."
+    )
+    use_world: bool = tag(
+        "useWorldSphericalCoordinates",
+        default=False,
+        doc="Use the world's `<spherical_coordinates>` as the default reference.",
+    )
+    latitude: float | None = tag(
+        "referenceLatitude",
+        default=None,
+        unit="degrees",
+        doc="Latitude of the world's origin. Default: 49.9, or the world's latitude if "
+        "`<useWorldSphericalCoordinates>` is true.",
+    )
+    longitude: float | None = tag(
+        "referenceLongitude",
+        default=None,
+        unit="degrees",
+        doc="Longitude of the world's origin. Default: 8.9, or the world's longitude if "
+        "`<useWorldSphericalCoordinates>` is true.",
+    )
+    altitude: float | None = tag(
+        "referenceAltitude",
+        default=None,
+        unit="m",
+        doc="Altitude of the world's origin. Default: 0, or the world's altitude if "
+        "`<useWorldSphericalCoordinates>` is true.",
+    )
+    heading: float | None = tag(
+        "referenceHeading",
+        default=None,
+        unit="degrees",
+        doc="Heading of the world's x axis, clockwise from north. At 0, x points north and "
+        "y west. Default: 0, or the world's heading if `<useWorldSphericalCoordinates>` "
+        "is true.",
+    )
+    status: int = tag("status", default=0, doc="Value of the field `status` in NavSatStatus.")
+    service: int = tag("service", default=0, doc="Value of the field `service` in NavSatStatus.")
+    offset: tuple[float, float, float] = tag(
+        "offset", default=_NONE, unit="m", doc="Constant error of the position."
+    )
+    drift: tuple[float, float, float] = tag(
+        "drift", default=_NONE, unit="m", doc="Standard deviation of the position's drift."
+    )
+    frequency: tuple[float, float, float] = tag(
+        "driftFrequency",
+        default=_HOUR,
+        unit="1/s",
+        doc="Inverse of the time constant of the position's drift.",
+    )
+    noise: tuple[float, float, float] = tag(
+        "gaussianNoise", default=_NONE, unit="m", doc="Standard deviation of the position's noise."
+    )
+    scale: tuple[float, float, float] = tag(
+        "scaleError", default=(1.0,) * 3, doc="Scale factor of the position."
+    )
+    velocity_offset: tuple[float, float, float] = tag(
+        "velocityOffset", default=_NONE, unit="m/s", doc="Constant error of the velocity."
+    )
+    velocity_drift: tuple[float, float, float] = tag(
+        "velocityDrift",
+        default=_NONE,
+        unit="m/s",
+        doc="Standard deviation of the velocity's drift.",
+    )
+    velocity_frequency: tuple[float, float, float] = tag(
+        "velocityDriftFrequency",
+        default=_HOUR,
+        unit="1/s",
+        doc="Inverse of the time constant of the velocity's drift.",
+    )
+    velocity_noise: tuple[float, float, float] = tag(
+        "velocityGaussianNoise",
+        default=_NONE,
+        unit="m/s",
+        doc="Standard deviation of the velocity's noise.",
+    )
+    velocity_scale: tuple[float, float, float] = tag(
+        "velocityScaleError", default=(1.0,) * 3, doc="Scale factor of the velocity."
+    )
+
+
+class HectorGps(Plugin[HectorGpsParameters]):
+    """Publishes the latitude, longitude, altitude and velocity of a link.
+
+    As in the original plugin, the Earth is treated as flat around the reference point. Within a few
+    kilometres, the error is below 1 m. Position and velocity have an offset, a drift, noise and a
+    scale factor, as in ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_gps`` in the
+    package ``hector_gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)
+    parameters: ClassVar[type] = HectorGpsParameters
+
+    def configure(self) -> None:
+        config = self.config
+        self.check_not_negative(
+            "update_rate", "drift", "frequency", "noise",
+            "velocity_drift", "velocity_frequency", "velocity_noise",
+        )  # fmt: skip
+        self.add(
+            Gps(
+                self.scope,
+                GpsConfig(
+                    link=config.body or self.part.description.canonical_link,
+                    projection=self._datum(),
+                    topic=config.topic,
+                    velocity_topic=config.velocity_topic,
+                    frame=config.frame,
+                    rate=config.update_rate,
+                    error=self._error(
+                        "position",
+                        config.offset,
+                        config.drift,
+                        config.frequency,
+                        config.noise,
+                        config.scale,
+                    ),
+                    velocity_error=self._error(
+                        "velocity",
+                        config.velocity_offset,
+                        config.velocity_drift,
+                        config.velocity_frequency,
+                        config.velocity_noise,
+                        config.velocity_scale,
+                    ),
+                    velocity_error_axes="world",
+                    # As in the original plugin, it includes the drift.
+                    covariance=np.diag(np.square(config.drift) + np.square(config.noise)).ravel(),
+                    status=config.status,
+                    service=config.service,
+                ),
+            )
+        )
+
+    def _datum(self) -> FlatDatum:
+        config = self.config
+        latitude, longitude, altitude, heading = 49.9, 8.9, 0.0, 0.0
+        if config.use_world:
+            datum = read_datum(self.part.world.spherical_coordinates) or Datum()
+            latitude, longitude = math.degrees(datum.latitude), math.degrees(datum.longitude)
+            altitude, heading = datum.height, 90.0 - math.degrees(datum.heading)
+        return FlatDatum(
+            latitude=latitude if config.latitude is None else config.latitude,
+            longitude=longitude if config.longitude is None else config.longitude,
+            height=altitude if config.altitude is None else config.altitude,
+            heading=math.radians(heading if config.heading is None else config.heading),
+        )
+
+    def _error(self, name: str, *numbers: tuple[float, float, float]) -> DriftingErrorConfig:
+        offset, drift, frequency, noise, scale = numbers
+        return DriftingErrorConfig(
+            name=f"gps {self.config.topic} {name}",
+            rate=self.config.update_rate,
+            offset=offset,
+            drift=drift,
+            frequency=frequency,
+            noise=noise,
+            scale=scale,
+        )

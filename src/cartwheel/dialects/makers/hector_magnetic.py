@@ -1,0 +1,139 @@
+"""``libhector_gazebo_ros_magnetic.so``: a magnetometer with drift."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.noise import DriftingErrorConfig
+from cartwheel.devices.position.magnetometer import (
+    Magnetometer,
+    MagnetometerConfig,
+    dipole_field,
+)
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.spherical_coordinates import read_datum
+from cartwheel.dialects.tags import tag
+from cartwheel.geometry import Vec3
+
+_NONE = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HectorMagneticParameters:
+    body: str = tag(
+        "bodyName",
+        default="",
+        doc="Link that carries the magnetometer. Default: the root link.",
+    )
+    topic: str = tag(
+        "topicName",
+        default="magnetic",
+        doc="Topic of the Vector3Stamped or MagneticField messages.",
+    )
+    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
+    update_rate: float = tag(
+        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+    )
+    magnitude: float = tag(
+        "magnitude", default=1.0, doc="Magnitude of the field. The messages use the same unit."
+    )
+    use_world: bool = tag(
+        "useWorldSphericalCoordinates",
+        default=False,
+        doc="Use the heading in the world's `<spherical_coordinates>`.",
+    )
+    heading: float | None = tag(
+        "referenceHeading",
+        default=None,
+        unit="degrees",
+        doc="Heading of the world's x axis, clockwise from north. Default: 0, or the "
+        "world's heading if `<useWorldSphericalCoordinates>` is true.",
+    )
+    declination: float = tag(
+        "declination",
+        default=0.0,
+        unit="degrees",
+        doc="Declination of the field, positive to the east.",
+    )
+    inclination: float = tag(
+        "inclination",
+        default=60.0,
+        unit="degrees",
+        doc="Inclination of the field, positive downward.",
+    )
+    as_field: bool = tag(
+        "useMagneticFieldMsgs",
+        default=False,
+        doc="Publish MagneticField messages instead of Vector3Stamped.",
+    )
+    offset: tuple[float, float, float] = tag("offset", default=_NONE, doc="Constant error.")
+    drift: tuple[float, float, float] = tag(
+        "drift", default=_NONE, doc="Standard deviation of the drift."
+    )
+    frequency: tuple[float, float, float] = tag(
+        "driftFrequency",
+        default=(1 / 3600.0,) * 3,
+        unit="1/s",
+        doc="Inverse of the drift's time constant.",
+    )
+    noise: tuple[float, float, float] = tag(
+        "gaussianNoise", default=_NONE, doc="Standard deviation of the noise."
+    )
+    scale: tuple[float, float, float] = tag(
+        "scaleError", default=(1.0,) * 3, doc="Scale factor on the measured field."
+    )
+
+
+class HectorMagnetic(Plugin[HectorMagneticParameters]):
+    """Publishes the Earth's magnetic field in the link frame.
+
+    The field has an offset, a drift, noise and a scale factor, as in
+    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_magnetic`` in the package
+    ``hector_gazebo_plugins``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)
+    parameters: ClassVar[type] = HectorMagneticParameters
+
+    def configure(self) -> None:
+        config = self.config
+        self.check_not_negative("update_rate", "drift", "frequency", "noise")
+        link = config.body or self.part.description.canonical_link
+        self.add(
+            Magnetometer(
+                self.scope,
+                MagnetometerConfig(
+                    link=link,
+                    field=self._field(),
+                    topic=config.topic,
+                    frame=config.frame or link,
+                    rate=config.update_rate,
+                    error=DriftingErrorConfig(
+                        name=f"magnetic {config.topic}",
+                        rate=config.update_rate,
+                        offset=config.offset,
+                        drift=config.drift,
+                        frequency=config.frequency,
+                        noise=config.noise,
+                        scale=config.scale,
+                    ),
+                    as_vector=not config.as_field,
+                ),
+            )
+        )
+
+    def _field(self) -> Vec3:
+        config = self.config
+        heading = 0.0
+        if config.use_world:
+            datum = read_datum(self.part.world.spherical_coordinates)
+            heading = 90.0 - math.degrees(datum.heading) if datum is not None else 90.0
+        if config.heading is not None:
+            heading = config.heading
+        return dipole_field(
+            config.magnitude,
+            math.radians(heading - config.declination),
+            math.radians(config.inclination),
+        )

@@ -1,0 +1,133 @@
+"""``librotors_gazebo_imu_plugin.so``: an inertial measurement unit with drifting biases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cartwheel.devices.inertial.imu import Imu, ImuConfig
+from cartwheel.devices.inertial.unit import InertialUnitConfig
+from cartwheel.devices.noise import DriftingErrorConfig
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+from cartwheel.geometry import Pose
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RotorsImuParameters:
+    link: str = tag("linkName", doc="Link that carries the IMU, and frame ID of the messages.")
+    topic: str = tag("imuTopic", default="imu", doc="Topic of the Imu messages.")
+    rate_noise: float = tag(
+        "gyroscopeNoiseDensity",
+        default=math.radians(70 / 3600),
+        unit="rad/s/√Hz",
+        doc="Noise density of the angular velocity.",
+    )
+    rate_walk: float = tag(
+        "gyroscopeBiasRandomWalk",
+        "gyroscopeRandomWalk",
+        default=math.radians(8 / 3600),
+        unit="rad/s²/√Hz",
+        doc="Random walk of the gyroscope bias.",
+    )
+    rate_time: float = tag(
+        "gyroscopeBiasCorrelationTime",
+        default=1000.0,
+        unit="s",
+        doc="Correlation time of the gyroscope bias.",
+    )
+    rate_bias: float = tag(
+        "gyroscopeTurnOnBiasSigma",
+        default=math.radians(0.5),
+        unit="rad/s",
+        doc="Standard deviation of the constant gyroscope bias.",
+    )
+    accel_noise: float = tag(
+        "accelerometerNoiseDensity",
+        default=4e-3,
+        unit="m/s²/√Hz",
+        doc="Noise density of the acceleration.",
+    )
+    accel_walk: float = tag(
+        "accelerometerRandomWalk",
+        default=6e-3,
+        unit="m/s³/√Hz",
+        doc="Random walk of the accelerometer bias.",
+    )
+    accel_time: float = tag(
+        "accelerometerBiasCorrelationTime",
+        default=300.0,
+        unit="s",
+        doc="Correlation time of the accelerometer bias.",
+    )
+    accel_bias: float = tag(
+        "accelerometerTurnOnBiasSigma",
+        default=0.196,
+        unit="m/s²",
+        doc="Standard deviation of the constant accelerometer bias.",
+    )
+
+
+class RotorsImu(Plugin[RotorsImuParameters]):
+    """Publishes the measurements of an IMU at every step, with white noise and drifting biases.
+
+    Noise densities are converted to standard deviations for the step length. The bias is the sum of
+    a constant and a random walk, which starts from its stationary distribution. Original plugin:
+    ``gazebo_imu_plugin`` in the package ``rotors_gazebo_plugins``. See also REP 145.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_imu_plugin.so",)
+    parameters: ClassVar[type] = RotorsImuParameters
+
+    def configure(self) -> None:
+        config = self.config
+        self.check_above_zero(
+            gyroscopeBiasCorrelationTime=config.rate_time,
+            accelerometerBiasCorrelationTime=config.accel_time,
+        )
+        self.check_not_negative(
+            "rate_noise", "rate_walk", "rate_bias", "accel_noise", "accel_walk", "accel_bias"
+        )
+        self.add(
+            Imu(
+                self.scope,
+                ImuConfig(
+                    unit=InertialUnitConfig(link=config.link, mount=Pose()),
+                    topic=config.topic,
+                    frame=config.link,
+                    rate=0.0,
+                    rate_error=self._error(
+                        "rate", config.rate_noise, config.rate_walk, config.rate_time,
+                        config.rate_bias,
+                    ),
+                    acceleration_error=self._error(
+                        "accel", config.accel_noise, config.accel_walk, config.accel_time,
+                        config.accel_bias,
+                    ),
+                    # As in the original plugin: the orientation is published, but marked as not
+                    # measured, and the covariances are the squares of the noise densities.
+                    orientation_covariance=np.full(9, -1.0),
+                    rate_covariance=np.diag([config.rate_noise**2] * 3).ravel(),
+                    acceleration_covariance=np.diag([config.accel_noise**2] * 3).ravel(),
+                ),
+            )
+        )  # fmt: skip
+
+    def _error(
+        self, kind: str, density: float, walk: float, time: float, bias: float
+    ) -> DriftingErrorConfig:
+        part = self.part
+        name = f"rotors imu {self.tag.name} {kind}"
+        seconds = part.period_ns(0) * 1e-9
+        return DriftingErrorConfig(
+            name=name,
+            rate=0.0,
+            offset=part.random(f"{name} bias").normal(0.0, bias, 3).tolist(),
+            drift=[walk * math.sqrt(time / 2)] * 3,
+            frequency=[1 / time] * 3,
+            noise=[density / math.sqrt(seconds)] * 3,
+            scale=[1.0] * 3,
+        )

@@ -1,0 +1,72 @@
+"""SDF's ``<gps>`` and ``<navsat>`` elements."""
+
+from __future__ import annotations
+
+from cartwheel.codes import devices
+from cartwheel.description.model import Sensor
+from cartwheel.devices.noise import VectorNoiseConfig
+from cartwheel.devices.position.geodesy import Datum
+from cartwheel.devices.position.gps import GpsConfig
+from cartwheel.dialects.sdf.noise import read_noise
+from cartwheel.dialects.sdf.spherical_coordinates import read_datum
+from cartwheel.simulation import Part
+
+
+def read_gps(
+    part: Part,
+    sensor: Sensor,
+    element: str,
+    *,
+    topic: str,
+    velocity_topic: str | None,
+    frame: str,
+) -> GpsConfig:
+    """Reads a ``gps`` or ``navsat`` sensor, whose world has ``<spherical_coordinates>``.
+
+    Args:
+        part: The model's part of the simulation.
+        sensor: The sensor.
+        element: Element with the noise: ``gps`` or ``navsat``.
+        topic: Topic of the position.
+        velocity_topic: Topic of the velocity; None: not published.
+        frame: Frame ID of the messages.
+
+    Raises:
+        PluginError: A number or the noise is invalid.
+    """
+    datum = read_datum(part.world.spherical_coordinates)
+    if datum is None:
+        part.report(
+            devices.COORDINATES_MISSING.diagnostic(
+                f'the world of sensor "{sensor.name}" has no <spherical_coordinates>, so '
+                "its origin is at latitude 0, longitude 0",
+                origin=sensor.origin,
+                values={"sensor": sensor.name},
+            )
+        )
+    return GpsConfig(
+        link=sensor.link,
+        mount=sensor.pose.position,
+        projection=datum or Datum(),
+        topic=topic,
+        velocity_topic=velocity_topic,
+        frame=frame,
+        rate=sensor.update_rate,
+        error=_noise(part, sensor, element, "position_sensing"),
+        velocity_error=_noise(part, sensor, element, "velocity_sensing"),
+        velocity_error_axes="geographic",
+    )
+
+
+def _noise(part: Part, sensor: Sensor, element: str, name: str) -> VectorNoiseConfig:
+    """Returns the noise along three axes, of which the third is vertical."""
+    parent = sensor.element.find(f"{element}/{name}")
+    horizontal, vertical = (
+        read_noise(parent.find(f"{axis}/noise") if parent is not None else None, part.report)
+        for axis in ("horizontal", "vertical")
+    )
+    return VectorNoiseConfig(
+        name=f"gps {sensor.link} {sensor.name} {name}",
+        noises=(horizontal, horizontal, vertical),
+        rate=sensor.update_rate,
+    )
