@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.coded import coded, named
 from tests.devices.cameras.sensors import pixels_of, sensor, take
-from tests.plugins.test_navigation import spherical
+from tests.devices.position.bodies import spherical
 
 from cartwheel.codes import devices, running
 from cartwheel.description import load_text
