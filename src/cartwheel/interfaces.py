@@ -75,6 +75,11 @@ class RunningSimulation(Protocol):
     def call(self, function: Callable[[], T]) -> Future[T]:
         """Like `post`, but returns a future for the result or error."""
 
+    def read(self, function: Callable[[], T]) -> Future[T]:
+        """Like `call`, for a function that does not change the simulation. It does not wait for the
+        next run.
+        """
+
     def report(self, diagnostic: Diagnostic) -> None:
         """Reports a diagnostic on the owner's thread."""
 

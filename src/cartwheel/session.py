@@ -71,6 +71,7 @@ class Session:
             seed=seed,
         )
         self.graph.post = self.simulation.post
+        self.graph.post_read = self.simulation.post_read
         self.graph.on_error = self._subscriber_failed
         self.simulation.strict = strict
         self._clock = self.graph.advertise(

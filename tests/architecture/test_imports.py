@@ -38,6 +38,7 @@ MAY_IMPORT = {
         "session",
         "dialects",
         "bridges",
+        "assembly",
     },
     "control": {"description", "simulation", "messages", "graph", "interfaces"},
     "viewer": {"description", "simulation", "messages", "graph", "interfaces", "gate"},

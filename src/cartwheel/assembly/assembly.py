@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from cartwheel.assembly.observer import AtEnd, Observer
 from cartwheel.assembly.processes import Kind, Processes
 from cartwheel.assembly.recording import Recording, RecordingOptions
+from cartwheel.errors import ControlError, Diagnostic
 from cartwheel.gate.access import Access
 
 if TYPE_CHECKING:
@@ -63,6 +65,7 @@ class Assembly:
         at_end: AtEnd = at_block_end,
     ) -> None:
         self.access = access
+        self._pid = os.getpid()
         self._package_path = tuple(package_path)
         self._observer = observer or Observer()
         self._at_end = at_end
@@ -74,6 +77,11 @@ class Assembly:
         self._control: ControlServer | None = None
         self._joined: set[str] = set()
         """The versions of ROS that the session is connected to."""
+        self._recordings: list[Recording] = []
+        self._updated = -1
+        """`Graph.changed` at the last update."""
+        self._ended: Diagnostic | None = None
+        """Why another ROS 1 node ended the run."""
         self._ros1_api: GazeboApi | None = None
         self._ros2_api: Ros2Api | None = None
         self._descriptions: RobotDescriptions | None = None
@@ -160,15 +168,17 @@ class Assembly:
             open_browser=open_browser,
         )
 
-    def offer_viewer(self, port: int) -> ViewerOnDemand:
+    def offer_viewer(self, port: int, *, until_exit: bool = False) -> ViewerOnDemand:
         """Adds a web viewer that starts when a client requests it.
 
         Args:
             port: The first port to try; ports in use are skipped.
+            until_exit: Leave the viewer open when the assembly is closed, because the process
+                exits.
         """
         from cartwheel.assembly.viewer_on_demand import ViewerOnDemand
 
-        return ViewerOnDemand(
+        viewer = ViewerOnDemand(
             self.session,
             self.control,
             self.pacer,
@@ -176,6 +186,9 @@ class Assembly:
             access=self.access,
             port=port,
         )
+        if not until_exit:
+            self._stack.callback(viewer.close)
+        return viewer
 
     def connect_ros1(self, node: str, arguments: Sequence[str] = ()) -> Ros1Connection:
         """Adds a ROS 1 node with Gazebo's topics and services.
@@ -202,7 +215,7 @@ class Assembly:
                 node=node,
                 arguments=arguments,
                 observer=self._observer,
-                ended=lambda _: session.simulation.stop(),
+                ended=self._ros1_ended,
             )
             connection.start()
         self.control.announce_ros(connection.master_uri)
@@ -286,12 +299,51 @@ class Assembly:
             )
             # The command line completes it even after Ctrl-C: a second of messages takes longer to
             # write than the shutdown timeout allows.
-            self._stack.enter_context(self._at_end(recording.finish))
-            recording.start()
+            with contextlib.ExitStack() as opened:
+                opened.enter_context(self._at_end(recording.finish))
+                recording.start()
+                self._stack.push(opened.pop_all())
         self._stack.callback(recording.close)
+        self._recordings.append(recording)
         return recording
 
+    def update(self) -> None:
+        """Publishes the descriptions of new robots, and records new topics from the start."""
+        if self._descriptions is not None:
+            self._descriptions.update()
+        if self._states is not None:
+            self._states.update()
+        graph = self.session.graph
+        if graph.changed == self._updated:
+            return
+        for recording in self._recordings:
+            recording.update()
+        self._updated = graph.changed
+
+    @property
+    def describes_robots(self) -> bool:
+        """Whether the descriptions of robots are published."""
+        return self._descriptions is not None
+
+    def raise_failure(self) -> None:
+        """Raises the error of a part that has ended the run.
+
+        Raises:
+            RecordingError: A recording has failed.
+            ControlError: Another node has replaced the ROS 1 node.
+        """
+        for recording in self._recordings:
+            if recording.failed:
+                recording.close()
+        ended, self._ended = self._ended, None
+        if ended is not None:
+            raise ControlError(ended.message, code=ended.code, hint=ended.hint, values=ended.values)
+
     # -- shared by the parts
+
+    def _ros1_ended(self, diagnostic: Diagnostic) -> None:
+        self._ended = diagnostic
+        self.session.simulation.stop()
 
     @contextlib.contextmanager
     def _opening(self, kind: Kind | Path) -> Iterator[BridgeProcess]:
@@ -339,12 +391,13 @@ class Assembly:
     # -- end
 
     def close(self) -> None:
-        """Ends all connections and completes the recordings.
+        """Ends all connections and completes the recordings. A forked process changes nothing.
 
         Raises:
             RecordingError: A recording has failed.
         """
-        self._stack.close()
+        if os.getpid() == self._pid:
+            self._stack.close()
 
 
 def _load_robot(

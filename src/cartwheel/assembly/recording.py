@@ -88,7 +88,7 @@ class Recording:
         self._failure: CartwheelError | None = None
         self._summary: Summary | None = None
         self.failed = False
-        """Whether the recording has failed; `close` raises the error."""
+        """Whether the recording has failed, and `close` will raise the error."""
         simulation = session.simulation
         process.open(
             session.graph,
@@ -115,6 +115,13 @@ class Recording:
         self._process.call("start")
         self._observer.recording_started(self.path)
 
+    def update(self) -> None:
+        """Subscribes to new topics, so that their first messages are recorded. Call it on the
+        owner's thread between two runs.
+        """
+        if not self.failed and not self._finished:
+            self._process.call("update")
+
     def close(self) -> None:
         """Completes the recording. Call it on the owner's thread.
 
@@ -124,7 +131,7 @@ class Recording:
         self.finish()
         if self._closed:
             return
-        self._closed = True
+        self._closed, self.failed = True, False
         self._session.simulation.drain()
         if self._failure is not None:
             raise self._failure

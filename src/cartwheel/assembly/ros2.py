@@ -55,7 +55,7 @@ class Ros2Connection:
         self._process = process
         self._parameters = {one.name: one for one in node_parameters(session)}
         self._states: RobotStates | None = None
-        self._name, self._middleware = process.open(
+        self.name, self.middleware = process.open(
             session.graph,
             {
                 "node": node,
@@ -89,7 +89,7 @@ class Ros2Connection:
         self._states = states()
         self._process.call("start")
         self._process.tell("make_way", TOPIC.strip("/"))
-        self._observer.ros2_joined(self._name, self._middleware)
+        self._observer.ros2_joined(self.name, self.middleware)
         log_all_on(self._process, self._session.simulation)
 
     def close(self) -> None:

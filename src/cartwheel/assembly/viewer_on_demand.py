@@ -50,30 +50,47 @@ class ViewerOnDemand:
         self._url: str | None = None
         server.offer_page(PageOffer(show=self.show, browsers=self._browsers))
 
-    def show(self) -> str:
-        """The URL; the viewer is ready when this returns. Call it on any thread except the
-        simulation's.
+    def show(self, port: int | None = None, *, on_owner: bool = False) -> str:
+        """The URL. The viewer is ready when this method returns.
+
+        Args:
+            port: Port to listen on; None for the first free port. An open viewer keeps its port.
+            on_owner: Whether this thread runs the simulation.
 
         Raises:
-            ControlError: No port is available.
+            ControlError: The port is not available, or the viewer could not start.
         """
         with self._lock:
             if self._url is None:
                 # The import takes 0.3 s, which simulations without viewers save.
                 from cartwheel.viewer import Viewer
 
-                port = free_port(self._access.host, self._port)
+                if port is None:
+                    port = free_port(self._access.host, self._port)
                 viewer = self._viewer = Viewer(
                     self._session,
                     access=self._access,
                     port=port,
                     refused=self._observer.page_refused,
                 )
-                starting = self._session.simulation.call(lambda: viewer.start(self._pacer))
-                starting.result(PATIENCE)
+                if on_owner:
+                    self._start(viewer)
+                else:
+                    starting = self._session.simulation.read(lambda: self._start(viewer))
+                    starting.result(PATIENCE)
                 self._url = viewer.url
-                self._server.announce(url=self._url, port=port)
+                self._server.announce(url=self._url, port=viewer.port)
             return self._url
+
+    def close(self) -> None:
+        """Stops the viewer, if it was started."""
+        with self._lock:
+            if self._viewer is not None:
+                self._viewer.close()
+
+    def _start(self, viewer: Viewer) -> None:
+        viewer.start(self._pacer)
+        self._pacer.show()
 
     def _browsers(self) -> int:
         return 0 if self._viewer is None else self._viewer.browsers

@@ -103,7 +103,7 @@ class Operations:
                 "warnings": sum(d.severity != "info" for d in simulation.diagnostics),
             }
 
-        return self._on_simulation(read)
+        return self._in_time(simulation.read(read))
 
     def pause(self, _: Parameters, __: bytes) -> Answer:
         return self._then_time(self._simulation.pause)
@@ -156,7 +156,7 @@ class Operations:
                 )
             return {"models": placed}
 
-        return self._on_simulation(read)
+        return self._in_time(simulation.read(read))
 
     def spawn(self, parameters: Parameters, _: bytes) -> Answer:
         """Reads the file on this thread, so that the simulation can continue."""
@@ -232,14 +232,14 @@ class Operations:
         service = self._graph.service(resolve_name(parameters.text("service")))
         request_class, _response_class = service_classes(service.type)
         request = from_dict(request_class.__msgtype__, parameters.value("request") or {})
-        response = _in_time(self._graph.call(service.name, request))
+        response = self._in_time(self._graph.call(service.name, request))
         return {"response": to_dict(response), "type": response.__msgtype__}
 
     # -- the viewer
 
     def page(self, _: Parameters, __: bytes) -> Answer:
         """The viewer's URL and number of browsers; starts the viewer if necessary."""
-        offer = _in_time(self._page, cancel=False)
+        offer = self._in_time(self._page, cancel=False)
         if offer is None:
             raise ControlError("this simulation has no web interface", code=NO_PAGE)
         return {"url": offer.show(), "browsers": offer.browsers()}
@@ -251,7 +251,22 @@ class Operations:
     # -- the simulation's thread
 
     def _on_simulation(self, function: Callable[[], T]) -> T:
-        return _in_time(self._simulation.call(function))
+        return self._in_time(self._simulation.call(function))
+
+    def _in_time(self, future: Future[T], *, cancel: bool = True) -> T:
+        try:
+            return future.result(PATIENCE)
+        except TimeoutError as error:
+            if cancel:
+                future.cancel()
+            hint = ""
+            if self._simulation.run_state is RunState.WAITING:
+                hint = "The simulation's program must call World.run or World.spin."
+            raise ControlError(
+                f"the simulation did not respond within {PATIENCE:.0f} s",
+                code=SIMULATION_SILENT,
+                hint=hint,
+            ) from error
 
     def _then_time(self, function: Callable[[], None]) -> Answer:
         def run() -> Answer:
@@ -260,17 +275,6 @@ class Operations:
             return {"time": simulation.time_ns / 1e9, "state": simulation.run_state.value}
 
         return self._on_simulation(run)
-
-
-def _in_time(future: Future[T], *, cancel: bool = True) -> T:
-    try:
-        return future.result(PATIENCE)
-    except TimeoutError as error:
-        if cancel:
-            future.cancel()
-        raise ControlError(
-            f"the simulation did not respond within {PATIENCE:.0f} s", code=SIMULATION_SILENT
-        ) from error
 
 
 def _described(topic: TopicInfo) -> Answer:

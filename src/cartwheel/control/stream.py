@@ -55,7 +55,7 @@ class Streams:
             box.put((simulation.time_ns, message if with_data else None))
 
         subscription = self._session.graph.subscribe(
-            topic.name, put, type_name=topic.type, node="cartwheel topic"
+            topic.name, put, type_name=topic.type, node="cartwheel topic", anytime=True
         )
         subscription.dropped = lambda: box.dropped
         try:

@@ -34,23 +34,17 @@ class RobotDescriptions:
         self._graph = graph
         self._published: dict[str, tuple[RobotDescription, Publisher]] = {}
         self._version = -1
-        self._look()
-        self._task = simulation.schedule(_RATE, before=self._look)
+        self.update()
+        self._task = simulation.schedule(_RATE, before=self.update)
 
     def topic(self, name: str) -> str | None:
         """Returns the topic of a model's description; None if the model is not a robot."""
-        self._look()
+        self.update()
         entry = self._published.get(name)
         return entry[1].topic if entry else None
 
-    def close(self) -> None:
-        """Stops publishing."""
-        self._simulation.unschedule(self._task)
-        for _, publisher in self._published.values():
-            publisher.close()
-        self._published.clear()
-
-    def _look(self) -> None:
+    def update(self) -> None:
+        """Publishes new robots at once, which otherwise happens during the next run."""
         scene = self._simulation.scene
         if scene.version == self._version:
             return
@@ -64,6 +58,13 @@ class RobotDescriptions:
         for name, description in robots.items():
             if name not in self._published:
                 self._published[name] = (description, self._publish(name, description))
+
+    def close(self) -> None:
+        """Stops publishing."""
+        self._simulation.unschedule(self._task)
+        for _, publisher in self._published.values():
+            publisher.close()
+        self._published.clear()
 
     def _publish(self, name: str, description: RobotDescription) -> Publisher:
         taken = {publisher.topic for _, publisher in self._published.values()}

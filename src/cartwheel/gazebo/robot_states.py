@@ -72,6 +72,11 @@ class RobotStates:
             self._others = topics
             self._look()
 
+    def update(self) -> None:
+        """Publishes for new robots at once, which otherwise happens during the next run."""
+        if self._is_due():
+            self._look()
+
     def close(self) -> None:
         """Stops publishing."""
         self._tell_of({})

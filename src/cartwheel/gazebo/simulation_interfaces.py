@@ -252,6 +252,7 @@ class SimulationInterfaces:
         states = {
             RunState.RUNNING: _PLAYING,
             RunState.PAUSED: _PAUSED,
+            RunState.WAITING: _PAUSED,
             RunState.STOPPED: _QUITTING,
         }
         return states[simulation.run_state]

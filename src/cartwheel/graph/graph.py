@@ -193,6 +193,9 @@ class Graph:
 
     def __init__(self, post: Post | None = None) -> None:
         self.post: Post = post or _at_once
+        self.post_read: Post | None = None
+        """Like `post`, for functions that may also run while the simulation waits, on another
+        thread."""
         self._lock = threading.RLock()
         self._topics: dict[str, Topic] = {}
         self._services: dict[str, Service] = {}
@@ -224,6 +227,7 @@ class Graph:
             boxes = list(self._boxes)
             topics = list(self._topics.values())
             self.post = _refuse
+            self.post_read = None
             self.on_change.clear()
             self.on_error = _raise
             self.joint_inputs.close()
@@ -267,6 +271,7 @@ class Graph:
         *,
         type_name: str | None = None,
         node: str = "cartwheel",
+        anytime: bool = False,
     ) -> Subscription:
         """Calls `callback` with each message on the owner's thread, in the order of publication.
 
@@ -275,6 +280,8 @@ class Graph:
             callback: Receives each message. It must not change the message.
             type_name: ``pkg/msg/Name``. Required if the topic does not exist yet.
             node: Subscriber's name, for listings.
+            anytime: Whether the topic's latched message may also be delivered while the simulation
+                waits, on another thread.
 
         Raises:
             UnknownNameError: The topic does not exist, and no type is given.
@@ -290,7 +297,8 @@ class Graph:
             topic.subscriptions += (subscription,)
             self._changed(topic)
             if (latched := topic.latched) is not None:
-                self.post(lambda: topic.hand(callback, latched))
+                post = self.post_read if anytime and self.post_read else self.post
+                post(lambda: topic.hand(callback, latched))
             return subscription
 
     def mailbox(

@@ -99,6 +99,13 @@ class Pacer:
                 return
             turn()
 
+    def show(self) -> None:
+        """Passes the current state to the listeners at once."""
+        if self._frames:
+            snapshot = self._simulation.snapshot()
+            for frames in self._frames:
+                frames.listener(snapshot)
+
     def _run_on(self) -> None:
         """One iteration while running: steps, listeners, sleep."""
         simulation = self._simulation

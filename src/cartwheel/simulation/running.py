@@ -6,6 +6,7 @@ import math
 import queue
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TypeVar
@@ -44,6 +45,12 @@ class Run:
         that post continuously would stop simulation time.
         """
         self.commands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self.attendant: Callable[[], None] | None = None
+        """Makes another thread call `serve_reads` as soon as no thread runs the simulation; None if
+        functions that only read wait like all others.
+        """
+        self._reads: deque[Callable[[], None]] = deque()
+        self._read_posted = False
 
     def pause(self) -> None:
         """Pauses the simulation."""
@@ -89,6 +96,39 @@ class Run:
             raise SimulationError("the simulation is closed", code=world_codes.SIMULATION_CLOSED)
         return answered(self.post, function)
 
+    def post_read(self, function: Callable[[], None]) -> None:
+        """Like `post`, for a function that does not change the simulation. Thread-safe.
+
+        It does not wait for the next run if there is an `attendant`.
+        """
+        if self.attendant is None:
+            self.post(function)
+        elif not self.closed:
+            self._reads.append(function)
+            if not self._read_posted:
+                self._read_posted = True
+                self.post(self._serve_posted)
+            self.attendant()
+
+    def read(self, function: Callable[[], T]) -> Future[T]:
+        """Like `post_read`, but returns a future for the result or error. Thread-safe.
+
+        Raises:
+            SimulationError: The run is closed.
+        """
+        if self.closed:
+            raise SimulationError("the simulation is closed", code=world_codes.SIMULATION_CLOSED)
+        return answered(self.post_read, function)
+
+    def serve_reads(self) -> None:
+        """Runs the functions of `post_read`. No other thread may use the simulation meanwhile."""
+        while self._reads:
+            self._obey(self._reads.popleft())
+
+    def _serve_posted(self) -> None:
+        self._read_posted = False
+        self.serve_reads()
+
     def end(self) -> None:
         """Closes the run: executes pending commands, then rejects new ones and removes all
         callbacks.
@@ -96,6 +136,8 @@ class Run:
         self.closed = True
         self.command_time = math.inf
         self.drain()
+        self.serve_reads()
+        self.attendant = None
         self.on_reset.clear()
 
     def drain(self) -> None:
@@ -106,6 +148,12 @@ class Run:
             self._obey(self.commands.get())
             if time.perf_counter() >= end:
                 return
+
+    def drain_queued(self) -> None:
+        """Runs the functions that are queued now, without a limit of time."""
+        self.owner = threading.get_ident()
+        for _ in range(self.commands.qsize()):
+            self._obey(self.commands.get())
 
     def wait(self, seconds: float) -> None:
         """Sleeps until the timeout; a posted function wakes it and is run."""

@@ -376,7 +376,7 @@ class Simulation(Run):
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Reports a diagnostic on the owner's thread. Thread-safe."""
-        self.post(lambda: self.engine.report(diagnostic))
+        self.post_read(lambda: self.engine.report(diagnostic))
 
     # -- models
 

@@ -13,6 +13,8 @@ class RunState(enum.Enum):
     """Whether simulation time advances."""
 
     RUNNING = "running"
+    WAITING = "waiting"
+    """Between two calls of `World.run`."""
     PAUSED = "paused"
     STOPPED = "stopped"
 

@@ -58,7 +58,7 @@ class Framing:
             camera.look_at = target
 
         in_sight = self._simulation.in_sight
-        self._page.then(self._simulation.call(lambda: in_sight(robot, eyes, target)), aim)
+        self._page.then(self._simulation.read(lambda: in_sight(robot, eyes, target)), aim)
 
 
 def robot_of(scene: Scene) -> str | None:

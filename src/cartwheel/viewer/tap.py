@@ -19,7 +19,7 @@ class Tap:
         self.topic = topic
         self.newest: Any = None
         self.count = 0
-        self._subscription = graph.subscribe(topic, self._take, node="viewer")
+        self._subscription = graph.subscribe(topic, self._take, node="viewer", anytime=True)
 
     def _take(self, message: Any) -> None:
         self.newest = message

@@ -54,6 +54,7 @@ class Viewer:
         self._make_desk = desk
         self._refused = refused
         self._slot: Snapshot | None = None
+        self._latest: Snapshot | None = None
         self._version = -1
         self._page: Page | None = None
         self._ready = threading.Event()
@@ -106,7 +107,7 @@ class Viewer:
         """Runs on the simulation's thread: stores the latest snapshot, and queues a job if none is
         pending.
         """
-        page = self._page
+        page, self._latest = self._page, snapshot
         if page is None or self._stopped.is_set():
             return
         if snapshot.scene.version != self._version:
@@ -127,7 +128,9 @@ class Viewer:
                 self._listener, self._access, title="Cartwheel", keys=KEYS, refused=self._refused
             )
             self._desk: Any = (self._make_desk or Desk)(page, self._session)
+            self._desk_changed, page.on_clients = page.on_clients, self._clients_changed
             self._page = page
+            page.post(self._show_latest)
         except BaseException as error:  # noqa: BLE001 - `url` raises it
             self._failure = error
             return
@@ -138,6 +141,21 @@ class Viewer:
         finally:
             self._desk.close()
             page.close()
+
+    def _clients_changed(self) -> None:
+        self._desk_changed()
+        self._show_latest()
+
+    def _show_latest(self) -> None:
+        """Shows the last state, because a simulation that waits or is paused sends no other."""
+        snapshot = self._latest
+        if snapshot is None:
+            return
+        if snapshot.scene.version != self._version:
+            self._version = snapshot.scene.version
+            self._desk.stage.framing.update(snapshot)
+        if self._page is not None and self._page.clients:
+            self._desk.update(snapshot)
 
     def _show(self) -> None:
         snapshot, self._slot = self._slot, None

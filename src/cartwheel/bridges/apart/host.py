@@ -127,7 +127,9 @@ class GraphHost:
     def _subscribe(self, number: int, name: str, type_name: str, node: str) -> None:
         kind = _Times if type_name == _CLOCK and not self._patient else _Relay
         relay = kind(self, number, name)
-        relay.subscription = self._graph.subscribe(name, relay.take, type_name=type_name, node=node)
+        relay.subscription = self._graph.subscribe(
+            name, relay.take, type_name=type_name, node=node, anytime=True
+        )
         relay.subscription.dropped = lambda: relay.dropped + relay.beyond
         self._relays[number] = relay
 

@@ -265,6 +265,7 @@ class RecordingWire:
             on_failure=failed,
         )
         link.handle("start", lambda: graph.run(recorder.start))
+        link.handle("update", lambda: graph.run(recorder.update))
 
     def close(self) -> Any:
         """Closes the recorder. Returns a `Summary`."""

@@ -160,6 +160,10 @@ class Recorder:
         self._prepare()
         self._thread.start()
 
+    def update(self) -> None:
+        """Subscribes to new topics at once, before they publish."""
+        self._survey()
+
     def close(self) -> Summary:
         """Stops recording and completes the file. Call it on the owner's thread.
 

@@ -8,6 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
+from cartwheel.assembly.names import world_title
 from cartwheel.assembly.observer import Observer
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.cli.console import (
@@ -24,19 +25,12 @@ from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.gate.access import Access, refused_page
 
 if TYPE_CHECKING:
-    from cartwheel.description.model import RobotDescription, WorldDescription
+    from cartwheel.description.model import RobotDescription
     from cartwheel.errors import Diagnostic
     from cartwheel.session import Session
 
 _TOPICS = 12
 """The maximum number of topics that are listed."""
-
-
-def world_title(world: WorldDescription) -> str:
-    """A world's name, or that of its file: half of all worlds are named default."""
-    if world.name not in ("default", "world", ""):
-        return world.name
-    return PurePath(world.origin.file).stem.strip("<>")
 
 
 def size_text(size: int) -> str:

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.assembly.assembly import Assembly
+from cartwheel.assembly.names import world_title
 from cartwheel.assembly.ports import refuse_taken
 from cartwheel.assembly.processes import Kind
 from cartwheel.assembly.recording import RecordingOptions, check_recordings
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.options import Options
-from cartwheel.cli.commands.report import Report, world_title
+from cartwheel.cli.commands.report import Report
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.control import running
 from cartwheel.description.reach import run_folders
@@ -140,7 +141,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
 def _viewer(assembly: Assembly, options: Options) -> AnnouncedViewer | None:
     """The web viewer of the run; None if it is started on request."""
     if options.headless:
-        assembly.offer_viewer(options.port)
+        assembly.offer_viewer(options.port, until_exit=True)
         return None
     open_browser = is_desktop() if options.open_browser is None else options.open_browser
     return assembly.add_viewer(options.port, open_browser=open_browser)

@@ -1,4 +1,4 @@
-"""The Python API: worlds, models and simulation time."""
+"""A world that a program runs."""
 
 from __future__ import annotations
 
@@ -6,64 +6,25 @@ import contextlib
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from cartwheel import description as descriptions
-from cartwheel.codes.world import SIMULATION_CLOSED
+from cartwheel.api.model import Model
+from cartwheel.api.running import RunningWorld
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic, SimulationError
+from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Mailbox
 from cartwheel.messages import from_dict, from_flat, type_name
 from cartwheel.session import Session
-from cartwheel.simulation.clock import NANOSECONDS, to_ns
+from cartwheel.simulation.clock import NANOSECONDS
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
-    from cartwheel.simulation import Simulation
 
 
-class Model:
-    """A handle to a model in a world."""
-
-    def __init__(self, world: World, name: str) -> None:
-        self._world = world
-        self.name = name
-
-    @property
-    def pose(self) -> Pose:
-        """Pose of the root link in the world frame."""
-        with self._world.lock:
-            self._world.session.simulation.refresh()
-            return self._world.session.simulation.pose(self.name)
-
-    @pose.setter
-    def pose(self, pose: Pose) -> None:
-        with self._world.used() as simulation:
-            simulation.set_pose(self.name, pose)
-
-    def joint(self, name: str) -> float:
-        """Position of a joint, rad or m.
-
-        Raises:
-            UnknownNameError: The joint does not exist.
-        """
-        with self._world.lock:
-            return self._world.session.simulation.joint_position(self.name, name)
-
-    def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
-        """`World.publish`."""
-        self._world.publish(topic, message, **fields)
-
-    def delete(self) -> None:
-        """Removes the model from the world."""
-        with self._world.used() as simulation:
-            simulation.delete(self.name)
-
-
-class World:
-    """A simulation that advances when you call `run`.
+class World(RunningWorld):
+    """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.
     A forked process has its own copy. Its cameras work only if no image was rendered before the
@@ -77,9 +38,21 @@ class World:
             `cartwheel run`. Otherwise `spawn` raises an error.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
         plugins: Python files that define plugins. They are executed.
+        ros1: Connect to ROS 1; a text is the node's name.
+        ros2: Connect to ROS 2; a text is the node's name.
+        rmw: Middleware of ROS 2: ``dds`` or ``zenoh``.
+        foxglove: Start a server for Foxglove; a number is its port.
+        viewer: Start the web interface; a number is its port.
+        record: Files or folders in which messages are recorded until `close`.
+        record_topics: Patterns of the recorded topics; empty for all topics.
+        overwrite: Replace existing recordings.
+        allow_path: Folders with files that clients may load.
+        host: Address on which the web interface and Foxglove's server listen.
+        allow_origin: Origins of further web pages that may connect to them.
 
     Raises:
         DescriptionError: The world's file cannot be used.
+        CartwheelError: A connection cannot be opened. Nothing remains open.
     """
 
     def __init__(
@@ -91,46 +64,60 @@ class World:
         lenient: bool = False,
         bridge: Sequence[str | Path] = (),
         plugins: Sequence[str | Path] = (),
+        ros1: bool | str = False,
+        ros2: bool | str = False,
+        rmw: Literal["dds", "zenoh"] = "dds",
+        foxglove: bool | int = False,
+        viewer: bool | int = False,
+        record: str | Path | Sequence[str | Path] = (),
+        record_topics: Sequence[str] = (),
+        overwrite: bool = False,
+        allow_path: Sequence[str | Path] = (),
+        host: str = "127.0.0.1",
+        allow_origin: Sequence[str] = (),
     ) -> None:
-        if not isinstance(world, WorldDescription):
-            world = descriptions.load_world(world)
-        files = [Path(file) for file in bridge]
-        self.session = Session(
-            world,
-            seed=seed,
-            strict=strict,
-            lenient=lenient,
-            bridge=files,
-            plugins=[Path(file) for file in plugins],
-        )
-        self.session.simulation.drain()  # this thread is the owner
-        self.lock = threading.RLock()
-        """Held while a thread uses the world."""
-        self._running = False
-        self._closing = False
+        connections = plan = None
+        files = [record] if isinstance(record, str | Path) else list(record)
+        # A port may be 0, which selects a free port.
+        if ros1 or ros2 or foxglove is not False or viewer is not False or files:
+            from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, Plan
+            from cartwheel.assembly.recording import RecordingOptions
 
-    def __enter__(self) -> World:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    @contextlib.contextmanager
-    def used(self) -> Iterator[Simulation]:
-        """Exclusive access to the simulation for this thread.
-
-        Raises:
-            SimulationError: The world is closed.
-        """
-        with self.lock:
-            if self.session.simulation.closed:
-                raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
-            yield self.session.simulation
+            plan = Plan(
+                ros1=NODE if ros1 is True else ros1 or None,
+                ros2=NODE if ros2 is True else ros2 or None,
+                rmw=rmw,
+                foxglove=_port(foxglove, FOXGLOVE_PORT),
+                viewer=viewer is not False,
+                viewer_port=_port(viewer, None),
+                recordings=tuple(Path(file) for file in files),
+                recording=RecordingOptions(topics=tuple(record_topics), overwrite=overwrite),
+            )
+            connections = Connections(host=host, allow_origin=allow_origin)
+        session: Session | None = None
+        try:
+            if connections is not None and plan is not None:
+                connections.prepare(plan)
+            if not isinstance(world, WorldDescription):
+                world = descriptions.load_world(world)
+            session = Session(
+                world,
+                seed=seed,
+                strict=strict,
+                lenient=lenient,
+                bridge=[Path(file) for file in bridge],
+                allow_path=[Path(folder) for folder in allow_path],
+                plugins=[Path(file) for file in plugins],
+            )
+            super().__init__(
+                session, host=host, allow_origin=allow_origin, connections=connections, plan=plan
+            )
+        except BaseException:
+            if connections is not None:
+                connections.close()
+            if session is not None:
+                session.close()
+            raise
 
     @property
     def graph(self) -> Graph:
@@ -205,21 +192,6 @@ class World:
         with self.lock:
             self.session.simulation.pose(name)
         return Model(self, name)
-
-    def run(self, seconds: float) -> None:
-        """Advances the simulation as fast as possible.
-
-        Raises:
-            SimulationError: The simulation diverged, or the world is closed.
-        """
-        with self.used() as simulation:
-            outer, self._running = self._running, True
-            try:
-                simulation.advance(simulation.time_ns + to_ns(seconds))
-            finally:
-                self._running = outer
-                if self._closing and not outer:
-                    self.session.close()
 
     def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
         """Publishes a message on an existing topic.
@@ -309,35 +281,31 @@ class World:
             notes=self.session.notes,
             report=simulation.report,
         )
-        robots = RobotDescriptions(simulation, self.graph)
+        robots = None
         try:
-            recorder.start()
-            simulation.drain()
+            with self.lock:
+                if self._connections is None or not self._connections.describes_robots:
+                    robots = RobotDescriptions(simulation, self.graph)
+                recorder.start()
+                simulation.drain()
             try:
                 yield recorder
             finally:
                 recorder.close()
         finally:
-            simulation.drain()
-            robots.close()
+            with self.lock:
+                simulation.drain()
+                if robots is not None:
+                    robots.close()
 
     def reset(self) -> None:
         """Resets simulation time and all models to their initial state."""
         with self.used() as simulation:
             simulation.reset()
 
-    def close(self) -> None:
-        """Stops the simulation and closes all topics; recorded values stay readable.
 
-        When called within `run`, it stops that run first. The memory is freed with the last
-        reference to the world.
-        """
-        with self.lock:
-            if self._running:
-                self._closing = True
-                self.session.simulation.stop()
-            else:
-                self.session.close()
-
-
-__all__ = ["Model", "World"]
+def _port(wanted: bool | int, default: int | None) -> int | None:
+    """The port of a server; None if it is not wanted."""
+    if wanted is False:
+        return None
+    return default if wanted is True else int(wanted)

@@ -1,0 +1,6 @@
+"""The Python API: worlds, models and simulation time."""
+
+from cartwheel.api.model import Model
+from cartwheel.api.world import World
+
+__all__ = ["Model", "World"]

@@ -1,0 +1,288 @@
+"""Time, connections and the end of a world."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import weakref
+from collections.abc import Iterator, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Literal, Self
+
+from cartwheel.assembly.driver import Driver
+from cartwheel.assembly.turns import Turns
+from cartwheel.codes.world import SIMULATION_CLOSED
+from cartwheel.errors import CartwheelError, SimulationError
+from cartwheel.session import Session
+from cartwheel.simulation.clock import to_ns
+
+if TYPE_CHECKING:
+    from cartwheel.assembly.connections import Connections, Plan
+    from cartwheel.assembly.ros1 import Ros1Connection
+    from cartwheel.assembly.ros2 import Ros2Connection
+    from cartwheel.simulation import Simulation
+
+
+class RunningWorld:
+    """The part of `World` that runs and connects a session.
+
+    Args:
+        session: The session.
+        host: Address on which the viewer and Foxglove's server listen.
+        allow_origin: Origins of web pages that may connect to them.
+        connections: Prepared connections; None if there are none.
+        plan: The connections to open.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        *,
+        host: str,
+        allow_origin: Sequence[str],
+        connections: Connections | None,
+        plan: Plan | None,
+    ) -> None:
+        self.session = session
+        self.lock = Turns()
+        """Held while a thread uses the world."""
+        self._host, self._allow_origin = host, tuple(allow_origin)
+        self._driver = Driver(session.simulation, self.lock)
+        self._connections: Connections | None = None
+        self._running = False
+        self._runner = 0
+        self._closing = False
+        session.simulation.drain()  # this thread is the owner
+        if connections is not None and plan is not None:
+            with self.lock:
+                self._attach(connections, ros1=plan.ros1 is not None)
+                connections.open(plan)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            self.close()
+        except CartwheelError as failure:
+            if error is None:
+                raise
+            error.add_note(str(failure))
+
+    @contextlib.contextmanager
+    def used(self) -> Iterator[Simulation]:
+        """Exclusive access to the simulation for this thread.
+
+        Raises:
+            SimulationError: The world is closed.
+        """
+        with self.lock:
+            if self.session.simulation.closed:
+                raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
+            try:
+                yield self.session.simulation
+            finally:
+                if self._connections is not None and not self._running:
+                    self._connections.update()
+                    self._driver.pacer.show()
+
+    # -- time
+
+    def run(self, seconds: float, *, speed: float | None = None) -> None:
+        """Advances the simulation. Without connections, nothing else can change it meanwhile.
+
+        Args:
+            seconds: Simulation time. If a client resets the simulation, it starts again.
+            speed: Target real-time factor; None is as fast as possible.
+
+        Raises:
+            SimulationError: The simulation diverged, or the world is closed.
+            RecordingError: A recording has failed.
+        """
+        duration_ns = to_ns(seconds)
+        with self._run() as simulation:
+            if self._connections is None and speed is None:
+                simulation.advance(simulation.time_ns + duration_ns)
+            else:
+                self._driver.run(duration_ns, speed, shared=False)
+
+    def spin(self, seconds: float | None = None, *, speed: float | None = 1.0) -> None:
+        """Runs the simulation in real time until `stop`, Ctrl-C or a time limit.
+
+        Other threads can use the world meanwhile, between two steps. Ctrl-C completes the current
+        step. Without a time limit, the method then returns.
+
+        Args:
+            seconds: Simulation time; None has no limit.
+            speed: Target real-time factor; None is as fast as possible.
+
+        Raises:
+            SimulationError: The simulation diverged, or the world is closed.
+            RecordingError: A recording has failed.
+            KeyboardInterrupt: Ctrl-C was pressed before the time limit.
+        """
+        duration_ns = None if seconds is None else to_ns(seconds)
+        with self._run(), self._driver.interruptible() as pressed:
+            self._driver.run(duration_ns, speed, shared=True)
+        if pressed.is_set() and seconds is not None:
+            raise KeyboardInterrupt
+
+    def stop(self) -> None:
+        """Ends the current `run` or `spin` after the current step. Callable on any thread."""
+        if self._running:
+            self.session.simulation.stop()
+
+    @contextlib.contextmanager
+    def _run(self) -> Iterator[Simulation]:
+        """Runs the block, which may close the world."""
+        with self.used() as simulation:
+            if self._connections is not None:
+                self._connections.raise_failure()
+                if not self._running:
+                    self._connections.update()
+            outer, self._running = (self._running, self._runner), True
+            self._runner = threading.get_ident()
+            if not outer[0]:
+                self._driver.begin()
+            try:
+                yield simulation
+                if self._connections is not None:
+                    self._connections.raise_failure()
+            finally:
+                self._running, self._runner = outer
+                if not self._running:
+                    self._driver.end()
+                    if self._closing:
+                        self._end()
+
+    # -- connections
+
+    def connect_ros1(self, node: str = "gazebo", arguments: Sequence[str] = ()) -> Ros1Connection:
+        """Adds a ROS 1 node with Gazebo's topics and services, as ``cartwheel run --ros1``.
+
+        Args:
+            node: Name of the node.
+            arguments: ROS arguments such as ``__ns:=/lab``.
+
+        Returns:
+            The connection, with the attributes `name` and `master_uri`. `close` ends it.
+
+        Raises:
+            CartwheelError: A name is invalid, or no ROS master can be used.
+        """
+        with self.used():
+            return self._connected(ros1=True).connect_ros1(node, arguments)
+
+    def connect_ros2(
+        self, node: str = "gazebo", *, rmw: Literal["dds", "zenoh"] = "dds"
+    ) -> Ros2Connection:
+        """Adds a ROS 2 node with Gazebo's topics and services, as ``cartwheel run --ros2``.
+
+        Args:
+            node: Name of the node.
+            rmw: The middleware.
+
+        Returns:
+            The connection, with the attributes `name` and `middleware`. `close` ends it.
+
+        Raises:
+            CartwheelError: A name is invalid, or a dependency is missing.
+        """
+        with self.used():
+            return self._connected().connect_ros2(node, rmw)
+
+    def serve_foxglove(self, port: int = 8765) -> str:
+        """Starts a server for Foxglove, as ``cartwheel run --foxglove``.
+
+        Args:
+            port: Port to listen on; 0 selects a free port.
+
+        Returns:
+            The URL for Foxglove.
+
+        Raises:
+            CartwheelError: The optional dependency is missing, or the port is in use.
+        """
+        with self.used():
+            return self._connected().serve_foxglove(port)
+
+    def serve_commands(self) -> None:
+        """Lets commands such as ``cartwheel topic list`` connect. Other connections include it.
+
+        Raises:
+            ControlError: The control socket cannot be created.
+        """
+        with self.used():
+            self._connected()
+
+    def show(self, port: int | None = None) -> str:
+        """Starts the web interface, unless it was started before.
+
+        Args:
+            port: Port to listen on; None selects the first free port from 8080.
+
+        Returns:
+            The URL for browsers.
+
+        Raises:
+            ControlError: The port is not available, or the web interface cannot start.
+        """
+        with self.used():
+            return self._connected().show(port)
+
+    def _connected(self, *, ros1: bool = False) -> Connections:
+        if self._connections is None:
+            from cartwheel.assembly.connections import Connections
+
+            made = Connections(host=self._host, allow_origin=self._allow_origin)
+            try:
+                self._attach(made, ros1=ros1)
+            except BaseException:
+                made.close()
+                raise
+        assert self._connections is not None
+        return self._connections
+
+    def _attach(self, connections: Connections, *, ros1: bool) -> None:
+        from cartwheel.assembly.connections import abandon
+
+        connections.attach(self.session, self._driver, self.lock, ros1=ros1)
+        self._connections = connections
+        weakref.finalize(self, abandon, connections).atexit = False
+        if not self._running:
+            self._driver.end()
+
+    # -- end
+
+    def close(self) -> None:
+        """Ends all connections, completes recordings and closes all topics.
+
+        Recorded values stay readable. When called within `run` or `spin`, it stops the run first.
+        The memory is freed with the last reference to the world.
+
+        Raises:
+            RecordingError: A recording has failed.
+        """
+        with self.lock:
+            if not self._running:
+                self._end()
+                return
+            self._closing = True
+            self.session.simulation.stop()
+            if self._runner == threading.get_ident():
+                return
+        # Another thread spins, and closes the world when it ends.
+        with self.lock:
+            pass
+
+    def _end(self) -> None:
+        try:
+            if self._connections is not None:
+                self._connections.close()
+        finally:
+            self.session.close()

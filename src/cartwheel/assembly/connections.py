@@ -1,0 +1,273 @@
+"""The connections of a simulation that a program runs."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import sys
+import threading
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cartwheel.assembly.assembly import Assembly, Rmw
+from cartwheel.assembly.attendant import Attendant
+from cartwheel.assembly.driver import Driver
+from cartwheel.assembly.names import world_title
+from cartwheel.assembly.observer import Observer
+from cartwheel.assembly.processes import Kind
+from cartwheel.assembly.recording import RecordingOptions, check_recordings
+from cartwheel.assembly.turns import Turns
+from cartwheel.description.reach import run_folders
+from cartwheel.errors import Diagnostic
+from cartwheel.gate.access import Access, refused_page
+
+if TYPE_CHECKING:
+    from cartwheel.assembly.ros1 import Ros1Connection
+    from cartwheel.assembly.ros2 import Ros2Connection
+    from cartwheel.assembly.viewer_on_demand import ViewerOnDemand
+    from cartwheel.session import Session
+
+NODE = "gazebo"
+"""Default name of the ROS nodes."""
+FOXGLOVE_PORT = 8765
+VIEWER_PORT = 8080
+"""The first port to try."""
+_PATIENCE = 5.0
+"""Maximum wall time in s for a run on another thread to end when the process exits."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Plan:
+    """The connections that a program requests at the start."""
+
+    ros1: str | None = None
+    """Name of the ROS 1 node."""
+    ros2: str | None = None
+    """Name of the ROS 2 node."""
+    rmw: Rmw = "dds"
+    foxglove: int | None = None
+    """Port of Foxglove's server."""
+    viewer: bool = False
+    viewer_port: int | None = None
+    """Port of the viewer; None for the first free port."""
+    recordings: tuple[Path, ...] = ()
+    recording: RecordingOptions = field(default_factory=RecordingOptions)
+
+    @property
+    def bridges(self) -> Iterator[Kind | Path]:
+        """The bridges, and the paths of recordings."""
+        if self.ros1 is not None:
+            yield "ros1"
+        if self.ros2 is not None:
+            yield "ros2"
+        if self.foxglove is not None:
+            yield "foxglove"
+        yield from self.recordings
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is requested."""
+        return not self.viewer and not any(True for _ in self.bridges)
+
+
+class Connections:
+    """An `Assembly` whose clients are served between two runs, too.
+
+    Call the methods on the thread that has its turn, except `show`. The connections are closed at
+    the end of the process at the latest.
+
+    Args:
+        host: Address on which the viewer and Foxglove's server listen.
+        allow_origin: Origins of further web pages that may connect to them.
+
+    Raises:
+        CartwheelError: The address or an origin is invalid.
+    """
+
+    def __init__(self, *, host: str, allow_origin: Sequence[str]) -> None:
+        self._observer = _ReportingObserver()
+        self._assembly = Assembly(access=Access.of(host, allow_origin), observer=self._observer)
+        self._turns: Turns | None = None
+        self._attendant: Attendant | None = None
+        self._viewer: ViewerOnDemand | None = None
+        self._closing = threading.Lock()
+        self.closed = False
+        _open.add(self)
+
+    def prepare(self, plan: Plan) -> None:
+        """Checks the options, and starts processes while the world is loaded.
+
+        Raises:
+            CartwheelError: An option is invalid.
+        """
+        if plan.recordings:
+            check_recordings(plan.recordings, plan.recording)
+        if plan.foxglove is not None:
+            from cartwheel.bridges.foxglove.bridge import require
+
+            require()
+        self._assembly.prepare(plan.bridges)
+
+    def attach(self, session: Session, driver: Driver, turns: Turns, *, ros1: bool) -> None:
+        """Makes the session available to the commands of Cartwheel.
+
+        Args:
+            session: The session.
+            driver: Runs it.
+            turns: Held while a thread uses it.
+            ros1: Whether ROS 1 is connected next.
+
+        Raises:
+            ControlError: The control socket cannot be created.
+        """
+        simulation = session.simulation
+        self._observer.session = session
+        # Errors in the messages of other programs do not end the run.
+        simulation.tolerant = not session.strict
+        session.allow_path += tuple(run_folders(_files(session)))
+        self._turns = turns
+        self._attendant = Attendant(simulation, turns)
+        self._assembly.attach(session, driver.pacer)
+        self._assembly.serve_control(_title(session), ros=ros1)
+        self._viewer = self._assembly.offer_viewer(VIEWER_PORT)
+        driver.connected = True
+
+    def open(self, plan: Plan) -> None:
+        """Opens the requested connections.
+
+        Raises:
+            CartwheelError: A connection cannot be opened.
+        """
+        if plan.viewer:
+            self.show(plan.viewer_port)
+        if plan.ros1 is not None:
+            self.connect_ros1(plan.ros1)
+        if plan.ros2 is not None:
+            self.connect_ros2(plan.ros2, plan.rmw)
+        if plan.foxglove is not None:
+            self.serve_foxglove(plan.foxglove)
+        for path in plan.recordings:
+            self._assembly.record(path, plan.recording)
+        self._serve_reads()
+
+    def connect_ros1(self, node: str, arguments: Sequence[str] = ()) -> Ros1Connection:
+        """See `Assembly.connect_ros1`."""
+        connection = self._assembly.connect_ros1(node, arguments)
+        self._serve_reads()
+        return connection
+
+    def connect_ros2(self, node: str, rmw: Rmw) -> Ros2Connection:
+        """See `Assembly.connect_ros2`."""
+        connection = self._assembly.connect_ros2(node, rmw)
+        self._serve_reads()
+        return connection
+
+    def serve_foxglove(self, port: int) -> str:
+        """See `Assembly.serve_foxglove`. Returns the URL."""
+        server = self._assembly.serve_foxglove(port)
+        self._serve_reads()
+        return server.url
+
+    def show(self, port: int | None, *, on_owner: bool = True) -> str:
+        """See `ViewerOnDemand.show`."""
+        assert self._viewer is not None
+        return self._viewer.show(port, on_owner=on_owner)
+
+    def update(self) -> None:
+        """See `Assembly.update`."""
+        self._assembly.update()
+        self._serve_reads()
+
+    @property
+    def describes_robots(self) -> bool:
+        """Whether the descriptions of robots are published."""
+        return self._assembly.describes_robots
+
+    def raise_failure(self) -> None:
+        """See `Assembly.raise_failure`."""
+        self._assembly.raise_failure()
+
+    def close(self) -> None:
+        """Closes all connections and completes the recordings. Other threads that call it wait.
+
+        Raises:
+            RecordingError: A recording has failed.
+        """
+        with self._closing:
+            if self.closed:
+                return
+            self.closed = True
+            try:
+                self._assembly.close()
+            finally:
+                _open.discard(self)
+                if self._attendant is not None:
+                    self._attendant.close()
+
+    def close_at_exit(self) -> None:
+        """Stops a run on another thread, and closes the connections."""
+        entered = False
+        if self._turns is not None:
+            self._assembly.session.simulation.stop()
+            entered = self._turns.acquire_within(_PATIENCE)
+        try:
+            self.close()
+        finally:
+            if entered and self._turns is not None:
+                self._turns.release()
+
+    def _serve_reads(self) -> None:
+        """Delivers latched messages before anything else happens."""
+        self._assembly.session.simulation.serve_reads()
+
+
+class _ReportingObserver(Observer):
+    """Reports what a user must know in the diagnostics of the session."""
+
+    session: Session | None = None
+
+    def disconnected(self, diagnostic: Diagnostic) -> None:
+        self._report(diagnostic)
+
+    def page_refused(self, origin: str) -> None:
+        self._report(refused_page("the viewer", origin))
+
+    def _report(self, diagnostic: Diagnostic) -> None:
+        if self.session is not None:
+            self.session.simulation.report(diagnostic)
+
+
+_open: set[Connections] = set()
+"""Connections to close at the end of the process."""
+
+
+@atexit.register
+def _close_all() -> None:
+    for connections in list(_open):
+        with contextlib.suppress(Exception):
+            connections.close_at_exit()
+
+
+def abandon(connections: Connections) -> None:
+    """Closes the connections of a world that was deleted, on any thread.
+
+    The thread that happens to free the memory may be one that the connections need.
+    """
+    if not connections.closed:
+        threading.Thread(target=connections.close, name="close").start()
+
+
+def _files(session: Session) -> Iterable[str]:
+    """The files of the world and its models."""
+    origins = [session.simulation.world.origin]
+    origins += [placed.description.origin for placed in session.simulation.scene.models]
+    return [origin.file for origin in origins if not origin.file.startswith("<")]
+
+
+def _title(session: Session) -> str:
+    """Names the world and the program in listings of simulations."""
+    program = Path(sys.argv[0]).name if sys.argv else ""
+    world = world_title(session.simulation.world)
+    return f"{world} in {program}" if program else world

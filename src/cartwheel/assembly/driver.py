@@ -1,0 +1,111 @@
+"""Runs a simulation for a program: for a time, or until it is stopped."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+import threading
+from collections.abc import Iterator
+from types import FrameType
+
+from cartwheel.assembly.turns import Turns
+from cartwheel.simulation import RunState, Simulation
+from cartwheel.simulation.pacing import Pacer
+
+
+class Driver:
+    """Runs a simulation on the calling thread, which must have its turn.
+
+    Args:
+        simulation: The simulation.
+        turns: Held while a thread uses the simulation.
+    """
+
+    def __init__(self, simulation: Simulation, turns: Turns) -> None:
+        self._simulation = simulation
+        self._turns = turns
+        self._pacer: Pacer | None = None
+        self.connected = False
+        """Whether the simulation has clients, which see that it waits between two runs."""
+
+    @property
+    def pacer(self) -> Pacer:
+        """Runs the simulation; created when it is first used."""
+        if self._pacer is None:
+            # A program handles a divergence itself.
+            self._pacer = Pacer(self._simulation, strict=True)
+        return self._pacer
+
+    def begin(self) -> None:
+        """Starts a run."""
+        if self._simulation.run_state in (RunState.WAITING, RunState.STOPPED):
+            self._simulation.run_state = RunState.RUNNING
+
+    def end(self) -> None:
+        """Ends a run."""
+        simulation = self._simulation
+        if simulation.closed or not self.connected:
+            return
+        if simulation.run_state in (RunState.RUNNING, RunState.STOPPED):
+            simulation.run_state = RunState.WAITING
+        simulation.real_time_factor = 0.0
+        self.pacer.show()
+
+    def run(self, duration_ns: int | None, speed: float | None, *, shared: bool) -> None:
+        """Runs until the time has passed or the simulation is stopped.
+
+        Args:
+            duration_ns: Simulation time; a reset starts it again. None has no limit.
+            speed: Target real-time factor; None is as fast as possible.
+            shared: Whether other threads may use the simulation between two steps.
+
+        Raises:
+            SimulationError: The simulation diverged.
+        """
+        simulation, pacer = self._simulation, self.pacer
+        simulation.set_speed(speed)
+
+        def restart() -> None:
+            pacer.until_ns = duration_ns
+
+        outer = pacer.until_ns
+        pacer.until_ns = None if duration_ns is None else simulation.time_ns + duration_ns
+        simulation.on_reset.append(restart)
+        sharing = self._turns.shared(simulation.post) if shared else contextlib.nullcontext()
+        try:
+            simulation.drain_queued()
+            with sharing:
+                pacer.run()
+        finally:
+            simulation.command_time = math.inf
+            pacer.until_ns = outer
+            if restart in simulation.on_reset:
+                simulation.on_reset.remove(restart)
+
+    @contextlib.contextmanager
+    def interruptible(self) -> Iterator[threading.Event]:
+        """Lets Ctrl-C stop the run after the current step; a second Ctrl-C raises at once.
+
+        Programs with their own signal handler, and threads, are not affected.
+
+        Yields:
+            An event that is set after Ctrl-C.
+        """
+        pressed = threading.Event()
+        usual = signal.default_int_handler
+        main = threading.current_thread() is threading.main_thread()
+        if not main or signal.getsignal(signal.SIGINT) is not usual:
+            yield pressed
+            return
+
+        def stop(_number: int, _frame: FrameType | None) -> None:
+            signal.signal(signal.SIGINT, usual)
+            pressed.set()
+            self._simulation.stop()
+
+        signal.signal(signal.SIGINT, stop)
+        try:
+            yield pressed
+        finally:
+            signal.signal(signal.SIGINT, usual)
