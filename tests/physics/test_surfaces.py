@@ -1,7 +1,9 @@
 """What surfaces have of each other: directions of friction, turning on the spot, masks."""
 
+import copy
 import math
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -121,6 +123,26 @@ def test_one_box_s_directions_are_not_another_s(make):
     assert braking(plain, 0.0)[0] == pytest.approx(MU1 * G, rel=0.05)
     first.close()
     assert braking(second, math.pi / 2)[0] == pytest.approx(MU1 * G, rel=0.05)
+
+
+def test_directions_also_apply_to_copies_of_the_data(make):
+    """A copy, with another box's rotation, brakes by its own axes while the original exists."""
+    world = make.world(make.sdf(box(friction(MU1, MU2, "<fdir1>1 0 0</fdir1>"))))
+    world.run(0.2)
+    model, original = world.session.simulation.engine.model, world.session.simulation.data
+    joint = original.joint("box::link")
+    joint.qvel[:2] = 2.0, 0.0
+    same, turned = copy.copy(original), copy.copy(original)
+    turned.joint("box::link").qpos[3:] = math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)
+    start, steps = original.time, 60
+    for data in (original, same, turned):
+        mujoco.mj_step(model, data, nstep=steps)
+    seconds = original.time - start
+    brakings = [
+        (2.0 - data.joint("box::link").qvel[0]) / seconds for data in (original, same, turned)
+    ]
+    assert brakings[0] == brakings[1] == pytest.approx(MU1 * G, rel=0.05)
+    assert brakings[2] == pytest.approx(MU2 * G, rel=0.05)
 
 
 def test_directions_that_make_no_difference_cost_nothing(make):

@@ -3,13 +3,15 @@
 MuJoCo aligns the first tangent of a contact with the world's y axis. Its collision functions are in
 a public, writable table indexed by the two shape types. This module wraps the relevant entries to
 set the first tangent. The table is shared by the whole process, so each wrapper looks up the model
-of the contact.
+of the contact. The rotations of the bodies come from the data that the engine passes, so directions
+also apply to copies of the data.
 """
 
 from __future__ import annotations
 
 import ctypes
 import math
+import mmap
 import threading
 import weakref
 from collections.abc import Sequence
@@ -17,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from cartwheel.codes import world as world_codes
 from cartwheel.errors import SimulationError
@@ -27,6 +30,7 @@ _TYPES = int(mujoco.mjtGeom.mjGEOM_SDF) + 1
 _NUMBERS = 10
 """Values per contact: distance, position, normal, first tangent."""
 _Found = ctypes.c_double * _NUMBERS
+_Rotation = ctypes.c_double * 9
 _Collide = ctypes.CFUNCTYPE(
     ctypes.c_int,
     ctypes.c_void_p,
@@ -36,6 +40,8 @@ _Collide = ctypes.CFUNCTYPE(
     ctypes.c_int,
     ctypes.c_double,
 )
+_SEARCHED = 1 << 20
+"""Bytes of the engine's data in which a pointer is searched."""
 _ALONG_NORMAL = 1e-3
 """Minimum component of a direction perpendicular to the normal."""
 _STEEP = math.sqrt(0.5)
@@ -45,21 +51,19 @@ _CHECK = """<mujoco><worldbody><geom type="plane" size="1 1 1"/>
 
 
 class Directions:
-    """Friction directions of one model and its data, active while this object exists.
+    """Friction directions of one model and all its data, active while this object exists.
 
     Args:
         model: The MuJoCo model.
-        data: The MuJoCo data.
         alignments: Pairs with direction-dependent coefficients; usually empty.
 
     Raises:
         SimulationError: The engine's contact layout is not supported.
     """
 
-    def __init__(self, model: Any, data: Any, alignments: Sequence[Alignment]) -> None:
+    def __init__(self, model: Any, alignments: Sequence[Alignment]) -> None:
         if not alignments:
             return
-        self._turns = data.xmat
         self._rules: dict[tuple[int, int], tuple[int, float, float, float, bool]] = {}
         kinds = set()
         for each in alignments:
@@ -69,15 +73,18 @@ class Directions:
             self._rules[geoms] = self._rules[geoms[::-1]] = rule
             first, second = sorted(int(model.geom_type[geom]) for geom in geoms)
             kinds.add((first, second))
-        _TABLE.serve(data, self, kinds)
+        _TABLE.serve(model, self, kinds)
 
-    def tangent(self, first: int, second: int, normal: Sequence[float]) -> list[float] | None:
+    def tangent(
+        self, first: int, second: int, normal: Sequence[float], rotations: int
+    ) -> list[float] | None:
         """The tangent along which the first friction coefficient of a contact applies.
 
         Args:
             first: Geom index.
             second: Geom index.
             normal: Unit vector in world axes.
+            rotations: Address of the rotation matrices of all bodies, row by row.
 
         Returns:
             None if this pair has no alignment, or if the direction is parallel to the normal.
@@ -91,7 +98,7 @@ class Directions:
             # the choice that ODE makes
             x, y, z = (0.0, -c, b) if abs(c) > _STEEP else (-b, a, 0.0)
         else:
-            r = self._turns[body].tolist()
+            r = _Rotation.from_address(rotations + body * ctypes.sizeof(_Rotation))
             x, y, z = (
                 r[0] * x + r[1] * y + r[2] * z,
                 r[3] * x + r[4] * y + r[5] * z,
@@ -114,13 +121,16 @@ class _Table:
         self._functions: dict[tuple[int, int], Any] = {}
         """References to our functions; the engine stores only addresses."""
         self._entries: Any = None
+        self._rotations = 0
+        """Where a pointer to the bodies' rotations is in the engine's data, bytes."""
 
-    def serve(self, data: Any, directions: Directions, kinds: set[tuple[int, int]]) -> None:
+    def serve(self, model: Any, directions: Directions, kinds: set[tuple[int, int]]) -> None:
         """Registers a model's directions for contacts of these shape types."""
         with self._lock:
             if self._entries is None:
                 self._entries = _entries()
-            self._served[data._address] = directions
+                self._rotations = _rotations_offset()
+            self._served[model._address] = directions
             for first, second in sorted(kinds - set(self._functions)):
                 index = first * _TYPES + second
                 function = self._around(_Collide(self._entries[index]))
@@ -128,16 +138,17 @@ class _Table:
                 self._entries[index] = ctypes.cast(function, ctypes.c_void_p).value
 
     def _around(self, find: Any) -> Any:
-        served = self._served
+        served, offset = self._served, self._rotations
 
         def collide(model: int, data: int, found: int, *rest: Any) -> int:
             count: int = find(model, data, found, *rest)
-            directions = served.get(data) if count else None
+            directions = served.get(model) if count else None
             if directions is not None:
+                rotations: int = ctypes.c_size_t.from_address(data + offset).value
                 size = _NUMBERS * ctypes.sizeof(ctypes.c_double)
                 for number in range(count):
                     numbers: Any = _Found.from_address(found + number * size)
-                    tangent = directions.tangent(rest[0], rest[1], numbers[4:7])
+                    tangent = directions.tangent(rest[0], rest[1], numbers[4:7], rotations)
                     if tangent is not None:
                         numbers[7:10] = tangent
             return count
@@ -169,13 +180,46 @@ def _entries() -> Any:
             math.isclose(a, b, abs_tol=1e-9)
             for a, b in zip([numbers[0], *numbers[4:]], expected, strict=True)
         ):
-            raise SimulationError(
-                f"MuJoCo {mujoco.__version__} computes contacts in a way that this version of "
-                "Cartwheel does not support, so anisotropic friction (mu1 ≠ mu2) is not available",
-                code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
-                hint="Install an older MuJoCo, or give mu1 and mu2 the same value.",
-            )
+            raise _unsupported()
     return entries
+
+
+def _rotations_offset() -> int:
+    """Returns where a pointer to the bodies' rotations is in the engine's data, bytes.
+
+    The pointer is a field of ``mjData``, so a search that stops at the first match stays within it.
+
+    Raises:
+        SimulationError: The data's layout is unexpected.
+    """
+    model = mujoco.MjModel.from_xml_string(_CHECK)
+    offsets = {_offset_of(data, data.xmat.ctypes.data) for data in map(mujoco.MjData, [model] * 2)}
+    if len(offsets) != 1 or None in offsets:
+        raise _unsupported()
+    return offsets.pop() or 0
+
+
+def _offset_of(data: Any, pointer: int) -> int | None:
+    start, size = data._address, ctypes.sizeof(ctypes.c_size_t)
+    address = start
+    while address < start + _SEARCHED:
+        # To the end of the page, which is readable if its beginning is.
+        count = (mmap.PAGESIZE - address % mmap.PAGESIZE) // size
+        words = np.ctypeslib.as_array((ctypes.c_size_t * count).from_address(address))
+        places = np.flatnonzero(words == pointer)
+        if len(places):
+            return int(address - start + places[0] * size)
+        address += count * size
+    return None
+
+
+def _unsupported() -> SimulationError:
+    return SimulationError(
+        f"MuJoCo {mujoco.__version__} computes contacts in a way that this version of "
+        "Cartwheel does not support, so anisotropic friction (mu1 ≠ mu2) is not available",
+        code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
+        hint="Install an older MuJoCo, or give mu1 and mu2 the same value.",
+    )
 
 
 def _library() -> Path:

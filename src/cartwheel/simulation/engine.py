@@ -118,7 +118,7 @@ class Engine:
             _carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
         try:
-            self._directions = Directions(model, data, alignments)
+            self._directions = Directions(model, alignments)
         except SimulationError as error:
             self.report(error.diagnostic("warning"))
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
