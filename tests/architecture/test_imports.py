@@ -1,6 +1,7 @@
 """Imports point one way: each room knows only the rooms below it."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -161,3 +162,9 @@ def test_rtps_lite_imports_nothing_of_cartwheel() -> None:
     for path in files:
         assert not imported_rooms(path), path
         assert "cartwheel" not in path.read_text().lower(), path
+
+
+def test_the_internals_of_viser_are_used_in_one_file() -> None:
+    private = re.compile(r"viser import _|\._websock|\._impl\b|\._gui_input|\._release_cross")
+    users = [path.name for path in FILES if private.search(path.read_text())]
+    assert users == ["viser_internals.py"]

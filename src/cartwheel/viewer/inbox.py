@@ -20,6 +20,8 @@ from websockets.exceptions import WebSocketException
 
 from cartwheel.codes.wires import MALFORMED_MESSAGE
 from cartwheel.viewer.uploads import PART_BYTES, UploadError, Uploads
+from cartwheel.viewer.viser_internals import control, watch_connections
+from cartwheel.viewer.viser_internals import websocket as websocket_of
 
 MOST_BYTES = PART_BYTES + 4096
 """Maximum message size: a part of a file is the largest message."""
@@ -164,13 +166,8 @@ class Inbox:
         self._silent = silent
         self._known: set[int] = set()
         self._watches: dict[int, asyncio.Task[None]] = {}
-        websocks = server._websock_server
-        websocks.on_client_connect(self._attach)
-        websocks.on_client_disconnect(self._detach)
         # Remaining errors concern only the sender and are not printed in the terminal.
-        websocks._background_event_loop.set_exception_handler(self._failed)
-        # Browsers that connected before this point must reconnect.
-        websocks.disconnect_all_clients()
+        watch_connections(server, self._attach, self._detach, self._failed)
 
     def check(self, client: int, raw: object) -> None:
         """Validates a message.
@@ -235,15 +232,15 @@ class Inbox:
 
     def _control(self, client: int, uuid: str) -> Any:
         """A control that a browser may use: shared ones and its own."""
-        shared = self._server.gui._gui_input_handle_from_uuid.get(uuid)
+        shared = control(self._server.gui, uuid)
         own = self._server.get_clients().get(client)
         if shared is not None or own is None:
             return shared
-        return own.gui._gui_input_handle_from_uuid.get(uuid)
+        return control(own.gui, uuid)
 
     async def _attach(self, connection: Any) -> None:
         client = connection.client_id
-        websocket = self._server._websock_server._live_connections[client]
+        websocket = websocket_of(self._server, client)
         websocket.protocol.max_message_size = MOST_BYTES
         websocket.recv = partial(self._receive, client, websocket.recv)
         self._watches[client] = asyncio.create_task(self._watch(client, websocket))

@@ -17,6 +17,7 @@ from cartwheel.codes.recording import UPLOAD_REFUSED, VIEWER_FAULT
 from cartwheel.errors import UNCLASSIFIED, CartwheelError, Code, Diagnostic
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import hidden_host
+from cartwheel.viewer import viser_internals
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.inbox import Inbox
 
@@ -61,7 +62,6 @@ class Page:
     ) -> None:
         # The import takes 0.2 s, which must not delay the simulation's first clock message.
         import viser
-        from viser import _messages
 
         from cartwheel.gate.gate import Gate
 
@@ -89,11 +89,7 @@ class Page:
             show_logo=False, show_share_button=False, brand_color=(37, 99, 176)
         )
         self.gui.set_panel_label(title)
-        # viser can send a script to each new browser, but only through an internal message; it
-        # loads its plots this way.
-        self.gui._websock_interface.queue_message(
-            _messages.RunJavascriptMessage(source=_script(title, keys))
-        )
+        viser_internals.run_in_new_browsers(self.gui, _script(title, keys))
         self._lightly: set[int] = set()
         lightly = self.gui.add_command(
             "Toggle shadows",
@@ -216,10 +212,8 @@ class Page:
             client: The viser client handle.
             text: Letters and dots.
         """
-        from viser import _messages
-
         script = f'document.cookie = "{self._cookie}={text}; Path=/; SameSite=Strict"'
-        client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=script))
+        viser_internals.run_in_browser(client, script)
 
     # -- notes
 
@@ -266,10 +260,11 @@ class Page:
         """
         # viser would remove the browser's controls there while the page's thread still writes to
         # them, which raises an error. The page's thread removes them in `_disconnected`.
-        client.gui._release_cross_scope_nesting = lambda: None
+        viser_internals.keep_controls(client)
         # Writing to a browser that is just disconnecting is not an error.
-        client._websock_connection.get_message_buffer()._warned_push_after_done = True
-        port = self.server._websock_server._live_connections[client.client_id].remote_address[1]
+        viser_internals.allow_late_writes(client)
+        connection = viser_internals.websocket(self.server, client.client_id)
+        port = connection.remote_address[1]
         toggles = self._gate.cookie(port, self._cookie)
         self.post(lambda: self._connected(client, toggles), client=client.client_id)
 
@@ -287,8 +282,7 @@ class Page:
         try:
             self.on_clients()
         finally:
-            del client.gui._release_cross_scope_nesting
-            client.gui._release_cross_scope_nesting()
+            viser_internals.remove_controls(client)
 
     def _draw_lightly(self, event: Any) -> None:
         """Only for the requesting browser: others may have a GPU."""
@@ -305,7 +299,7 @@ class Page:
 def _is_removed(event: Any) -> bool:
     """Whether the event's control has been removed."""
     target = getattr(event, "target", None)
-    return bool(target is not None and target._impl.removed)
+    return bool(target is not None and viser_internals.is_removed(target))
 
 
 def _pulse(beats: int) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 from cartwheel.viewer.display import Display
 from cartwheel.viewer.page import Page
+from cartwheel.viewer.viser_internals import set_clickable
 
 
 class Seat:
@@ -49,13 +50,5 @@ class Seat:
             handles: viser handles of the nodes.
             clickable: Whether they receive clicks.
         """
-        # viser has no method for this: click bindings belong to nodes, and these are shared.
-        from viser import _messages
-
         for handle in handles:
-            bindings = handle._impl._last_published_click_bindings or ()
-            self.client._websock_connection.queue_message(
-                _messages.SetSceneNodeClickBindingsMessage(
-                    handle.name, bindings if clickable else ()
-                )
-            )
+            set_clickable(self.client, handle, clickable)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from cartwheel.viewer.viser_internals import discard_upload, end_upload
+
 PART_BYTES = 512 * 1024
 """Size of each part except the last, as viser's client splits a file."""
 MOST_BYTES = 20_000_000
@@ -108,7 +110,7 @@ class Uploads:
         if connected is not None:
             handles.append(connected.gui)
         for gui in handles:
-            gui._current_file_upload_states.pop(upload.transfer, None)
+            discard_upload(gui, upload.transfer)
         self._release(client, upload)
 
     def _refusal(self, client: int, upload: _Upload) -> str | None:
@@ -129,12 +131,8 @@ class Uploads:
         connected = self._server.get_clients().get(client)
         if connected is None:
             return
-        from viser import _messages
-
-        queue = connected._websock_connection.queue_message
-        queue(_messages.FileTransferPartAck(upload.component, upload.transfer, 0, 0))
-        queue(_messages.RemoveNotificationMessage(f"upload-{upload.transfer}"))
+        end_upload(connected, upload.component, upload.transfer)
 
     def _wait(self, client: int, upload: _Upload) -> None:
-        loop = self._server._event_loop
+        loop = self._server.get_event_loop()
         upload.timer = loop.call_later(SILENCE, self.drop, client)
