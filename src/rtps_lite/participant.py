@@ -249,7 +249,7 @@ class Participant:
 
     def _builtin_reader(self, entity: bytes, take: Callable[[Taken], None]) -> None:
         endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
-        self._readers[entity] = Reader(endpoint, self._send, take, room=self._room)
+        self._readers[entity] = Reader(endpoint, self._send, take, room=self._room, again=True)
 
     # -- time
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,6 +20,8 @@ _ASSEMBLED = 8
 _SMALLEST = 512
 """Minimum size in bytes of a fragment, except for the last. It is half of the standard's minimum.
 The overhead of tracking fragments thus stays smaller than the fragments."""
+_REMEMBERED = 1000
+"""Maximum number of lost writers whose last sample is remembered."""
 _PATIENCE = 3.0
 """Timeout in s for a missing sample or fragment."""
 _REPLY = 0.001
@@ -102,6 +105,8 @@ class Reader:
         send: Sends a datagram.
         take: Called with each sample, in the order of writing.
         room: Memory budget for incomplete samples. None creates one for this reader.
+        again: Whether a writer that was lost and is discovered again delivers its samples again.
+            Otherwise each sample is delivered once, so that no request is executed twice.
     """
 
     def __init__(
@@ -111,8 +116,12 @@ class Reader:
         take: Callable[[Taken], None],
         *,
         room: Room | None = None,
+        again: bool = False,
     ) -> None:
         self.endpoint = endpoint
+        self._again = again
+        self._lost: OrderedDict[Guid, int] = OrderedDict()
+        """The next sample of each writer that was lost."""
         self._room = room or Room()
         self.proxies: dict[Guid, WriterProxy] = {}
         self._send = send
@@ -126,6 +135,7 @@ class Reader:
             return
         reliable = self.endpoint.qos.reliable and endpoint.qos.reliable
         proxy = WriterProxy(endpoint, address, reliable=reliable)
+        proxy.next = self._lost.pop(endpoint.guid, proxy.next)
         self.proxies[endpoint.guid] = proxy
         if reliable:
             # This requests the samples that were sent before the writer was discovered.
@@ -136,6 +146,10 @@ class Reader:
         proxy = self.proxies.pop(guid, None)
         if proxy is None:
             return
+        if not self._again:
+            self._lost[guid] = proxy.next
+            if len(self._lost) > _REMEMBERED:
+                self._lost.popitem(last=False)
         for number in list(proxy.assemblies):
             self._drop(proxy, number)
         for taken in proxy.waiting.values():

@@ -129,6 +129,33 @@ def test_reliable_samples_arrive_in_order_over_a_network_that_loses(loss: float,
     assert [each.payload for each in taken] == [payload + padding for payload in sent]
 
 
+@pytest.mark.parametrize("reliable", [True, False])
+@pytest.mark.parametrize("again", [True, False])
+def test_samples_of_a_writer_that_was_lost_are_not_delivered_again(
+    reliable: bool, again: bool
+) -> None:
+    """One that has not received the acknowledgement sends them again when it is back."""
+    sent: list[bytes] = []
+    taken: list[Taken] = []
+    writer = Writer(
+        endpoint(OURS + WRITER, reliable=reliable), lambda parts, _: sent.append(b"".join(parts))
+    )
+    writer.match(endpoint(THEIRS + READER, reliable=reliable), HERE)
+    for number in range(3):
+        writer.write(bytes([0, 1, 0, 0, number, 0, 0, 0]))
+    contents = [each.content for data in sent for each in wire.read(memoryview(data))]
+    samples = [each for each in contents if isinstance(each, wire.Data)]
+    reader = Reader(
+        endpoint(THEIRS + READER, reliable=reliable), lambda *_: None, taken.append, again=again
+    )
+    for wave in (samples[:2], samples):
+        reader.match(writer.endpoint, HERE)
+        for sample in wave:
+            reader.take_data(OURS + WRITER, b"\1\2", sample)
+        reader.unmatch(OURS + WRITER)
+    assert [each.number for each in taken] == ([1, 2, 1, 2, 3] if again else [1, 2, 3])
+
+
 def test_who_asks_for_what_is_no_more_is_told_and_it_is_counted() -> None:
     sent: list[bytes] = []
     told: list[int] = []

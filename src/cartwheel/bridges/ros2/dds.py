@@ -361,7 +361,7 @@ class _Service:
 
         def reply(response: bytes) -> None:
             data = response[:4] + head + response[4:]
-            self._send(data, inline, taken.writer[:12], _PATIENCE)
+            self._send(data, inline, taken.writer[:12], asker, _PATIENCE)
 
         served.answer(payload, reply)
 
@@ -381,12 +381,14 @@ class _Service:
         fitting = [each for each in self._served if all(map(each.is_of, hashes))]
         return fitting or self._served[:1]
 
-    def _send(self, data: bytes, inline: bytes, to: bytes, patience: float) -> None:
-        if self._readers_of(to) or patience <= 0:
+    def _send(self, data: bytes, inline: bytes, to: Prefix, asker: Guid, patience: float) -> None:
+        # A participant may also have readers for other clients of the service.
+        ready = asker in self._writer.proxies if _is_reader(asker) else bool(self._readers_of(to))
+        if ready or patience <= 0:
             self._writer.write(data, inline=inline, to=to)
         else:
             # The response reader may be discovered after the request writer.
-            self._again(lambda: self._send(data, inline, to, patience - _PAUSE))
+            self._again(lambda: self._send(data, inline, to, asker, patience - _PAUSE))
 
     def _again(self, function: Callable[[], None]) -> None:
         """Retries soon, unless too many retries are pending."""
@@ -415,6 +417,11 @@ def _qos(profile: Profile) -> EndpointQos:
         depth=profile.depth,
         lifespan=profile.lifespan or math.inf,
     )
+
+
+def _is_reader(guid: Guid) -> bool:
+    """Whether an endpoint is a reader, according to the lower bits of its last byte."""
+    return guid[15] & 0x3F in (0x04, 0x07)
 
 
 def _plain(dds: str) -> str:
