@@ -76,7 +76,7 @@ PLUGINS = {
     "gz-sim-linearbatteryplugin-system": "gz.battery",
     "gz-sim-mecanum-drive-system": "gz.mecanum",
     "gz-sim-multicopter-motor-model-system": "makers.motor_model",
-    "gz-sim-odometry-publisher-system": "classic.p3d",
+    "gz-sim-odometry-publisher-system": "gz.odometry_publisher",
     "gz-sim-pose-publisher-system": "gz.pose_publisher",
     "gz-sim-velocity-control-system": "gz.velocity_control",
     "gz-sim-wheel-slip-system": "classic.wheel_slip",

@@ -90,7 +90,12 @@ class Odometry(Component):
         return self._tf is not None and self._tf.wanted
 
     def publish(
-        self, time_ns: int, place: Vec3, turn: Quat, linear: Sequence[float], angular: Vec3
+        self,
+        time_ns: int,
+        place: Vec3,
+        turn: Quat,
+        linear: Sequence[float],
+        angular: Sequence[float],
     ) -> None:
         """Publishes on the topics that have subscribers.
 
@@ -98,8 +103,8 @@ class Odometry(Component):
             time_ns: Time of the state.
             place: Position of the base in the odometry frame, m.
             turn: Orientation of the base in the odometry frame.
-            linear: Velocity in the base frame, m/s, shape (3,).
-            angular: Angular velocity in the base frame, rad/s.
+            linear: Velocity, usually in the base frame, m/s, shape (3,).
+            angular: Angular velocity, usually in the base frame, rad/s, shape (3,).
         """
         # The hottest path of all messages. Positional fields and shared sub-messages halve its
         # cost. Local names for the classes save attribute lookups.

@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
+from cartwheel.devices.position.poses import ModelPoses, ModelPosesConfig
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.geometry import Pose
-from cartwheel.graph import Publisher
-from cartwheel.messages import header, message_class
-from cartwheel.simulation.handles import LinkHandle
-
-_Place = tuple[str, str, Callable[[], Pose]]
-"""Frame, child frame, and a function that returns the pose of the child in the frame."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,86 +79,19 @@ class PosePublisher(Plugin[PosePublisherParameters]):
     parameters: ClassVar[type] = PosePublisherParameters
 
     def configure(self) -> None:
-        config, part = self.config, self.part
-        self._links = {link.name: part.link(link.name) for link in part.description.links}
-        self._root = self._links[part.description.canonical_link]
-        self._to_model = part.description.canonical_pose.inverse()
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._Transform = message_class("geometry_msgs/msg/Transform")
-        self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
-        self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
-        moved = self._moved() if config.static else set()
-        places = list(self._places())
+        config = self.config
         topic = gz_name(self, config.topic, "pose")
-        if config.static:
-            still = [place for place in places if place[1] not in moved]
-            places = [place for place in places if place[1] in moved]
-            rate = config.rate if config.static_rate is None else config.static_rate
-            self._offer(f"{topic}_static", still, rate)
-        self._offer(topic, places, config.rate)
-
-    def _offer(self, topic: str, places: list[_Place], rate: float) -> None:
-        rate = max(rate, 0.0)
-        one = "geometry_msgs/msg/TransformStamped"
-        kind = "tf2_msgs/msg/TFMessage" if self.config.vector else one
-        publisher = self.advertise(topic, kind, rate=rate or None)
-        self.part.schedule(
-            rate, after=lambda: self._publish(publisher, places), active=lambda: publisher.wanted
+        static_rate = config.rate if config.static_rate is None else config.static_rate
+        device = ModelPosesConfig(
+            model=config.nested if config.model is None else config.model,
+            links=config.links,
+            visuals=config.visuals,
+            collisions=config.collisions,
+            sensors=config.sensors,
+            one_message=config.vector,
+            topic=topic,
+            rate=max(config.rate, 0.0),
+            static_topic=f"{topic}_static" if config.static else None,
+            static_rate=max(static_rate, 0.0),
         )
-
-    def _publish(self, publisher: Publisher, places: list[_Place]) -> None:
-        sent = [self._transform(*place) for place in places]
-        if self.config.vector:
-            publisher.publish(self._TFMessage(sent))
-            return
-        for transform in sent:
-            publisher.publish(transform)
-
-    def _transform(self, frame: str, child: str, where: Callable[[], Pose]) -> Any:
-        pose = where()
-        moved = self._Transform(self._Vector3(*pose.position), self._Quaternion(*pose.orientation))
-        return self._TransformStamped(header(self.part.time_ns, frame), child, moved)
-
-    def _model(self) -> Pose:
-        return self._root.pose @ self._to_model
-
-    def _in_model(self, link: LinkHandle) -> Pose:
-        return self._model().inverse() @ link.pose
-
-    def _places(self) -> Iterator[_Place]:
-        config, name = self.config, self.part.name
-        if config.nested if config.model is None else config.model:
-            yield self.part.world.name, name, self._model
-        for link in self.part.description.links:
-            own = f"{name}/{_slashed(link.name)}"
-            if config.links:
-                handle = self._links[link.name]
-                yield name, own, partial(self._in_model, handle)
-            for wanted, parts in (
-                (config.visuals, link.visuals),
-                (config.collisions, link.collisions),
-                (config.sensors, link.sensors),
-            ):
-                for part in parts if wanted else ():
-                    yield own, f"{own}/{_slashed(part.name)}", partial(_fixed, part.pose)
-
-    def _moved(self) -> set[str]:
-        """Returns the frames of links at movable joints. The canonical link is the reference."""
-        description = self.part.description
-        links = {
-            link
-            for joint in description.joints
-            if joint.type != "fixed"
-            for link in (joint.parent, joint.child)
-        }
-        moved = links - {description.canonical_link}
-        return {f"{self.part.name}/{_slashed(link)}" for link in moved}
-
-
-def _fixed(pose: Pose) -> Pose:
-    return pose
-
-
-def _slashed(name: str) -> str:
-    return name.replace("::", "/")
+        self.add(ModelPoses(self.scope, device))

@@ -1,0 +1,121 @@
+"""``gz-sim-odometry-publisher-system``: ground truth of a model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from cartwheel.devices.drives.odometry import OdometryConfig
+from cartwheel.devices.position.truth import BaseTruth, BaseTruthConfig
+from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import tag
+from cartwheel.geometry import Pose, quat_from_rpy
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OdometryPublisherParameters:
+    frame: str = tag(
+        "odom_frame", default="", doc="Reference frame of the pose. Default: `<model>/odom`."
+    )
+    base_frame: str = tag(
+        "robot_base_frame",
+        default="",
+        doc="Child frame of the odometry. Default: `<model>/base_footprint`.",
+    )
+    rate: float = tag(
+        "odom_publish_frequency", default=50.0, unit="Hz", doc="Publish rate of all topics."
+    )
+    topic: str = tag(
+        "odom_topic",
+        default="",
+        doc="Topic of the odometry. Default: `/model/<model>/odometry`.",
+    )
+    covariance_topic: str = tag(
+        "odom_covariance_topic",
+        default="",
+        doc="Topic of the odometry with covariance. "
+        "Default: `/model/<model>/odometry_with_covariance`.",
+    )
+    tf_topic: str = tag(
+        "tf_topic",
+        default="",
+        doc="Topic of the TFMessage. Default: `/model/<model>/pose`.",
+    )
+    dimensions: Literal["2", "3"] = tag(
+        "dimensions",
+        default="2",
+        doc="`2`: pose and twist are planar (x, y, yaw). `3`: they are three-dimensional.",
+    )
+    xyz_offset: tuple[float, float, float] = tag(
+        "xyz_offset",
+        default=(0.0, 0.0, 0.0),
+        unit="m",
+        doc="Position of the base frame in the model frame.",
+    )
+    rpy_offset: tuple[float, float, float] = tag(
+        "rpy_offset",
+        default=(0.0, 0.0, 0.0),
+        unit="rad",
+        doc="Roll, pitch and yaw of the base frame in the model frame.",
+    )
+    noise: float = tag(
+        "gaussian_noise",
+        default=0.0,
+        unit="m/s and rad/s",
+        doc="Standard deviation of the noise on the twist.",
+    )
+
+
+class OdometryPublisher(Plugin[OdometryPublisherParameters]):
+    """Publishes the model's ground-truth pose in the world, with the twist in the model frame.
+
+    Original plugin: ``OdometryPublisher`` in gz-sim.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-odometry-publisher-system",)
+    parameters: ClassVar[type] = OdometryPublisherParameters
+
+    def configure(self) -> None:
+        config, part = self.config, self.part
+        self.check_not_negative("rate", "noise")
+        offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
+        frame = config.frame or f"{part.name}/odom"
+        base = config.base_frame or f"{part.name}/base_footprint"
+        covariance = np.diag([config.noise**2] * 6).ravel()
+        self.add(
+            BaseTruth(
+                self.scope,
+                BaseTruthConfig(
+                    link=part.description.canonical_link,
+                    mount=part.description.canonical_pose.inverse() @ offset,
+                    planar=config.dimensions == "2",
+                    noise=config.noise,
+                    noise_name=f"odometry {self.tag.name}",
+                    rate=config.rate,
+                    outputs=(
+                        OdometryConfig(
+                            topic=gz_name(self, config.topic, "odometry"),
+                            frame=frame,
+                            base=base,
+                            rate=config.rate,
+                            transform=True,
+                            tf_topic=gz_name(self, config.tf_topic, "pose"),
+                        ),
+                        OdometryConfig(
+                            topic=gz_name(
+                                self, config.covariance_topic, "odometry_with_covariance"
+                            ),
+                            frame=frame,
+                            base=base,
+                            rate=config.rate,
+                            transform=False,
+                            pose_covariance=covariance,
+                            twist_covariance=covariance,
+                        ),
+                    ),
+                ),
+            )
+        )
