@@ -162,11 +162,23 @@ def test_a_size_that_is_not_written_is_the_plugins_default(told, take, name, tag
     text = car(plugin(name, **tags))
     skids = name in ("libgazebo_ros_skid_steer_drive.so", "libdiffdrive_plugin_multi_wheel.so")
     if skids and tag == "wheelSeparation":
-        assert told(text) == []  # 0.34 m for 0.3 m: wider, as a skid's may be
+        assert told(text) == []  # 0.4 m or 0.34 m for 0.3 m: wider, as a skid's may be
         return
     (finding,) = told(text)
     assert finding.place == "inside"
     assert told(take(text, finding)) == []
+
+
+def test_a_skid_steers_default_separation_is_its_plugins(told):
+    """The plugin uses 0.4 m without the tag, which is too little for a track of 0.5 m."""
+    tags = {key: value for key, value in SKID.items() if key != "wheelSeparation"}
+    text = car(plugin("libgazebo_ros_skid_steer_drive.so", **tags))
+    for left in (1, -1):
+        text = text.replace(f'xyz="0 {left * (TRACK - KINGPINS) / 2} 0"', f'xyz="0 {left * 0.12} 0"')
+        text = text.replace(f'xyz="-0.25 {left * TRACK / 2} 0"', f'xyz="-0.25 {left * 0.25} 0"')
+    (finding,) = told(text)
+    assert finding.values["stated"] == 0.4
+    assert finding.values["measured"] == pytest.approx(0.5)
 
 
 def test_only_the_differential_drive_has_another_name_for_its_torque(bench):
