@@ -174,7 +174,9 @@ def test_a_skid_steers_default_separation_is_its_plugins(told):
     tags = {key: value for key, value in SKID.items() if key != "wheelSeparation"}
     text = car(plugin("libgazebo_ros_skid_steer_drive.so", **tags))
     for left in (1, -1):
-        text = text.replace(f'xyz="0 {left * (TRACK - KINGPINS) / 2} 0"', f'xyz="0 {left * 0.12} 0"')
+        text = text.replace(
+            f'xyz="0 {left * (TRACK - KINGPINS) / 2} 0"', f'xyz="0 {left * 0.12} 0"'
+        )
         text = text.replace(f'xyz="-0.25 {left * TRACK / 2} 0"', f'xyz="-0.25 {left * 0.25} 0"')
     (finding,) = told(text)
     assert finding.values["stated"] == 0.4

@@ -85,6 +85,12 @@ PLANAR = """<plugin name="drive" filename="libgazebo_ros_planar_move.so">
 START = Pose((0, 0, 0.002))
 
 
+def skid(tags=""):
+    return f"""<plugin name="drive" filename="libgazebo_ros_skid_steer_drive.so">
+      <wheelSeparation>0.3</wheelSeparation><wheelDiameter>0.2</wheelDiameter>
+      <torque>50</torque><robotBaseFrame>base_link</robotBaseFrame>{tags}</plugin>"""
+
+
 def ackermann(tags=""):
     return f"""<plugin name="drive" filename="libgazebo_ros_ackermann_drive.so">
       <left_steering_joint>front_left_steering</left_steering_joint>
