@@ -14,67 +14,74 @@ import numpy as np
 
 Number = Any
 """A float, or an array of floats."""
+_Array = np.ndarray
 
 
 def where(condition: Any, value: Number, other: Number) -> Number:
     """Returns `value` where the condition is true, and `other` elsewhere."""
-    if isinstance(condition, np.ndarray):
+    if isinstance(condition, _Array):
         return np.where(condition, value, other)
     return value if condition else other
 
 
 def minimum(value: Number, other: Number) -> Number:
     """Returns the smaller number, and `value` if both are equal, as `min` does."""
-    return where(other < value, other, value)
+    if isinstance(value, _Array) or isinstance(other, _Array):
+        return np.where(other < value, other, value)
+    return min(value, other)
 
 
 def maximum(value: Number, other: Number) -> Number:
     """Returns the larger number, and `value` if both are equal, as `max` does."""
-    return where(other > value, other, value)
+    if isinstance(value, _Array) or isinstance(other, _Array):
+        return np.where(other > value, other, value)
+    return max(value, other)
 
 
 def clamp(value: Number, low: Number, high: Number) -> Number:
     """Returns the number between `low` and `high` that is nearest to `value`."""
-    return minimum(maximum(value, low), high)
+    if isinstance(value, _Array) or isinstance(low, _Array) or isinstance(high, _Array):
+        return minimum(maximum(value, low), high)
+    return min(max(value, low), high)
 
 
 def sin(angle: Number) -> Number:
     """Returns the sine of an angle in rad."""
-    return _SIN(angle) if isinstance(angle, np.ndarray) else math.sin(angle)
+    return _SIN(angle) if isinstance(angle, _Array) else math.sin(angle)
 
 
 def cos(angle: Number) -> Number:
     """Returns the cosine of an angle in rad."""
-    return _COS(angle) if isinstance(angle, np.ndarray) else math.cos(angle)
+    return _COS(angle) if isinstance(angle, _Array) else math.cos(angle)
 
 
 def tan(angle: Number) -> Number:
     """Returns the tangent of an angle in rad."""
-    return _TAN(angle) if isinstance(angle, np.ndarray) else math.tan(angle)
+    return _TAN(angle) if isinstance(angle, _Array) else math.tan(angle)
 
 
 def atan(value: Number) -> Number:
     """Returns the angle in rad between -π/2 and π/2 with this tangent."""
-    return _ATAN(value) if isinstance(value, np.ndarray) else math.atan(value)
+    return _ATAN(value) if isinstance(value, _Array) else math.atan(value)
 
 
 def atan2(y: Number, x: Number) -> Number:
     """Returns the direction of the point (x, y) in rad."""
-    if isinstance(y, np.ndarray) or isinstance(x, np.ndarray):
+    if isinstance(y, _Array) or isinstance(x, _Array):
         return _ATAN2(y, x)
     return math.atan2(y, x)
 
 
 def copysign(value: Number, sign: Number) -> Number:
     """Returns the magnitude of `value` with the sign of `sign`."""
-    if isinstance(value, np.ndarray) or isinstance(sign, np.ndarray):
+    if isinstance(value, _Array) or isinstance(sign, _Array):
         return np.copysign(value, sign)
     return math.copysign(value, sign)
 
 
 def power(value: Number, exponent: float) -> Number:
     """Returns a number that is not negative, raised to a positive exponent."""
-    return _POW(value, exponent) if isinstance(value, np.ndarray) else math.pow(value, exponent)
+    return _POW(value, exponent) if isinstance(value, _Array) else math.pow(value, exponent)
 
 
 # NumPy's own sine and its relatives round differently from those in `math`.

@@ -142,15 +142,16 @@ class DifferentialDrive(Drive):
             forward, turn = self._command
             period = seconds if config.limit_period is None else config.limit_period
             self._set_targets(self.linear.step(forward, period), self.angular.step(turn, period))
-        speeds = self._targets
-        if config.acceleration > 0:
-            most = config.acceleration * seconds
-            speeds = [
-                speed if speed == target else ramp(speed, target, most)
-                for speed, target in zip(self._speeds, self._targets, strict=True)
-            ]
-            self._speeds = speeds
-        for wheel, speed, radius in zip(self._wheels, speeds, self._radii, strict=True):
+        if self._speeds != self._targets:
+            if config.acceleration > 0:
+                most = config.acceleration * seconds
+                self._speeds = [
+                    speed if speed == target else ramp(speed, target, most)
+                    for speed, target in zip(self._speeds, self._targets, strict=True)
+                ]
+            else:
+                self._speeds = self._targets
+        for wheel, speed, radius in zip(self._wheels, self._speeds, self._radii, strict=True):
             wheel.command = speed / radius
 
     def measure(self, seconds: float) -> None:
@@ -200,6 +201,8 @@ class DifferentialDrive(Drive):
         ]
 
     def _rotations(self) -> tuple[float, float]:
+        if len(self._lefts) == 1:
+            return self._lefts[0].position, self._rights[0].position
         return (
             _mean([wheel.position for wheel in self._lefts]),
             _mean([wheel.position for wheel in self._rights]),

@@ -19,6 +19,9 @@ from cartwheel.errors import PluginError
 CONTROL_RATE = 100.0
 """Rate of the control loops, which apply limits and measure the wheels, Hz."""
 
+_Pair = tuple[float | None, float | None]
+"""Minimum and maximum; None for no limit."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzDriveParameters:
@@ -135,23 +138,31 @@ class GzLimitedParameters(GzCommonLimits):
 
 def common_limits(limits: GzCommonLimits) -> Limits:
     """Returns the limits on any motion."""
-    return Limits(
-        velocity=_bounds(limits.min_velocity, limits.max_velocity),
-        acceleration=_bounds(limits.min_acceleration, limits.max_acceleration),
+    return _limits(
+        (limits.min_velocity, limits.max_velocity),
+        (limits.min_acceleration, limits.max_acceleration),
     )
 
 
 def separate_limits(limits: GzLimitedParameters, kind: str) -> Limits:
     """Returns the limits on ``linear`` or ``angular`` motion."""
 
-    def bounds(what: str) -> Bounds:
+    def pair(what: str) -> _Pair:
         both = []
         for bound in ("min", "max"):
             own = getattr(limits, f"{bound}_{kind}_{what}")
             both.append(getattr(limits, f"{bound}_{what}") if own is None else own)
-        return _bounds(*both)
+        return both[0], both[1]
 
-    return Limits(velocity=bounds("velocity"), acceleration=bounds("acceleration"))
+    return _limits(pair("velocity"), pair("acceleration"))
+
+
+def _limits(velocity: _Pair, acceleration: _Pair) -> Limits:
+    return Limits(
+        velocity=None if velocity == (None, None) else _bounds(*velocity),
+        # gz-sim adds the change to the last command even if it has no limit, which rounds.
+        acceleration=_bounds(*acceleration),
+    )
 
 
 def _bounds(low: float | None, high: float | None) -> Bounds:
