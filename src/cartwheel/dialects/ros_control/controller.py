@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 from cartwheel.component import Component, Scope
 from cartwheel.description.model import Sensor
 from cartwheel.devices.inertial.unit import InertialUnit
-from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.classic.ft_sensor import JointLoad
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros2_control.parameters import ParameterServices
@@ -349,6 +348,3 @@ class Controller(Component):
         values = {"controller": self.name, **(values or {})}
         message = f"{self.title}: {message}"
         super().warn(code, message, at=at, hint=hint, values=values, severity=severity)
-
-
-Rhythm = Periodic

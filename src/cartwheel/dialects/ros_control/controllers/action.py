@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.dialects.ros_control.controller import Controller, Rhythm
+from cartwheel.devices.periodic import Periodic
+from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.graph import Action, ActionTopics, Goal
 from cartwheel.graph.actionlib import STATUS_RATE
 from cartwheel.messages import store, zero
@@ -34,7 +35,7 @@ class ActionServer:
         on_cancel: Callable[[Goal], None],
     ) -> None:
         part = controller.part
-        self._rhythm = Rhythm(STATUS_RATE)
+        self._periodic = Periodic(STATUS_RATE)
 
         def take(goal: Goal) -> None:
             reason = unfit(goal.goal, most=STRONGEST, unset=True)
@@ -70,10 +71,10 @@ class ActionServer:
 
     def tick(self, time_ns: int) -> None:
         """Publishes the status of all goals when due, by which ROS 1 clients find the server."""
-        if self._rhythm.due(time_ns) and self._topics is not None:
+        if self._periodic.due(time_ns) and self._topics is not None:
             self._topics.tell()
 
     def start(self, time_ns: int) -> None:
         """Starts to publish the status."""
         self._action.restart()
-        self._rhythm.start(time_ns)
+        self._periodic.start(time_ns)

@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.dialects.ros_control.controller import Controller, Rhythm
+from cartwheel.devices.periodic import Periodic
+from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.action import ActionServer
 from cartwheel.dialects.ros_control.pid import Gains, Pid
 from cartwheel.dialects.ros_control.settings import Settings
@@ -43,7 +44,7 @@ class GripperActionController(Controller):
             section = settings.section(f"gains/{self._joint.name}")
             self._pid = Pid(Gains.read(section))
             settings.ignore("gains")
-        self._monitor = Rhythm(settings.number("action_monitor_rate", 20.0))
+        self._monitor = Periodic(settings.number("action_monitor_rate", 20.0))
         self._target = self._place = 0.0
         self._speed = math.inf
         """Speed in rad/s or m/s at which `_place` moves to `_target`."""

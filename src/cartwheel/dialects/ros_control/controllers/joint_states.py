@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices
-from cartwheel.dialects.ros_control.controller import Controller, Rhythm
+from cartwheel.devices.periodic import Periodic
+from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
 from cartwheel.dialects.ros_control.settings import Settings
@@ -61,7 +62,7 @@ class JointStateController(Controller):
         if rig.ros2 and settings.boolean("publish_dynamic_joint_states", True):
             self._dynamic = self.advertise(f"{space}dynamic_joint_states", _DYNAMIC)
         self._names = [*names, *(each[0] for each in self._extra)]
-        self._rhythm = Rhythm(self._rate)
+        self._periodic = Periodic(self._rate)
         self._JointState = message_class("sensor_msgs/msg/JointState")
 
     def _choose(self, settings: Settings, names: list[str]) -> list[str]:
@@ -117,10 +118,10 @@ class JointStateController(Controller):
         return self._chosen or list(joint.interfaces.states)
 
     def start(self, time_ns: int) -> None:
-        self._rhythm.start(time_ns)
+        self._periodic.start(time_ns)
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        if not self._rhythm.due(time_ns):
+        if not self._periodic.due(time_ns):
             return
         head = header(time_ns, self._frame)
         if self._publisher.wanted:

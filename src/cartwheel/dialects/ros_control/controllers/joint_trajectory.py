@@ -10,7 +10,8 @@ import numpy as np
 
 from cartwheel.codes import devices, running
 from cartwheel.devices.joints.trajectory import State, Trajectory
-from cartwheel.dialects.ros_control.controller import Controller, Rhythm
+from cartwheel.devices.periodic import Periodic
+from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.action import ActionServer
 from cartwheel.dialects.ros_control.controllers.trajectory_reading import (
     GOAL,
@@ -78,8 +79,8 @@ class JointTrajectoryController(Controller):
         self._goal_time = self._tolerances.goal_time
         self._reader = TrajectoryReader(self._names, self._joints, settings, ros2=ros2)
         rate = settings.number("state_publish_rate", 50.0)
-        self._rhythm = Rhythm(rate)
-        self._monitor = Rhythm(settings.number("action_monitor_rate", 20.0))
+        self._periodic = Periodic(rate)
+        self._monitor = Periodic(settings.number("action_monitor_rate", 20.0))
         settings.ignore(
             "stop_trajectory_duration", "hold_trajectory_duration", "verbose",
             "open_loop_control", "interpolate_from_desired_state",
@@ -116,7 +117,7 @@ class JointTrajectoryController(Controller):
         self._hold(time_ns)
         for pid in self._pids:
             pid.reset()
-        self._rhythm.start(time_ns)
+        self._periodic.start(time_ns)
         self._monitor.start(time_ns)
         self._action.start(time_ns)
         self._finish("abort", INVALID_GOAL, "the controller was restarted")
@@ -130,7 +131,7 @@ class JointTrajectoryController(Controller):
         if self._active is not None:
             self._watch(time_ns, wanted, errors)
         self._action.tick(time_ns)
-        due = self._rhythm.due(time_ns)
+        due = self._periodic.due(time_ns)
         if due and self._state.wanted:
             self._publish_state(time_ns, wanted, errors)
 

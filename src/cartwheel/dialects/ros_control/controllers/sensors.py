@@ -9,8 +9,9 @@ import numpy as np
 from cartwheel.codes import running
 from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit
+from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.classic.ft_sensor import JointLoad
-from cartwheel.dialects.ros_control.controller import Controller, Rhythm, SensedLink
+from cartwheel.dialects.ros_control.controller import Controller, SensedLink
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Array
@@ -28,7 +29,7 @@ class _SensorBroadcaster(Controller):
     def configure(self, settings: Settings) -> None:
         self._outlets: list[tuple[SensedLink, Publisher, str]] = []
         rate = 0.0 if self.rig.ros2 else settings.number("publish_rate")
-        self._rhythm = Rhythm(rate)
+        self._periodic = Periodic(rate)
         sensors = [each for each in self.rig.sensors.values() if each.type == self.kind]
         if self.rig.ros2:
             name = settings.text("sensor_name", "")
@@ -66,14 +67,14 @@ class _SensorBroadcaster(Controller):
         """Reads the other parameters."""
 
     def start(self, time_ns: int) -> None:
-        self._rhythm.start(time_ns)
+        self._periodic.start(time_ns)
 
     @property
     def senses(self) -> bool:  # type: ignore[override]
         return any(publisher.wanted for _, publisher, _ in self._outlets)
 
     def sense(self, time_ns: int) -> None:
-        if not self._rhythm.due(time_ns):
+        if not self._periodic.due(time_ns):
             return
         for sensed, publisher, frame in self._outlets:
             if publisher.wanted:
