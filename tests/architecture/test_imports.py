@@ -60,7 +60,7 @@ MAY_IMPORT = {
     },
     "playback": {"description", "simulation", "messages", "graph", "bridges"},
     "checks": {"description", "dialects"},
-    "corpus": {"description", "simulation", "messages", "graph", "dialects", "api"},
+    "corpus": {"checks", "description", "simulation", "messages", "graph", "dialects", "api"},
     "cli": {
         "description",
         "world",

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.api import Model, World
+from cartwheel.checks.knowledge import knowledge
 from cartwheel.corpus import motion
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
@@ -81,7 +82,12 @@ def try_robot(
             for found in _moved(verdict, world, model, robot, standing):
                 verdict = replace(found, diagnostics=world.diagnostics)
         if not all(each.follows and each.turns for each in verdict.drives):
-            report = check(file, arguments=arguments or {}, package_path=package_path)
+            report = check(
+                file,
+                arguments=arguments or {},
+                package_path=package_path,
+                known=knowledge(),
+            )
             said = [each for each in report.findings if each.code in _OF_WHEELS]
             verdict = replace(verdict, reasons=tuple(str(each) for each in said))
     except CartwheelError as error:
