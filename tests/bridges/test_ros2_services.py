@@ -247,7 +247,7 @@ def test_entities_come_and_go_by_simulation_interfaces(bridged: Ros2Bridged, pee
         "initial_pose": {"pose": {"position": {"x": 4.0, "z": 0.1}}},
     }
     made = peer.call("/gz_server/spawn_entity", f"{package}/SpawnEntity", request)
-    assert (made.result.result, made.entity_name) == (1, "crate")
+    assert (made.result.result, made.entity_name) == (1, "crate"), made.result.error_message
     twice = peer.call("/gz_server/spawn_entity", f"{package}/SpawnEntity", request)
     assert twice.result.result == 101  # NAME_NOT_UNIQUE
     renamed = peer.call(

@@ -1,3 +1,4 @@
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -48,10 +49,12 @@ def load(path: Path, arguments: dict[str, str], _: list[Path]) -> RobotDescripti
 
 
 @pytest.fixture(autouse=True)
-def runtime_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def runtime_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Its path is short enough for sockets, wherever tests keep their files."""
     monkeypatch.delenv("CARTWHEEL_SIM", raising=False)
-    return tmp_path / "cartwheel"
+    with tempfile.TemporaryDirectory(prefix="cw", dir="/tmp") as folder:
+        monkeypatch.setenv("XDG_RUNTIME_DIR", folder)
+        yield Path(folder, "cartwheel")
 
 
 @pytest.fixture
