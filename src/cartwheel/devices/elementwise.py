@@ -79,6 +79,11 @@ def copysign(value: Number, sign: Number) -> Number:
     return math.copysign(value, sign)
 
 
+def sqrt(value: Number) -> Number:
+    """Returns the square root of a number that is not negative."""
+    return np.sqrt(value) if isinstance(value, np.ndarray) else math.sqrt(value)
+
+
 def power(value: Number, exponent: float) -> Number:
     """Returns a number that is not negative, raised to a positive exponent."""
     return _POW(value, exponent) if isinstance(value, _Array) else math.pow(value, exponent)

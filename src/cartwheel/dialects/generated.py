@@ -109,7 +109,7 @@ SENSORS = {
     "contact": "gz.contact",
     "depth": "gz.camera",
     "depth_camera": "gz.camera",
-    "force_torque": "classic.ft_sensor",
+    "force_torque": "gz.force_torque",
     "gps": "gz.navsat",
     "gpu_lidar": "gz.lidar",
     "gpu_ray": "gz.lidar",

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.devices.contact.loads import LinkLoadConfig
+from cartwheel.devices.contact.wrench import WrenchSensor, WrenchSensorConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header, message_class
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,16 +41,11 @@ class F3D(Plugin[F3DParameters]):
     parameters: ClassVar[type] = F3DParameters
 
     def configure(self) -> None:
-        self._link = self.part.link(self.config.body, origin=self.tag.origin)
-        self.part.feel(self.config.body)
-        self._frame = self.frame(self.config.frame)
-        self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
-        self._Wrench = message_class("geometry_msgs/msg/Wrench")
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._publisher = self.advertise(self.config.topic, "geometry_msgs/msg/WrenchStamped")
-        self.part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _publish(self) -> None:
-        force, torque = self._link.load()
-        wrench = self._Wrench(self._Vector3(*force.tolist()), self._Vector3(*torque.tolist()))
-        self._publisher.publish(self._WrenchStamped(header(self.part.time_ns, self._frame), wrench))
+        config = self.config
+        device = WrenchSensorConfig(
+            load=LinkLoadConfig(link=config.body),
+            topic=config.topic,
+            frame=config.frame,
+            qos="default",
+        )
+        self.add(WrenchSensor(self.scope, device))

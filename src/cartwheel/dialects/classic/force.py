@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
+from cartwheel.devices.contact.force import CommandedWrench, CommandedWrenchConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.geometry import rotate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,26 +36,8 @@ class Force(Plugin[ForceParameters]):
     parameters: ClassVar[type] = ForceParameters
 
     def configure(self) -> None:
-        origin = self.tag.origin
-        self._link = self.part.link(self.config.body, origin=origin)
-        self._push = self.part.wrench(self.config.body, origin=origin)
-        self._wrench: tuple[list[float], list[float]] | None = None
-        self.subscribe(self.config.topic, "geometry_msgs/msg/Wrench", self._on_wrench)
-        if self.config.frame == "link":
-            self.part.schedule(0, before=self._turn)
-
-    def reset(self) -> None:
-        self._wrench = None
-        self._push.forget()
-
-    def _on_wrench(self, message: Any) -> None:
-        force, torque = message.force, message.torque
-        values = [force.x, force.y, force.z, torque.x, torque.y, torque.z]
-        self._wrench = (values[:3], values[3:])
-        if self.config.frame == "world":
-            self._push.apply(*self._wrench)
-
-    def _turn(self) -> None:
-        if self._wrench is not None:
-            _, turned = self._link.place()
-            self._push.apply(*(rotate(turned, vector) for vector in self._wrench))
+        config = self.config
+        device = CommandedWrenchConfig(
+            link=config.body, topic=config.topic, in_link=config.frame == "link"
+        )
+        self.add(CommandedWrench(self.scope, device))

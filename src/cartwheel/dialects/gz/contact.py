@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.dialects.classic.bumper import Bumper
+from cartwheel.devices.contact.bumper import Bumper, BumperConfig
 from cartwheel.dialects.gz.sensor_tags import default_topic
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.tags import tag
 
 
@@ -20,7 +22,7 @@ class GzContactParameters:
     )
 
 
-class GzContact(Bumper):
+class GzContact(Plugin[GzContactParameters]):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
 
     Messages are also published without contact. The field ``states`` is then empty. Original
@@ -29,13 +31,17 @@ class GzContact(Bumper):
 
     filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzContactParameters
+    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("contact",)
 
     def configure(self) -> None:
-        assert self.sensor is not None
-        config = self.config
-        assert isinstance(config, GzContactParameters)
-        topic = (
-            config.topic or self.sensor.topic or default_topic(self.part, self.sensor, "contact")
+        sensor = self.sensor
+        assert sensor is not None
+        topic = self.config.topic or sensor.topic or default_topic(self.part, sensor, "contact")
+        device = BumperConfig(
+            collisions=read_collisions(self, sensor),
+            topic="/" + topic.lstrip("/"),
+            frame="world",
+            rate=sensor.update_rate,
         )
-        self.publish_on("/" + topic.lstrip("/"), frame="world", rate=self.sensor.update_rate)
+        self.add(Bumper(self.scope, device))

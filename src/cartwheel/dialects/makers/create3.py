@@ -11,8 +11,8 @@ import numpy as np
 from cartwheel.codes import devices
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
 from cartwheel.devices.rays.scan import Scanner
-from cartwheel.dialects.classic.bumper import watched_collisions
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
@@ -74,7 +74,7 @@ class Create3Bumper(_Hazard):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        self._collisions = watched_collisions(self, self.sensor)
+        self._collisions = read_collisions(self, self.sensor)
         self._base = self.part.link(self.part.description.canonical_link)
         self._watch(self.sensor.update_rate)
 

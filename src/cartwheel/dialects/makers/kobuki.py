@@ -17,8 +17,8 @@ from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.devices.rays.scan import Scanner
-from cartwheel.dialects.classic.bumper import watched_collisions
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
@@ -167,10 +167,10 @@ class Kobuki(Plugin[KobukiParameters]):
             side: Scanner(self.part, read_scanner(self._sensor(name), self.part.report))
             for side, name in zip(_SIDES, rays, strict=True)
         }
-        self._bumper = watched_collisions(self, self._sensor(config.bumper))
+        self._bumper = read_collisions(self, self._sensor(config.bumper))
         self._wheels = {
-            "left": watched_collisions(self, self._sensor(config.drop_left)),
-            "right": watched_collisions(self, self._sensor(config.drop_right)),
+            "left": read_collisions(self, self._sensor(config.drop_left)),
+            "right": read_collisions(self, self._sensor(config.drop_right)),
         }
         imu = self._sensor(config.imu)
         self._unit = InertialUnit(self.part, read_inertial_unit(self.part, imu))

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
-from cartwheel.dialects.classic.bumper import watched_collisions
+from cartwheel.devices.contact.loads import ContactForceConfig
+from cartwheel.devices.contact.wrench import WrenchSensor, WrenchSensorConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.geometry import quat_conjugate, rotate
-from cartwheel.messages import header, message_class
+from cartwheel.dialects.sdf.contact import read_collisions
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,22 +32,11 @@ class FootContact(Plugin[FootContactParameters]):
     def configure(self) -> None:
         sensor = self.sensor
         assert sensor is not None
-        self._link = self.part.link(sensor.link)
-        self._collisions = watched_collisions(self, sensor)
-        self._frame = self.frame(sensor.link)
-        self._WrenchStamped = message_class("geometry_msgs/msg/WrenchStamped")
-        self._Wrench = message_class("geometry_msgs/msg/Wrench")
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        rate = sensor.update_rate
-        self._publisher = self.advertise(
-            f"/visual/{sensor.name}/the_force", "geometry_msgs/msg/WrenchStamped", rate=rate or None
+        device = WrenchSensorConfig(
+            load=ContactForceConfig(link=sensor.link, collisions=read_collisions(self, sensor)),
+            topic=f"/visual/{sensor.name}/the_force",
+            frame=sensor.link,
+            rate=sensor.update_rate,
+            qos="default",
         )
-        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _publish(self) -> None:
-        forces = [contact.force for contact in self.part.contacts(self._collisions)]
-        total = np.sum(forces, axis=0) if forces else np.zeros(3)
-        _, turned = self._link.place()
-        force = self._Vector3(*rotate(quat_conjugate(turned), total.tolist()))
-        wrench = self._Wrench(force, self._Vector3(0.0, 0.0, 0.0))
-        self._publisher.publish(self._WrenchStamped(header(self.part.time_ns, self._frame), wrench))
+        self.add(WrenchSensor(self.scope, device))

@@ -7,15 +7,16 @@ from typing import Any
 
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
+from cartwheel.devices.contact.loads import JointLoad
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.devices.inertial.unit import InertialUnit
-from cartwheel.dialects.classic.ft_sensor import JointLoad
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.controller import Rig, SensedLink
 from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
 from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
 from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.ordering import in_order
+from cartwheel.dialects.sdf.force_torque import read_joint_load
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.errors import CartwheelError
 from cartwheel.simulation.pushing import BodyDriveHandle
@@ -67,8 +68,8 @@ class ControlPlugin(Plugin[Any]):
         ]
 
     def _unit(self, sensor: Sensor) -> InertialUnit | JointLoad:
-        if sensor.type == "force_torque":
-            return JointLoad(self.part, sensor)
+        if sensor.joint and sensor.type == "force_torque":
+            return JointLoad(self.part, read_joint_load(self.part, sensor, sensor.joint))
         return InertialUnit(self.part, read_inertial_unit(self.part, sensor), origin=sensor.origin)
 
     def _push(self, types: Iterable[str]) -> BodyDriveHandle | None:

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 from cartwheel.component import Component, Scope
 from cartwheel.description.model import Sensor
+from cartwheel.devices.contact.loads import JointLoad
 from cartwheel.devices.inertial.unit import InertialUnit
-from cartwheel.dialects.classic.ft_sensor import JointLoad
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros2_control.parameters import ParameterServices
 from cartwheel.dialects.ros_control.chaining import Reference

@@ -7,16 +7,17 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import running
+from cartwheel.devices.contact.loads import JointLoad
+from cartwheel.devices.contact.wrench import WRENCH_STAMPED, wrench_stamped
 from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.periodic import Periodic
-from cartwheel.dialects.classic.ft_sensor import JointLoad
 from cartwheel.dialects.ros_control.controller import Controller, SensedLink
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Array
 from cartwheel.graph import Publisher
-from cartwheel.messages import header, message_class
+from cartwheel.messages import header
 
 
 class _SensorBroadcaster(Controller):
@@ -126,7 +127,7 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
         "force_torque_sensor_controller/ForceTorqueSensorController",
     )
     kind = "force_torque"
-    message = "geometry_msgs/msg/WrenchStamped"
+    message = WRENCH_STAMPED
     topic = "wrench"
 
     def take(self, settings: Settings) -> None:
@@ -143,13 +144,7 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
                 sensed.unit.measure(), self._factors, self._offsets, strict=True
             )
         ]
-        Vector3 = message_class("geometry_msgs/msg/Vector3")
-        return message_class("geometry_msgs/msg/WrenchStamped")(
-            header=head,
-            wrench=message_class("geometry_msgs/msg/Wrench")(
-                force=Vector3(*values[:3]), torque=Vector3(*values[3:])
-            ),
-        )
+        return wrench_stamped(head, values)
 
 
 def _nine(settings: Settings, name: str) -> Array:

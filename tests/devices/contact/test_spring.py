@@ -1,4 +1,4 @@
-"""What acts on a link, told and given: f3d and the hand of god, against Newton."""
+"""A link that is pulled to a frame, as a critically damped spring does."""
 
 import dataclasses
 import math
@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from cartwheel.codes import running
+from cartwheel.devices.contact.force import half_rotation, spring_force
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.messages import message_class
 
-G = 9.8
 MASS = 3.0
 TURNED = 0.02
 
@@ -22,33 +22,8 @@ def body(make, plugin, *, pose="0 0 0.1 0 0 0", shape=""):
       <izz>{TURNED}</izz></inertia></inertial>{shape}</link>{plugin}</model>""")
 
 
-BOX = """<collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry>
-  </collision>"""
-F3D = """<plugin name="f" filename="libgazebo_ros_f3d.so"><bodyName>link</bodyName>
-  <topicName>wrench</topicName></plugin>"""
-
-
 def vector(message):
     return np.array([message.x, message.y, message.z])
-
-
-def test_the_ground_bears_the_weight(make, read):
-    world = make.world(body(make, F3D, shape=BOX))
-    world.run(1.0)
-    told = read(world, "/wrench", 0.1)
-    assert len(told) == 20
-    assert vector(told[-1].wrench.force) == pytest.approx([0, 0, MASS * G], abs=0.01)
-    assert vector(told[-1].wrench.torque) == pytest.approx([0, 0, 0], abs=0.01)
-    assert told[-1].header.frame_id == "world"
-
-
-def test_what_falls_feels_nothing_and_what_is_pushed_the_push(make, read):
-    world = make.world(body(make, F3D, pose="0 0 9 0 0 0"), ground=None)
-    assert vector(read(world, "/wrench", 0.1)[-1].wrench.force) == pytest.approx([0, 0, 0])
-    world.session.simulation.forces.wrench("body", "link", force=(1, 2, 3), torque=(0.1, 0, 0.2))
-    told = read(world, "/wrench", 0.1)[-1].wrench
-    assert vector(told.force) == pytest.approx([1, 2, 3])
-    assert vector(told.torque) == pytest.approx([0.1, 0, 0.2], abs=1e-9)
 
 
 HAND = """<plugin name="h" filename="libgazebo_ros_hand_of_god.so"><linkName>link</linkName>
@@ -136,3 +111,33 @@ def test_a_link_without_mass_is_refused(make):
     with pytest.raises(PluginError) as caught:
         make.world().session.spawn(bare)
     assert caught.value.code is running.MODEL_NOT_MOVABLE
+
+
+def test_a_critically_damped_spring_stops_at_its_target():
+    """x = x0 (1 + w t) exp(-w t) with w² = k / m; an implicit step is wrong by order dt."""
+    stiffness, mass, seconds = 50.0, 2.0, 1e-4
+    omega = math.sqrt(stiffness / mass)
+    x, speed = 1.0, 0.0
+    for _ in range(5000):
+        speed += spring_force(-x, speed, stiffness, mass, seconds) / mass * seconds
+        x += speed * seconds
+    assert x == pytest.approx((1 + omega * 0.5) * math.exp(-omega * 0.5), abs=10 * seconds)
+
+
+def test_a_stiff_spring_does_not_overshoot_in_one_step():
+    for stiffness in (1e3, 1e6, 1e9):
+        speed = spring_force(0.1, 0.0, stiffness, 1e-3, 0.005) / 1e-3 * 0.005
+        assert 0.0 < speed * 0.005 < 0.1
+
+
+def test_springs_of_arrays_have_the_bits_of_those_of_floats():
+    numbers = np.random.default_rng(2).uniform(0.1, 9.0, (4, 50))
+    together = spring_force(*numbers, 0.005).tolist()
+    assert together == [spring_force(*each, 0.005) for each in numbers.T.tolist()]
+
+
+def test_half_a_rotation_is_that_of_the_shorter_way():
+    turn = quat_from_rpy(0, 0, 0.6)
+    assert half_rotation(turn) == pytest.approx([0, 0, 0.3])
+    assert half_rotation([-each for each in turn]) == pytest.approx([0, 0, 0.3])
+    assert half_rotation((0.0, 0.0, 0.0, 1.0)).tolist() == [0.0, 0.0, 0.0]

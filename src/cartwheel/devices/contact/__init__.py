@@ -1,0 +1,1 @@
+"""Sensors of contacts, forces and torques, and forces that are applied to links."""
