@@ -7,7 +7,14 @@ from tests.coded import coded
 from tests.gazebo.conftest import CHAIN, SDF, Gazebo
 
 import cartwheel as cw
-from cartwheel.codes.graph import SERVICE_FAILED
+from cartwheel.codes.graph import (
+    ENTITY_NAME_TAKEN,
+    ENTITY_UNKNOWN,
+    REQUEST_INVALID,
+    REQUEST_UNSUPPORTED,
+    SERVICE_FAILED,
+)
+from cartwheel.codes.world import UNKNOWN_MODEL
 from cartwheel.description.model import WorldDescription
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.geometry import Pose
@@ -34,15 +41,18 @@ def test_models_and_lights_are_created_moved_and_removed(make):
     where = {"position": {"x": 2.0, "z": 0.25}, "orientation": UPRIGHT}
     assert create(sdf=SDF, pose=where)
     assert simulation.pose("brick").position == pytest.approx((2.0, 0.0, 0.25))
-    assert not create(sdf=SDF, pose=where)
+    taken = {"name": "brick", "free": "brick_1"}
+    api.fails("create", ENTITY_NAME_TAKEN, taken, entity_factory={"sdf": SDF, "pose": where})
     assert create(sdf=SDF, pose={"position": {"y": 3.0}}, allow_renaming=True)
     assert create(name="copy", clone_name="brick", relative_to="brick", pose={"position": {"z": 1}})
     assert simulation.models == ("brick", "brick_1", "copy")
     assert simulation.pose("copy").position == pytest.approx((2.0, 0.0, 1.25))
     assert create(name="cone", sdf_filename="traffic_cone", pose={"position": {"x": 9.0}})
-    assert not create(name="none")
-    assert not create(name="both", sdf=SDF, clone_name="brick")
-    assert not create(clone_name="bricks")
+    api.fails("create", REQUEST_INVALID, entity_factory={"name": "none"})
+    both = {"name": "both", "sdf": SDF, "clone_name": "brick"}
+    api.fails("create", REQUEST_INVALID, entity_factory=both)
+    unknown = {"name": "bricks", "meant": "brick"}
+    api.fails("create", ENTITY_UNKNOWN, unknown, entity_factory={"clone_name": "bricks"})
     assert create(sdf=LAMP, pose={"position": {"z": 2.0}})
     assert [(each.name, each.pose.z) for each in simulation.world.lights] == [("lamp", 2.0)]
 
@@ -54,16 +64,15 @@ def test_models_and_lights_are_created_moved_and_removed(make):
     simulation.refresh()
     # It goes on as it went.
     assert simulation.pose("brick").x == pytest.approx(7.05, abs=1e-6)
-    assert not api("set_pose", entity={"name": "bricks"}, pose=turned).success
-    assert not api("set_pose", entity={"name": "brick", "type": 3}, pose=turned).success
+    api.fails("set_pose", ENTITY_UNKNOWN, unknown, entity={"name": "bricks"}, pose=turned)
+    kind = {"name": "brick", "type": 3}
+    api.fails("set_pose", REQUEST_UNSUPPORTED, {"type": 3}, entity=kind, pose=turned)
 
-    assert not api("remove", entity={"name": "lamp", "type": 2}).success
+    api.fails("remove", UNKNOWN_MODEL, {"name": "lamp"}, entity={"name": "lamp", "type": 2})
     assert api("remove", entity={"name": "lamp"}).success
-    assert not api("remove", entity={"name": "lamp", "type": 1}).success
+    api.fails("remove", ENTITY_UNKNOWN, {"name": "lamp"}, entity={"name": "lamp", "type": 1})
     assert api("remove", entity={"name": "copy", "type": 2}).success
     assert "copy" not in simulation.models
-    # The answers have no room for the reasons.
-    assert coded(api.world.diagnostics, SERVICE_FAILED, meant="brick")
 
 
 def test_control_holds_steps_and_resets(make):

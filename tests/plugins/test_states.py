@@ -143,14 +143,15 @@ def test_a_trajectory_that_cannot_be_followed_is_refused(make):
         )
 
     assert ask(["turn"], [0.1]).success
-    for names, positions, model, what in (
-        (["trun"], [0.1], "arm", "no movable joint"),
-        (["turn"], [0.1, 0.2], "arm", "2 positions for 1 joints"),
-        (["turn"], [0.1], "leg", '"leg"'),
+    before = world.session.simulation.data.qpos.copy()
+    for names, positions, model in (
+        (["trun"], [0.1], "arm"),
+        (["turn"], [0.1, 0.2], "arm"),
+        (["turn"], [0.1], "leg"),
     ):
         answer = ask(names, positions, model)
-        assert not answer.success
-        assert what in answer.status_message
+        assert not answer.success and answer.status_message
+        assert (world.session.simulation.data.qpos == before).all()
 
 
 @pytest.mark.parametrize(

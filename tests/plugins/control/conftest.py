@@ -40,6 +40,11 @@ class Bench:
     def warnings(self):
         return [d for d in self.world.diagnostics if d.severity != "info"]
 
+    def refuses(self, ok, code, **values):
+        """Whether a request was not ok, and the reason that was reported has these values."""
+        last = self.warnings[-1]
+        return not ok and last.code is code and {**last.values, **values} == dict(last.values)
+
 
 @pytest.fixture
 def bench(tmp_path):

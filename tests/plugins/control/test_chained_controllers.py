@@ -209,12 +209,10 @@ def test_what_is_commanded_neither_stops_alone_nor_starts_late(arm):
     made = arm(top=group(), loop=pid(p=400.0, d=40.0))
     made.world.run(0.1)
     answer = switch(made, stop=["loop"])
-    assert not answer.ok
-    assert coded(made.warnings, running.CONTROLLER_CONFLICT, controller="loop")
+    assert made.refuses(answer.ok, running.CONTROLLER_CONFLICT, controller="loop", by="top")
     assert switch(made, stop=["loop", "top"]).ok
     answer = switch(made, start=["top"])
-    assert not answer.ok
-    assert coded(made.warnings, running.CONTROLLER_CONFLICT, controller="top")
+    assert made.refuses(answer.ok, running.CONTROLLER_CONFLICT, controller="top", by="loop")
     assert switch(made, start=["top", "loop"]).ok
     made.publish("/top/commands", POSITIONS, data=[0.5])
     made.world.run(2.0)
@@ -254,10 +252,12 @@ def test_what_was_loaded_anew_is_commanded_by_nobody_who_knew_it_before(arm):
     made.world.run(0.1)
     assert switch(made, stop=["loop", "top"]).ok
     assert manager(made, "unload_controller", "UnloadController", name="loop").ok
-    assert not switch(made, start=["top"]).ok
+    answer = switch(made, start=["top"])
+    assert made.refuses(answer.ok, running.CONTROLLER_CONFLICT, controller="top", by="loop")
     assert manager(made, "load_controller", "LoadController", name="loop").ok
     assert manager(made, "configure_controller", "ConfigureController", name="loop").ok
-    assert not switch(made, start=["loop", "top"]).ok
+    answer = switch(made, start=["loop", "top"])
+    assert made.refuses(answer.ok, running.CONTROLLER_CONFLICT, controller="top", by="loop")
     assert manager(made, "configure_controller", "ConfigureController", name="top").ok
     assert switch(made, start=["loop", "top"]).ok
 

@@ -53,7 +53,8 @@ def test_a_controller_is_loaded_started_stopped_and_unloaded(arm):
     arm.world.run(1.0)
     assert states(arm) == {"one": "running"}
     assert arm.position("beam_joint") == pytest.approx(0.4, abs=1e-3)
-    assert not arm.call("/controller_manager/unload_controller", name="one").ok
+    answer = arm.call("/controller_manager/unload_controller", name="one")
+    assert arm.refuses(answer.ok, running.CONTROLLER_STATE, controller="one")
     assert switch(arm, stop=["one"])
     arm.world.run(0.5)
     assert states(arm) == {"one": "stopped"}
@@ -117,7 +118,8 @@ def test_reloading_the_libraries_unloads_everything(arm):
     assert load(arm, "one")
     assert switch(arm, start=["one"])
     name = "/controller_manager/reload_controller_libraries"
-    assert not arm.call(name, force_kill=False).ok
+    answer = arm.call(name, force_kill=False)
+    assert arm.refuses(answer.ok, running.CONTROLLER_STATE, controller="one")
     assert arm.call(name, force_kill=True).ok
     assert states(arm) == {}
 

@@ -111,7 +111,7 @@ class ControllerManager:
             led = [each for each in self._led(name) if each in stop]
             if led:
                 problem = f'controller "{led[0]}" cannot stop because "{name}" commands it'
-                self._refuse(led[0], problem, strict)
+                self._refuse(_conflict(led[0], problem, by=name), strict)
             stopping = [each for each in stopping if each.name not in led]
         starting = [each for name in start if (each := self._one(name, False, strict))]
         # A controller that is both stopped and started is restarted.
@@ -127,9 +127,9 @@ class ControllerManager:
         }
         able = []
         for controller in starting:
-            problem = self._hindrance(controller, starting, stopping, held)
-            if problem:
-                self._refuse(controller.name, problem, strict)
+            conflict = self._hindrance(controller, starting, stopping, held)
+            if conflict is not None:
+                self._refuse(conflict, strict)
                 continue
             held.update(dict.fromkeys(controller.claims, controller.name))
             able.append(controller)
@@ -240,8 +240,8 @@ class ControllerManager:
         starting: Sequence[Controller],
         stopping: Sequence[Controller],
         held: Mapping[str, str],
-    ) -> str:
-        """Returns why a controller cannot start; empty if it can.
+    ) -> GraphError | None:
+        """Returns why a controller cannot start; None if it can.
 
         Args:
             controller: The controller.
@@ -251,13 +251,14 @@ class ControllerManager:
         """
         for name, claim in controller.claims.items():
             if name in held:
-                why = f'joint "{name}" is commanded by "{held[name]}"'
+                by, why = held[name], f'joint "{name}" is commanded by "{held[name]}"'
             elif isinstance(claim, Reference) and not self._offered(claim, starting, stopping):
-                why = f'it commands "{claim.owner}", which is not running'
+                by, why = claim.owner, f'it commands "{claim.owner}", which is not running'
             else:
                 continue
-            return f'controller "{controller.name}" cannot start: {why}'
-        return ""
+            message = f'controller "{controller.name}" cannot start: {why}'
+            return _conflict(controller.name, message, by=by)
+        return None
 
     def _offered(
         self, claim: Reference, starting: Sequence[Controller], stopping: Sequence[Controller]
@@ -268,12 +269,11 @@ class ControllerManager:
             return False
         return owner in starting or (owner.running and owner not in stopping)
 
-    def _refuse(self, name: str, message: str, strict: bool) -> None:
+    def _refuse(self, conflict: GraphError, strict: bool) -> None:
         """Raises a conflict if `strict`, otherwise reports it."""
-        values = {"controller": name}
         if strict:
-            raise GraphError(message, code=running.CONTROLLER_CONFLICT, values=values)
-        self.rig.report(running.CONTROLLER_CONFLICT, message, values=values)
+            raise conflict
+        report_error(self.rig, conflict)
 
     def _one(self, name: str, runs: bool, strict: bool) -> Controller | None:
         """Returns a controller whose state is to change; None if it cannot or need not change."""
@@ -290,6 +290,12 @@ class ControllerManager:
         if strict and (controller is None or runs):
             raise wrong_state(name, problem)
         return None
+
+
+def _conflict(name: str, message: str, *, by: str) -> GraphError:
+    return GraphError(
+        message, code=running.CONTROLLER_CONFLICT, values={"controller": name, "by": by}
+    )
 
 
 def wrong_state(name: str, problem: str, *, hint: str = "") -> GraphError:
