@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
+from cartwheel.devices.grips.suction import SuctionCup, SuctionCupConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import message_class, service_classes
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,52 +41,12 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
     parameters: ClassVar[type] = VacuumGripperParameters
 
     def configure(self) -> None:
-        config, part = self.config, self.part
-        self._link = part.link(config.link, origin=self.tag.origin)
-        self._grip = part.attachment()
-        self._surroundings = part.surroundings()
-        self._on = False
-        self._Bool = message_class("std_msgs/msg/Bool")
-        self._publisher = self.advertise(config.topic, "std_msgs/msg/Bool")
-        if self.tag.element.find("bodyName") is None:
-            _, self._Switched = service_classes("std_srvs/srv/SetBool")
-            self.serve("switch", "std_srvs/srv/SetBool", self._on_switch)
-        else:
-            _, self._Empty = service_classes("std_srvs/srv/Empty")
-            self.serve("on", "std_srvs/srv/Empty", lambda _: self._switched(on=True))
-            self.serve("off", "std_srvs/srv/Empty", lambda _: self._switched(on=False))
-        part.schedule(0, before=self._seek, active=lambda: self._on and self._grip.held is None)
-        part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def reset(self) -> None:
-        self._switch(on=False)
-
-    def _switched(self, *, on: bool) -> Any:
-        self._switch(on=on)
-        return self._Empty()
-
-    def _on_switch(self, request: Any) -> Any:
-        changed = bool(request.data) != self._on
-        self._switch(on=bool(request.data))
-        state = "on" if self._on else "off"
-        return self._Switched(success=changed, message=f"{'' if changed else 'already '}{state}")
-
-    def _switch(self, *, on: bool) -> None:
-        self._on = on
-        if not on:
-            self._grip.release()
-
-    def _seek(self) -> None:
-        position, _ = self._link.place()
-        distances = self._surroundings.distances(position)
-        taken = {self.part.name, *self.config.fixed}
-        for index in distances.argsort(kind="stable"):
-            if distances[index] > self.config.reach:
-                return
-            model, link = place = self._surroundings.links[index]
-            if place in self._surroundings.moving and not {model, link} & taken:
-                self._grip.hold((self.part.name, self._link.name), place)
-                return
-
-    def _publish(self) -> None:
-        self._publisher.publish(self._Bool(self._grip.held is not None))
+        config = self.config
+        device = SuctionCupConfig(
+            link=config.link,
+            topic=config.topic,
+            reach=config.reach,
+            excluded=frozenset(config.fixed),
+            one_service=self.tag.element.find("bodyName") is None,
+        )
+        self.add(SuctionCup(self.scope, device))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from cartwheel.codes import running
+from cartwheel.devices.grips import attachment
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import message_class
 
 _OWN = "__model__"
 """Selects the plugin's own model."""
@@ -58,63 +57,21 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
     parameters: ClassVar[type] = DetachableJointParameters
 
     def configure(self) -> None:
-        config, part = self.config, self.part
-        part.link(config.parent_link, origin=self.tag.origin)
-        self._joint = part.attachment()
-        self._surroundings = part.surroundings()
-        self._wanted = True
-        self._missed = False
-        self._String = message_class("std_msgs/msg/String")
-        self._state = self.advertise(
-            gz_name(
-                self,
-                config.output_topic or f"/model/{config.child_model}/detachable_joint/state",
-                "",
+        config, own = self.config, self.part.name
+        model, link = config.child_model, config.child_link
+        state = config.output_topic or f"/model/{model}/detachable_joint/state"
+        device = attachment.DetachableJointConfig(
+            parent_link=config.parent_link,
+            child_model=model,
+            child_link=link,
+            children=(
+                (own if model == _OWN else model, link),
+                # A nested model, whose links are prefixed with its name.
+                (own, f"{model}::{link}"),
             ),
-            "std_msgs/msg/String",
+            attach_topic=gz_name(self, config.attach_topic, "detachable_joint/attach"),
+            detach_topic=gz_name(self, config.detach_topic, "detachable_joint/detach"),
+            state_topic=gz_name(self, state, ""),
+            warn=not config.quiet,
         )
-        for topic, default, act in (
-            (config.detach_topic, "detach", self._detach),
-            (config.attach_topic, "attach", self._attach),
-        ):
-            name = gz_name(self, topic, f"detachable_joint/{default}")
-            self.subscribe(name, "std_msgs/msg/Empty", act)
-        part.schedule(0, before=self._join, active=lambda: self._wanted)
-
-    def reset(self) -> None:
-        self._joint.release()
-        self._wanted = True
-
-    def _attach(self, _: Any) -> None:
-        self._wanted = self._joint.held is None
-
-    def _detach(self, _: Any) -> None:
-        if self._joint.held is not None:
-            self._joint.release()
-            self._publish("detached")
-
-    def _join(self) -> None:
-        model = self.config.child_model
-        own = self.part.name
-        places = [
-            (own if model == _OWN else model, self.config.child_link),
-            # A nested model, whose links are prefixed with its name.
-            (own, f"{model}::{self.config.child_link}"),
-        ]
-        link = next((place for place in places if place in self._surroundings.links), None)
-        if link is not None:
-            self._joint.hold((own, self.config.parent_link), link)
-            self._wanted = False
-            self._publish("attached")
-        elif not self._missed and not self.config.quiet:
-            self._missed = True
-            self.warn(
-                running.ATTACHMENT_FAILED,
-                f'link "{self.config.child_link}" of model "{model}" does not exist yet, so it is '
-                "not attached",
-                values={"link": self.config.child_link, "model": model},
-            )
-
-    def _publish(self, state: str) -> None:
-        if self._state.wanted:
-            self._state.publish(self._String(state))
+        self.add(attachment.DetachableJoint(self.scope, device))

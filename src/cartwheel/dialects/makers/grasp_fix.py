@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
+from cartwheel.devices.grips.grasp import Grasp, GraspConfig, HandConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import invalid, missing, tag
-from cartwheel.geometry import Array, Vec3
-from cartwheel.messages import message_class
-from cartwheel.simulation.handles import LinkHandle
 
-_LEAST_FORCE = 1e-4
-"""N; smaller forces are ignored."""
-_LEAST_RATIO = 0.3
-"""Minimum ratio of the smaller to the larger of two gripping forces."""
 _EVENTS = "/gazebo_grasp_plugin_event_republisher/grasp_events"
-Place = tuple[str, str]
-"""Names of a model and a link."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,138 +84,32 @@ class GraspFix(Plugin[GraspFixParameters]):
             raise invalid("forces_angle_tolerance", config.angle, "from 90 to 180", place)
         self.check_above_zero(update_rate=config.rate)
         self.check_not_negative("tolerance")
-        self._surroundings = self.part.surroundings()
-        arms = [self._hand(element) for element in self.tag.element.find_all("arm")]
-        if not arms:
+        hands = tuple(_hand(element) for element in self.tag.element.find_all("arm"))
+        if not hands:
             self.warn(devices.PLUGIN_IDLE, "the plugin has no <arm>, so it grasps nothing")
-        self._hands = arms
-        self._threshold = config.most // 2 if config.threshold is None else config.threshold
-        self._Event = message_class("gazebo_grasp_plugin_ros/msg/GazeboGraspEvent")
-        self._events = self.advertise(_EVENTS, "gazebo_grasp_plugin_ros/msg/GazeboGraspEvent")
-        self.part.schedule(config.rate, after=self._look)
-
-    def reset(self) -> None:
-        for hand in self._hands:
-            hand.forget()
-
-    def _hand(self, element: Element) -> _Hand:
-        names = {}
-        for name in ("arm_name", "palm_link"):
-            child = element.find(name)
-            if child is None:
-                raise missing("arm", name, element.origin)
-            names[name] = child.text.strip()
-        fingers = [each.text.strip() for each in element.find_all("gripper_link")]
-        if not fingers:
-            raise missing("arm", "gripper_link", element.origin)
-        links = [self.part.link(name, origin=element.origin) for name in fingers]
-        self.part.link(names["palm_link"], origin=element.origin)
-        return _Hand(self, names["arm_name"], names["palm_link"], links)
-
-    def _look(self) -> None:
-        for hand in self._hands:
-            pressed = hand.pressed(self._surroundings.moving)
-            gripped = {
-                name for name, forces in pressed.items() if _holds(forces, self.config.angle)
-            }
-            for name in gripped:
-                count = hand.counts[name] = min(hand.counts.get(name, 0) + 1, self.config.most)
-                if count > self._threshold and hand.object is None:
-                    hand.take(name, list(pressed[name]), collides=not self.config.pass_through)
-                    self._publish_event(hand, name, attached=True)
-            for name in hand.counts.keys() - gripped:
-                count = hand.counts[name] = max(hand.counts[name] - 1, 0)
-                let_go = name == hand.object and count <= self._threshold
-                if let_go and hand.opened(self.config.tolerance):
-                    hand.release()
-                    hand.counts[name] = 0
-                    self._publish_event(hand, name, attached=False)
-
-    def _publish_event(self, hand: _Hand, name: str, *, attached: bool) -> None:
-        if self._events.wanted:
-            self._events.publish(self._Event(hand.name, name, attached))
-
-
-class _Hand:
-    """A palm and its fingers."""
-
-    def __init__(
-        self, plugin: Plugin[GraspFixParameters], name: str, palm: str, fingers: list[LinkHandle]
-    ) -> None:
-        self.name = name
-        self.counts: dict[str, int] = {}
-        """Grip counters by collision."""
-        self.object: str | None = None
-        """The attached collision."""
-        self._part, self._palm = plugin.part, palm
-        self._grip = plugin.part.attachment()
-        description = plugin.part.description
-        self._fingers = {
-            f"{finger.name}::{collision.name}": finger
-            for finger in fingers
-            for link in description.links
-            if link.name == finger.name
-            for collision in link.collisions
-        }
-        self._marks: list[tuple[LinkHandle, Vec3, float]] = []
-        """Contact points in the fingers' frames, and their distance to the object's frame."""
-        self._points: dict[tuple[str, str], Vec3] = {}
-
-    def pressed(self, moving: frozenset[Place]) -> dict[str, dict[str, Array]]:
-        """Returns the forces on movable collisions in N, by collision and finger."""
-        forces_by_collision: dict[str, dict[str, Array]] = {}
-        self._points = {}
-        for contact in self._part.contacts(self._fingers):
-            model, _, link = contact.second.rpartition("::")[0].partition("::")
-            if model == self._part.name or (model, link) not in moving:
-                continue
-            finger = contact.first.partition("::")[2]
-            forces = forces_by_collision.setdefault(contact.second, {})
-            forces[finger] = forces.get(finger, np.zeros(3)) - contact.force
-            x, y, z = contact.position.tolist()
-            self._points[contact.second, finger] = (x, y, z)
-        return forces_by_collision
-
-    def take(self, name: str, fingers: list[str], *, collides: bool) -> None:
-        """Attaches the link of a collision to the palm."""
-        model, _, link = name.rpartition("::")[0].partition("::")
-        self.object = name
-        self._grip.hold((self._part.name, self._palm), (model, link), collides=collides)
-        place = self._grip.link_pose().position
-        self._marks = []
-        for each in fingers:
-            finger, point = self._fingers[each], self._points[name, each]
-            local = finger.pose.inverse().apply(point)
-            self._marks.append((finger, local, math.dist(point, place)))
-
-    def opened(self, tolerance: float) -> bool:
-        """Whether a finger has left the object, or the object no longer exists."""
-        if self._grip.held is None:
-            return True
-        place = self._grip.link_pose().position
-        return any(
-            abs(math.dist(finger.pose.apply(local), place) - distance) > tolerance
-            for finger, local, distance in self._marks
+        device = GraspConfig(
+            hands=hands,
+            angle=math.radians(config.angle),
+            rate=config.rate,
+            most=config.most,
+            threshold=config.most // 2 if config.threshold is None else config.threshold,
+            tolerance=config.tolerance,
+            collides=not config.pass_through,
+            event_topic=_EVENTS,
         )
-
-    def release(self) -> None:
-        """Detaches the object."""
-        self.object = None
-        self._grip.release()
-
-    def forget(self) -> None:
-        """Restores the initial state after a reset."""
-        self.release()
-        self.counts.clear()
+        self.add(Grasp(self.scope, device))
 
 
-def _holds(forces: dict[str, Array], angle: float) -> bool:
-    """Whether two of the forces are sufficiently opposite and similar in size to grip."""
-    for one, two in itertools.combinations(forces.values(), 2):
-        a, b = float(np.linalg.norm(one)), float(np.linalg.norm(two))
-        if min(a, b) < _LEAST_FORCE or min(a, b) < _LEAST_RATIO * max(a, b):
-            continue
-        cosine = float(one @ two) / (a * b)
-        if math.degrees(math.acos(min(1.0, max(-1.0, cosine)))) > angle:
-            return True
-    return False
+def _hand(element: Element) -> HandConfig:
+    names = {}
+    for name in ("arm_name", "palm_link"):
+        child = element.find(name)
+        if child is None:
+            raise missing("arm", name, element.origin)
+        names[name] = child.text.strip()
+    fingers = tuple(each.text.strip() for each in element.find_all("gripper_link"))
+    if not fingers:
+        raise missing("arm", "gripper_link", element.origin)
+    return HandConfig(
+        name=names["arm_name"], palm=names["palm_link"], fingers=fingers, origin=element.origin
+    )

@@ -28,7 +28,7 @@ class _SensorBroadcaster(Controller):
     topic: ClassVar[str]
 
     def configure(self, settings: Settings) -> None:
-        self._outlets: list[tuple[SensedLink, Publisher, str]] = []
+        self._outputs: list[tuple[SensedLink, Publisher, str]] = []
         rate = 0.0 if self.rig.ros2 else settings.number("publish_rate")
         self._periodic = Periodic(rate)
         sensors = [each for each in self.rig.sensors.values() if each.type == self.kind]
@@ -45,7 +45,7 @@ class _SensorBroadcaster(Controller):
                 )
             chosen = self.rig.sensors[name]
             frame = settings.text("frame_id", chosen.sensor.link)
-            self._outlets.append((chosen, self.advertise(self.topic, self.message), frame))
+            self._outputs.append((chosen, self.advertise(self.topic, self.message), frame))
         else:
             if not sensors:
                 raise settings.error(
@@ -54,7 +54,7 @@ class _SensorBroadcaster(Controller):
                     values={"type": self.kind},
                 )
             space = f"/{self.rig.namespace.strip('/')}/"
-            self._outlets = [
+            self._outputs = [
                 (
                     each,
                     self.advertise(f"{space}{each.name}", self.message, rate=rate),
@@ -72,12 +72,12 @@ class _SensorBroadcaster(Controller):
 
     @property
     def senses(self) -> bool:  # type: ignore[override]
-        return any(publisher.wanted for _, publisher, _ in self._outlets)
+        return any(publisher.wanted for _, publisher, _ in self._outputs)
 
     def sense(self, time_ns: int) -> None:
         if not self._periodic.due(time_ns):
             return
-        for sensed, publisher, frame in self._outlets:
+        for sensed, publisher, frame in self._outputs:
             if publisher.wanted:
                 publisher.publish(self.measure(sensed, header(time_ns, self.frame(frame))))
 

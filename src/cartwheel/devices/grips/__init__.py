@@ -1,0 +1,1 @@
+"""Grips: links that are attached to other links at run time."""
