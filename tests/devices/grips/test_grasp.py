@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.devices.grips.hands import SIDE, Hand
+from tests.devices.grips.hands import FINGER, HAND, SIDE, Hand
 
 from cartwheel.devices.grips.grasp import oppose
 from cartwheel.errors import PluginError
