@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import threading
-import weakref
 from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Self
@@ -249,11 +248,9 @@ class RunningWorld:
         return self._connections
 
     def _attach(self, connections: Connections, *, ros1: bool) -> None:
-        from cartwheel.assembly.connections import abandon
-
         connections.attach(self.session, self._driver, self.lock, ros1=ros1)
         self._connections = connections
-        weakref.finalize(self, abandon, connections).atexit = False
+        connections.close_with(self)
         if not self._running:
             self._driver.end()
 

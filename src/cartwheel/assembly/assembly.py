@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -34,13 +33,12 @@ if TYPE_CHECKING:
 Rmw = Literal["dds", "zenoh"]
 
 
-@contextlib.contextmanager
-def at_block_end(function: Callable[[], None]) -> Iterator[None]:
+def at_block_end(function: Callable[[], None]) -> contextlib.AbstractContextManager[object]:
     """Calls a function at the end of the block: the default `AtEnd`."""
-    try:
-        yield
-    finally:
-        function()
+    # Not a generator: a forked process that exits would run its last part.
+    stack = contextlib.ExitStack()
+    stack.callback(function)
+    return stack
 
 
 class Assembly:
@@ -65,7 +63,6 @@ class Assembly:
         at_end: AtEnd = at_block_end,
     ) -> None:
         self.access = access
-        self._pid = os.getpid()
         self._package_path = tuple(package_path)
         self._observer = observer or Observer()
         self._at_end = at_end
@@ -391,13 +388,12 @@ class Assembly:
     # -- end
 
     def close(self) -> None:
-        """Ends all connections and completes the recordings. A forked process changes nothing.
+        """Ends all connections and completes the recordings.
 
         Raises:
             RecordingError: A recording has failed.
         """
-        if os.getpid() == self._pid:
-            self._stack.close()
+        self._stack.close()
 
 
 def _load_robot(

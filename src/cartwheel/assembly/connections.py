@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import atexit
 import contextlib
+import os
 import sys
 import threading
+import weakref
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +35,8 @@ NODE = "gazebo"
 FOXGLOVE_PORT = 8765
 VIEWER_PORT = 8080
 """The first port to try."""
+_LOOK = 0.2
+"""Interval in s at which the end of the main thread is checked."""
 _PATIENCE = 5.0
 """Maximum wall time in s for a run on another thread to end when the process exits."""
 
@@ -92,9 +95,11 @@ class Connections:
         self._turns: Turns | None = None
         self._attendant: Attendant | None = None
         self._viewer: ViewerOnDemand | None = None
+        self._pid = os.getpid()
         self._closing = threading.Lock()
         self.closed = False
-        _open.add(self)
+        self._owner: weakref.ref[object] | None = None
+        _close_at_exit(self)
 
     def prepare(self, plan: Plan) -> None:
         """Checks the options, and starts processes while the world is loaded.
@@ -133,6 +138,10 @@ class Connections:
         self._assembly.serve_control(_title(session), ros=ros1)
         self._viewer = self._assembly.offer_viewer(VIEWER_PORT)
         driver.connected = True
+
+    def close_with(self, owner: object) -> None:
+        """Closes the connections when the memory of an object is freed."""
+        self._owner = weakref.ref(owner, lambda _: self._abandon())
 
     def open(self, plan: Plan) -> None:
         """Opens the requested connections.
@@ -192,9 +201,13 @@ class Connections:
     def close(self) -> None:
         """Closes all connections and completes the recordings. Other threads that call it wait.
 
+        A forked process has no part in the connections.
+
         Raises:
             RecordingError: A recording has failed.
         """
+        if os.getpid() != self._pid:
+            return
         with self._closing:
             if self.closed:
                 return
@@ -203,6 +216,7 @@ class Connections:
                 self._assembly.close()
             finally:
                 _open.discard(self)
+                self._owner = None
                 if self._attendant is not None:
                     self._attendant.close()
 
@@ -217,6 +231,11 @@ class Connections:
         finally:
             if entered and self._turns is not None:
                 self._turns.release()
+
+    def _abandon(self) -> None:
+        # The thread that happens to free the memory may be one that the connections need.
+        if not self.closed and os.getpid() == self._pid:
+            threading.Thread(target=self.close, name="close").start()
 
     def _serve_reads(self) -> None:
         """Delivers latched messages before anything else happens."""
@@ -241,22 +260,37 @@ class _ReportingObserver(Observer):
 
 _open: set[Connections] = set()
 """Connections to close at the end of the process."""
+_closer: threading.Thread | None = None
+_starting = threading.Lock()
 
 
-@atexit.register
+def _close_at_exit(connections: Connections) -> None:
+    """Closes the connections at the end of the process, unless they were closed before."""
+    global _closer
+    with _starting:
+        _open.add(connections)
+        if _closer is None or not _closer.is_alive():
+            _closer = threading.Thread(target=_close_all, name="closer")
+            _closer.start()
+
+
 def _close_all() -> None:
-    for connections in list(_open):
-        with contextlib.suppress(Exception):
-            connections.close_at_exit()
+    """Waits for the end of the main thread.
 
-
-def abandon(connections: Connections) -> None:
-    """Closes the connections of a world that was deleted, on any thread.
-
-    The thread that happens to free the memory may be one that the connections need.
+    The interpreter waits for this thread before it calls the functions of `atexit`, with which
+    libraries end servers and rendering contexts that are still in use.
     """
-    if not connections.closed:
-        threading.Thread(target=connections.close, name="close").start()
+    global _closer
+    while True:
+        threading.main_thread().join(_LOOK)
+        with _starting:
+            if not _open:
+                _closer = None
+                return
+        if not threading.main_thread().is_alive():
+            for connections in list(_open):
+                with contextlib.suppress(Exception):
+                    connections.close_at_exit()
 
 
 def _files(session: Session) -> Iterable[str]:

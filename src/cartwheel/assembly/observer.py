@@ -9,7 +9,7 @@ from pathlib import PurePath
 from cartwheel.errors import Diagnostic
 from cartwheel.gate.access import Access
 
-AtEnd = Callable[[Callable[[], None]], AbstractContextManager[None]]
+AtEnd = Callable[[Callable[[], None]], AbstractContextManager[object]]
 """Creates a context manager that calls a function at its end. The command line's also calls it if
 the process is terminated before."""
 

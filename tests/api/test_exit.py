@@ -1,0 +1,77 @@
+"""Programs that end without closing their world."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tests.bridges.ros1_peers import wait_for
+from tests.processes import bridges_of
+
+from cartwheel.bridges.recording.opening import open_recording
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
+
+_PROGRAM = """
+import sys, threading
+import cartwheel as cw
+world = cw.World("empty", record="drive.mcap", foxglove=0, viewer=0)
+world.spawn("rosbots.xacro")
+world.run(1.0)
+print("ready", flush=True)
+sys.stdin.readline()
+{end}
+"""
+_SPINNING = """
+threading.Thread(target=world.spin, daemon=True).start()
+while world.time < 1.2:
+    pass
+"""
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.parametrize(
+    ("end", "status"),
+    [
+        ("", 0),
+        ("raise ValueError", 1),
+        ("sys.exit(3)", 3),
+        (_SPINNING, 0),
+        ("world.stop()\ndel world", 0),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", -signal.SIGKILL),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGTERM)", -signal.SIGTERM),
+        ("import os\nif not os.fork(): sys.exit()\nos.wait()\nworld.run(0.5)", 0),
+    ],
+)
+def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
+    pytest.importorskip("foxglove")
+    process = subprocess.Popen(
+        [sys.executable, "-c", _PROGRAM.format(end=end)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=tmp_path,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    children = bridges_of(process)
+    assert len(children) == 2
+    _, error = process.communicate("\n", timeout=120)
+    assert process.returncode == status, error
+    assert ("ValueError" in error) == (status == 1), error
+    wait_for(lambda: not any(map(_alive, children)), "the end of the bridges")
+    recording = open_recording(tmp_path / "drive.mcap")
+    assert recording.complete
+    assert "/odom" in {topic.name for topic in recording.topics}
+    if status >= 0:
+        assert list((tmp_path / "cartwheel").iterdir()) == []
