@@ -119,9 +119,16 @@ class Link:
 
         Raises:
             Exception: The remote function raised it.
-            TimeoutError: No response arrived in time.
+            ControlError: No response arrived in time.
         """
-        return self.call(name, *arguments).result(_PATIENCE)
+        try:
+            return self.call(name, *arguments).result(_PATIENCE)
+        except TimeoutError:
+            raise ControlError(
+                f"the simulation did not respond to a request within {_PATIENCE:g} s",
+                code=BRIDGE_SLOW,
+                values={"request": name, "seconds": _PATIENCE},
+            ) from None
 
     def tell(self, name: str, *arguments: Any) -> None:
         """Calls a remote function without waiting for a result."""
