@@ -125,7 +125,7 @@ class Link:
             return self.call(name, *arguments).result(_PATIENCE)
         except TimeoutError:
             raise ControlError(
-                f"the simulation did not respond to a request within {_PATIENCE:g} s",
+                f"the connected process did not respond within {_PATIENCE:g} s",
                 code=BRIDGE_SLOW,
                 values={"request": name, "seconds": _PATIENCE},
             ) from None
