@@ -78,8 +78,8 @@ def test_other_threads_use_the_world_meanwhile(on_thread: Any) -> None:
                 until_running(world)
                 cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
                 wait_for(lambda: cart.pose.x > 0.05, "the cart to move")
-                post = world.spawn("object.urdf", name="thing", x=3.0)
-                found.put(post.pose.x)
+                post = world.spawn("object.urdf", name="thing", y=9.0)
+                found.put(post.pose.y)
                 cart.delete()
                 with world.lock:
                     before = world.time
@@ -90,7 +90,7 @@ def test_other_threads_use_the_world_meanwhile(on_thread: Any) -> None:
 
         on_thread(use)
         world.spin(speed=None)
-        assert found.get(timeout=60) == pytest.approx(3.0, abs=0.01)
+        assert found.get(timeout=60) == pytest.approx(9.0, abs=0.01)
         assert found.get(timeout=60) == 0.0
         assert world.models == ("ground_plane", "thing")
 
