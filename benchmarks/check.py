@@ -9,12 +9,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.description.check.seeded import ROBOT, seeded_faults
+from tests.checks.seeded import ROBOT, seeded_faults
 
 from benchmarks import mutations, mutations_of_sdf, mutations_of_xacro
 from benchmarks.figure import Effort, Figure
 from benchmarks.mutations import Mutation
-from cartwheel.checks.run import check
+from cartwheel.checks.project.run import check
 from cartwheel.codes import code_named
 from cartwheel.corpus.finding import robots_in
 from cartwheel.description.convert import to_urdf

@@ -7,13 +7,13 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from tests.description.check.seeded import ROBOT
+from tests.checks.seeded import ROBOT
 
 import cartwheel
 from cartwheel.checks import check
-from cartwheel.checks.baseline import write
-from cartwheel.checks.selection import codes_matching
-from cartwheel.checks.workspace import descriptions
+from cartwheel.checks.project.baseline import write
+from cartwheel.checks.project.selection import codes_matching
+from cartwheel.checks.project.workspace import descriptions
 from cartwheel.codes import command, devices, robot
 from cartwheel.description import xml
 from cartwheel.errors import CartwheelError, UnknownNameError

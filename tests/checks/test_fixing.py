@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from tests.description.check.conftest import ROBOT
+from tests.checks.conftest import ROBOT
 
-from cartwheel.checks import check, fixing
+from cartwheel.checks import check
+from cartwheel.checks.project import fixing
 
 
 @pytest.fixture

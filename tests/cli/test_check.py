@@ -6,8 +6,8 @@ import json
 
 import pytest
 
+from cartwheel.checks.checking import REPORTED, RULES
 from cartwheel.codes.command import UNKNOWN_CODE
-from cartwheel.description.check import REPORTED, RULES
 from cartwheel.errors import UNCLASSIFIED
 
 GOOD = """<?xml version="1.0"?>

@@ -11,12 +11,14 @@ from tests.coded import coded, raises
 from tests.description.test_elements import DOCUMENTS
 
 import cartwheel as cw
+from cartwheel.checks import mending
+from cartwheel.checks.checking import check
+from cartwheel.checks.rules import structure
 from cartwheel.codes import devices
 from cartwheel.codes import world as world_codes
 from cartwheel.codes.robot import MASS_NOT_POSITIVE
 from cartwheel.codes.tags import NAME_TAKEN, VALUE_INVALID
 from cartwheel.description import load_text
-from cartwheel.description.check import check, mending, structure
 from cartwheel.description.model import WorldDescription
 from cartwheel.description.node import Node
 from cartwheel.errors import (

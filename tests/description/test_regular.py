@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from tests.coded import raises
 
+from cartwheel.checks.checking import check
 from cartwheel.codes.files import MESH_UNREADABLE
 from cartwheel.corpus.finding import robots_in
 from cartwheel.description import load
-from cartwheel.description.check.checking import check
 from cartwheel.description.meshes import load_mesh, mesh_notes
 from cartwheel.description.model import Mesh
 from cartwheel.description.regular import read_regular, read_regular_text

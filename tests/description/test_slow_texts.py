@@ -6,11 +6,12 @@ import pytest
 from tests.coded import raises
 
 from cartwheel.bridges.recording import decoding
+from cartwheel.checks import spelling
+from cartwheel.checks.checking import check
 from cartwheel.codes.files import XML_MALFORMED
 from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.corpus import finding
 from cartwheel.description import installed, load, load_text, missing, numbers, xml
-from cartwheel.description.check import check, spelling
 from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import CartwheelError, suggestion
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cache
 
-from cartwheel.description.check import PluginKnowledge
+from cartwheel.checks.subject import PluginKnowledge
 from cartwheel.description.model import PluginTag, Sensor
-from cartwheel.description.tag_roles import TagRole, wheels
+from cartwheel.dialects.tag_roles import TagRole, wheels
 from cartwheel.errors import Diagnostic, PluginError
 
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.api import Model, World
+from cartwheel.checks.checking import RULES, check
 from cartwheel.checks.knowledge import knowledge
 from cartwheel.corpus import motion
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
-from cartwheel.description.check import RULES, check
-from cartwheel.description.check.solids import bounds, solid_of
 from cartwheel.description.model import RobotDescription
+from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.files import ControllerFiles, for_robot, read_parameters
 from cartwheel.dialects.ros_control.suggestion import suggested

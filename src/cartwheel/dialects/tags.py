@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_args, get_origin
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.description.numbers import LARGEST
-from cartwheel.description.tag_roles import Role, TagRole
+from cartwheel.dialects.tag_roles import Role, TagRole
 from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
 
 C = TypeVar("C")

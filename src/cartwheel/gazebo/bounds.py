@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.description.check.solids import Floats, distance, moved, solid_of
 from cartwheel.description.model import (
     Capsule,
     Heightmap,
@@ -18,6 +17,7 @@ from cartwheel.description.model import (
     RobotDescription,
     Sphere,
 )
+from cartwheel.description.solids import Floats, distance, moved, solid_of
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import vector
 from cartwheel.gazebo.results import FAILED, PACKAGE, UNSUPPORTED, Refusal

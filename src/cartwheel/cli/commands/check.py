@@ -6,12 +6,13 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from cartwheel.checks import Result, baseline, fixing, run
+from cartwheel.checks import Result
+from cartwheel.checks.checking import REPORTED
+from cartwheel.checks.project import baseline, fixing, run
 from cartwheel.cli.commands.check_formats import FORMATS
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.cli.showing import STYLES, quiet, shown
 from cartwheel.cli.writing import writing
-from cartwheel.description.check import REPORTED
 from cartwheel.errors import Diagnostic
 
 

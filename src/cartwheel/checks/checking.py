@@ -1,0 +1,258 @@
+"""Checks a description: reads as much of it as possible and applies every rule."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from cartwheel.checks import nodes
+from cartwheel.checks.control_search import control_files
+from cartwheel.checks.mending import displaced, mend
+from cartwheel.checks.rule import Rule
+from cartwheel.checks.rules import (
+    control,
+    controllers,
+    drive,
+    frames,
+    gazebo,
+    inertia,
+    joints,
+    meshes,
+    plugins,
+    sensor_values,
+    sensors,
+    stance,
+    structure,
+    tags,
+    units,
+    wheel_sizes,
+    xacro_use,
+)
+from cartwheel.checks.subject import PluginKnowledge, Robot, Subject
+from cartwheel.codes import codes_of
+from cartwheel.codes.tags import DEFAULT_USED
+from cartwheel.description.loading import Opened, open_description, understand
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.node import Node
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
+
+RULES: tuple[Rule, ...] = (
+    *structure.RULES,
+    *joints.RULES,
+    *inertia.RULES,
+    *drive.RULES,
+    *wheel_sizes.RULES,
+    *stance.RULES,
+    *sensors.RULES,
+    *sensor_values.RULES,
+    *gazebo.RULES,
+    *frames.RULES,
+    *plugins.RULES,
+    *control.RULES,
+    *controllers.RULES,
+    *meshes.RULES,
+    *units.RULES,
+    *tags.RULES,
+    *xacro_use.RULES,
+)
+"""All rules, grouped by subject."""
+REPORTED = tuple(
+    code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)
+)
+"""Every code that a check can report, from the rules and from the description readers."""
+MAX_FAILURES = 30
+"""Unreadable elements to remove before giving up: the rest of such a file is rarely useful."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Report:
+    """The result of a check."""
+
+    file: str
+    name: str
+    """Name of the robot or world; empty if the description could not be read."""
+    findings: tuple[Diagnostic, ...]
+    """Sorted by file and line."""
+    files: tuple[str, ...] = ()
+    """Every file that was read, including included files and controller files."""
+    complete: bool
+    """False if the description could not be read; rules that need its contents were then skipped.
+    """
+
+    def count(self, severity: str) -> int:
+        """Number of findings with this severity."""
+        return sum(finding.severity == severity for finding in self.findings)
+
+
+def check(
+    path: Path | str,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    package_path: Sequence[Path] = (),
+    known: PluginKnowledge | None = None,
+    controller_files: Sequence[Path] = (),
+) -> Report:
+    """Checks a description for errors and misleading values.
+
+    Args:
+        path: As for `load`.
+        arguments: Values of ``name:=value`` arguments.
+        package_path: As for `load`.
+        known: Information about plugins; plugin parameters are not checked without it.
+        controller_files: Controller files to use instead of those found near the robot.
+
+    Raises:
+        DescriptionError: The file is not a description, or its XML or xacro cannot be read.
+    """
+    opened = open_description(path, arguments or {}, package_path)
+    if nodes.children(opened.root, "light") and _is_empty(opened.root):
+        # A light model, as worlds include it: no rule applies.
+        name = nodes.name_of(nodes.children(opened.root, "light")[0])
+        return Report(file=opened.files[0], name=name, findings=(), complete=True)
+    if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
+        understand(opened)  # raises an error that says what the file contains
+    subject = _subject(opened, known, controller_files)
+    # Numbers near the largest float overflow; rules report nothing about non-finite results.
+    with np.errstate(all="ignore"):
+        findings = _distinct(
+            [
+                *tags.passed(subject),
+                *(one for each in RULES for one in each.apply(subject)),
+            ]
+        )
+    order = {file: index for index, file in enumerate(subject.files)}
+    findings.sort(key=lambda finding: place(finding, order))
+    return Report(
+        file=subject.files[0],
+        name=subject.read.name if subject.read is not None else "",
+        findings=tuple(findings),
+        complete=subject.read is not None,
+        files=tuple(
+            dict.fromkeys([*subject.files, *(str(own.path) for _, own in subject.control)])
+        ),
+    )
+
+
+def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path]) -> Subject:
+    tree = nodes.copy(opened.root)
+    mended: set[str] = set()
+    if tree.tag == "robot":
+        mended |= mend(tree)
+    cut: set[str] = set()
+    gaps: list[Origin] = []
+    read, failures = _read(opened, tree, mended, cut, gaps)
+    described: tuple[RobotDescription, ...] = ()
+    if isinstance(read, WorldDescription):
+        described = read.models
+    elif read is not None:
+        described = (read,)
+    root = opened.root if opened.root.tag == "robot" else None
+    if root is None:
+        cut |= _left_out(opened.root, read)
+    lost = displaced(opened.root, tree) if root is not None else set()
+    roles = known.roles if known is not None else lambda _: ()
+    robots = tuple(
+        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost, roles=roles)
+        for each in described
+    )
+    search = known.controller_files if known is not None else None
+    return Subject(
+        root=opened.root,
+        files=opened.files,
+        packages=opened.packages,
+        read=read,
+        robots=robots,
+        failures=tuple(failures),
+        gaps=tuple(gaps),
+        plugins=known,
+        control=control_files(robots, opened.packages, given, search),
+    )
+
+
+def _read(
+    opened: Opened, tree: Node, mended: set[str], cut: set[str], gaps: list[Origin]
+) -> tuple[RobotDescription | WorldDescription | None, list[Diagnostic]]:
+    """Reads a tree, removing each element that raises an error.
+
+    Args:
+        opened: The description.
+        tree: Its tree; unreadable elements are removed in place.
+        mended: Links whose inertia was replaced; extended in place.
+        cut: Links that lost an element; extended in place.
+        gaps: Origins of the parents and grandparents of removed elements; extended in place.
+    """
+    failures: list[Diagnostic] = []
+    holed: set[int] = set()
+    while True:
+        attempt = replace(opened, root=nodes.copy(tree))
+        try:
+            return understand(attempt), failures
+        except DescriptionError as error:
+            node = nodes.at(tree, error.origin) if error.origin is not None else None
+            # Ignore errors caused by the earlier removal of a child element.
+            if node is None or id(node) not in holed:
+                failures.append(error.diagnostic())
+            parent = nodes.parent_of(tree, node) if node is not None else None
+            if node is None or parent is None or len(holed) >= MAX_FAILURES:
+                return None, failures
+            cut |= _links_around(tree, node)
+            parent.drop(node)
+            holed.add(id(parent))
+            holder = nodes.parent_of(tree, parent)
+            gaps += [each.origin for each in (parent, holder) if each is not None]
+            if tree.tag == "robot":
+                mended |= mend(tree)
+
+
+def _left_out(root: Node, read: RobotDescription | WorldDescription | None) -> set[str]:
+    """SDF links with elements that the readers ignored."""
+    holders: dict[int, set[str]] = {}
+    for link in nodes.walk(root):
+        for node in nodes.walk(link) if link.tag == "link" else ():
+            holders.setdefault(id(node.origin), set()).add(nodes.name_of(link))
+    links = set[str]()
+    for diagnostic in read.diagnostics if read is not None else ():
+        values = diagnostic.values
+        lacks = "left_out" in values or (diagnostic.code is DEFAULT_USED and "shape" in values)
+        if lacks:
+            links |= holders.get(id(diagnostic.origin), set())
+    return links
+
+
+def _links_around(tree: Node, wanted: Node) -> set[str]:
+    return {
+        nodes.name_of(link)
+        for link in nodes.walk(tree)
+        if link.tag == "link" and any(node is wanted for node in nodes.walk(link))
+    }
+
+
+def _is_empty(root: Node) -> bool:
+    """Whether there is nothing to check: a macro-only file, or a document without a model."""
+    if root.tag == "robot":
+        return not nodes.children(root, "link")
+    return not nodes.children(root, "model") and not nodes.children(root, "world")
+
+
+def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Removes duplicates; findings of one kind from one macro line become a single finding."""
+    distinct: dict[tuple[object, ...], Diagnostic] = {}
+    for each in findings:
+        key = each.identity
+        if each.origin is not None and each.origin.stack:
+            key = (*each.kind, str(each.origin))
+        first = distinct.setdefault(key, each)
+        if all(each.identity != other.identity for other in (first, *first.also)):
+            distinct[key] = replace(first, also=(*first.also, each))
+    return list(distinct.values())
+
+
+def place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:
+    """Sort key: the file's index in `order`, then the line."""
+    if finding.origin is None:
+        return (-1, "", 0)
+    file = finding.origin.file
+    return (order.get(file, len(order)), file, finding.origin.line)

@@ -1,0 +1,241 @@
+"""Controller parameter files, parsed so that each value has a line number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from cartwheel import yaml_text
+from cartwheel.checks import nodes
+from cartwheel.codes import devices as devices_codes
+from cartwheel.description.model import Element
+from cartwheel.errors import Diagnostic, Origin
+
+_MAX_BYTES = 1_000_000
+_ROS2 = "ros__parameters"
+_DEEPEST = 4
+"""Maximum nesting of namespaces around a ROS 1 controller."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Value:
+    """A scalar in a file."""
+
+    text: str
+    file: ControlFile
+    node: Any
+
+    @property
+    def origin(self) -> Origin:
+        """The value's file and line."""
+        return self.file.origin(self.node)
+
+    @property
+    def number(self) -> float | None:
+        """The value if it is a finite number, otherwise None."""
+        return nodes.number(self.text)
+
+    def replaced(self, text: str) -> str:
+        """The source line with the value replaced, without indentation."""
+        start, end = self.node.start_mark, self.node.end_mark
+        line = self.file.lines[start.line]
+        last: int = end.column if end.line == start.line else len(line)
+        before, after = line[: start.column], line[last:]
+        return f"{before}{text}{after}".strip()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Controller:
+    """The parameters of one controller."""
+
+    name: str
+    type: Value
+    parameters: tuple[Any, ...]
+    """Parameter mappings; later mappings extend earlier ones."""
+    file: ControlFile
+
+    @property
+    def kind(self) -> str:
+        """The controller type as ``package/Class``."""
+        text: str = self.type.text
+        return text.strip().replace("::", "/")
+
+    def node(self, path: str) -> Any:
+        """The node at a path with slashes; dots in ROS 2 parameter names are supported."""
+        for mapping in reversed(self.parameters):
+            found = _find(mapping, path.split("/"))
+            if found is not None:
+                return found
+        return None
+
+    def value(self, *paths: str) -> Value | None:
+        """The first scalar at any of these paths."""
+        for path in paths:
+            node = self.node(path)
+            if node is not None and node.id == "scalar":
+                return Value(text=node.value, file=self.file, node=node)
+        return None
+
+    def values(self, *paths: str) -> list[Value]:
+        """The scalars of the first of these lists that is present; a scalar is a list of one."""
+        for path in paths:
+            node = self.node(path)
+            if node is not None and node.id in ("scalar", "sequence"):
+                held = node.value if node.id == "sequence" else [node]
+                return [
+                    Value(text=one.value, file=self.file, node=one)
+                    for one in held
+                    if one.id == "scalar"
+                ]
+        return []
+
+    def has(self, path: str) -> bool:
+        """Whether the path exists."""
+        return self.node(path) is not None
+
+
+def _start_of(path: Path) -> str:
+    """The beginning of a file, up to the size limit."""
+    with path.open("rb") as file:
+        return file.read(_MAX_BYTES).decode("utf-8", "replace")
+
+
+@dataclass(kw_only=True, eq=False)
+class ControlFile:
+    """A file with controller parameters."""
+
+    path: Path
+    named: bool
+    """Whether the robot or the user refers to the file; otherwise it was found near the robot."""
+    element: Element | None = None
+    """The tag that refers to the file."""
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The lines of the file."""
+        try:
+            return _start_of(self.path).splitlines()
+        except OSError:
+            return []
+
+    @cached_property
+    def root(self) -> Any:
+        """The root node; None if the file is empty or has a `problem`."""
+        return None if isinstance(self._composed, Diagnostic) else self._composed
+
+    @property
+    def problem(self) -> Diagnostic | None:
+        """Why the file cannot be read, or None."""
+        return self._composed if isinstance(self._composed, Diagnostic) else None
+
+    @property
+    def is_ros2(self) -> bool:
+        """Whether the file contains ROS 2 node parameters."""
+        return any(True for _ in _ros2_nodes(self.root, ()))
+
+    @cached_property
+    def controllers(self) -> tuple[Controller, ...]:
+        """All controllers with a type."""
+        if self.is_ros2:
+            return tuple(self._of_ros2())
+        # The file may hold a single controller, whose name is set by a launch file.
+        one = self._controller(self.path.stem, self.root)
+        return (one,) if one is not None else tuple(self._of_ros1(self.root, ()))
+
+    def origin(self, node: Any) -> Origin:
+        """The line of a node."""
+        return Origin(file=str(self.path), line=node.start_mark.line + 1)
+
+    @cached_property
+    def _composed(self) -> Any:
+        # Import yaml only for robots with controllers: the import is slow.
+        import yaml
+
+        try:
+            return yaml.compose(_start_of(self.path), Loader=yaml_text.loader())
+        except (OSError, yaml.YAMLError) as error:
+            mark = getattr(error, "problem_mark", None)
+            problem = getattr(error, "problem", None) or getattr(error, "strerror", None) or error
+            return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
+                message=f"the controller file cannot be read: {problem}",
+                values={"problem": str(problem)},
+                origin=Origin(file=str(self.path), line=mark.line + 1 if mark is not None else 0),
+            )
+
+    def _of_ros1(self, node: Any, path: tuple[str, ...]) -> Iterator[Controller]:
+        for key, value in pairs(node):
+            if value.id != "mapping":
+                continue
+            name = key.value.strip("/").rpartition("/")[2]
+            controller = self._controller(name, value)
+            if controller is not None:
+                yield controller
+            elif len(path) < _DEEPEST:
+                yield from self._of_ros1(value, (*path, name))
+
+    def _controller(self, name: str, node: Any) -> Controller | None:
+        """Reads a mapping as a ROS 1 controller; None if it has no controller type."""
+        kind = _find(node, ["type"]) if node is not None else None
+        if kind is None or kind.id != "scalar" or "/" not in kind.value.replace("::", "/"):
+            return None
+        return Controller(
+            name=name,
+            type=Value(text=kind.value, file=self, node=kind),
+            parameters=(node,),
+            file=self,
+        )
+
+    def _of_ros2(self) -> Iterator[Controller]:
+        types: dict[str, Any] = {}
+        parameters: dict[str, list[Any]] = {}
+        for path, values in _ros2_nodes(self.root, ()):
+            name = path[-1] if path else "**"
+            parameters.setdefault(name, []).append(values)
+            for key, value in pairs(values):
+                kind = _find(value, ["type"])
+                if kind is not None and kind.id == "scalar" and "/" in kind.value:
+                    types.setdefault(key.value, kind)
+            own = _find(values, ["type"])
+            if own is not None and own.id == "scalar" and "/" in own.value:
+                types.setdefault(name, own)
+        for name, kind in types.items():
+            yield Controller(
+                name=name,
+                type=Value(text=kind.value, file=self, node=kind),
+                parameters=(*parameters.get("**", ()), *parameters.get(name, ())),
+                file=self,
+            )
+
+
+def pairs(node: Any) -> list[tuple[Any, Any]]:
+    """The key-value pairs of a mapping; empty for any other node."""
+    if node is None or node.id != "mapping":
+        return []
+    return [(key, value) for key, value in node.value if key.id == "scalar"]
+
+
+def _find(node: Any, words: list[str]) -> Any:
+    """The node at a path; dots in keys may join several path elements."""
+    if not words:
+        return node
+    for count in range(1, len(words) + 1):
+        name = ".".join(words[:count])
+        for key, value in pairs(node):
+            if key.value == name:
+                found = _find(value, words[count:])
+                if found is not None:
+                    return found
+    return None
+
+
+def _ros2_nodes(node: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
+    for key, value in pairs(node):
+        if key.value == _ROS2:
+            yield path, value
+            continue
+        words = tuple(word for word in key.value.split("/") if word)
+        if len(path) <= _DEEPEST:
+            yield from _ros2_nodes(value, (*path, *words))

@@ -1,0 +1,1 @@
+"""How a project uses the checks: settings, suppressions, baselines, fixes and workspaces."""

@@ -1,0 +1,1 @@
+"""Rules, each of which finds one kind of fault."""

@@ -1,0 +1,196 @@
+"""Files of controllers: what is wrong in them is told in their own line, and mended there."""
+
+# ruff: noqa: E501  (a case is a table row)
+
+from __future__ import annotations
+
+import pytest
+from tests.checks.seeded import ARM, EFFORT, IN_CONTROLLERS, ROS1, transmission
+
+WHEELS = """drive:
+  type: diff_drive_controller/DiffDriveController
+  left_wheel: left_wheel_joint
+  right_wheel: right_wheel_joint
+  wheel_separation: 0.4  # between the tyres
+  wheel_radius: 0.08
+"""
+RULES = {
+    "controllers-file-unreadable", "controller-joint-unknown", "controller-type-unknown",
+    "controller-interface-mismatch", "controller-gains-missing", "joint-claimed-twice", "wheel-separation-mismatch",
+    "wheel-base-mismatch", "wheel-diameter-mismatch",
+}  # fmt: skip
+
+
+@pytest.fixture
+def arm(spoil):
+    """A robot whose arm a controller of ROS 1 can move."""
+    return spoil(ROS1, transmission("arm_joint", EFFORT))
+
+
+@pytest.fixture
+def told(bench, tmp_path):
+    """What the rules of controllers say of a robot and a file that the user names."""
+
+    def tell(text, yaml, name="arm.yaml"):
+        (tmp_path / name).write_text(yaml)
+        found = bench.report(text, controller_files=[tmp_path / name]).findings
+        return [finding for finding in found if finding.code.name in RULES]
+
+    return tell
+
+
+def test_a_file_without_a_fault_gives_no_finding(arm, spoil, told):
+    assert told(arm, ARM) == []
+    wheels = [
+        transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
+        for side in ("left", "right")
+    ]
+    assert told(spoil(ROS1, *wheels), WHEELS) == []
+
+
+@pytest.mark.parametrize("case", IN_CONTROLLERS.values(), ids=IN_CONTROLLERS)
+def test_a_fault_in_a_file_is_found_and_its_advice_mends_it(case, arm, told, take):
+    rule, (old, new), line, advice = case
+    assert old in ARM
+    wrong = ARM.replace(old, new)
+    (finding,) = told(arm, wrong)
+    assert finding.code.name == rule
+    assert finding.severity == ("warning" if "broadcaster" in new else "error")
+    assert (finding.origin.line, finding.origin.file.endswith("arm.yaml")) == (line, True)
+    assert advice in finding.instead
+    assert told(arm, take(wrong, finding)) == []
+
+
+def test_a_type_that_is_not_simulated_is_a_note(arm, told):
+    (finding,) = told(arm, ARM.replace("effort_controllers/JointPosition", "my_own/Wobble"))
+    assert (finding.code.name, finding.severity, finding.instead) == (
+        "controller-type-unknown",
+        "info",
+        "",
+    )
+
+
+def test_a_joint_without_a_transmission_is_given_one(spoil, told):
+    text = spoil(ROS1)
+    (finding,) = told(text, ARM)
+    assert finding.code.name == "controller-interface-mismatch"
+    assert finding.origin.line == 3
+    assert told(text.replace("</robot>", finding.instead + "</robot>"), ARM) == []
+
+
+def test_a_transmission_with_another_interface_is_told_at_its_line(spoil, told, take, line_of):
+    text = spoil(ROS1, transmission("arm_joint", "hardware_interface/PositionJointInterface"))
+    (finding,) = told(text, ARM)
+    assert finding.code.name == "controller-interface-mismatch"
+    assert finding.origin.line == line_of(text, "<hardwareInterface>")
+    assert told(take(text, finding), ARM) == []
+    # Another controller of the file has what the transmission offers: it may be the one that runs.
+    other = "other:\n  type: position_controllers/JointPositionController\n  joint: arm_joint\n"
+    assert told(text, ARM + other) == []
+
+
+def test_hardware_of_another_kind_may_offer_anything(spoil, told):
+    own = (ROS1[0], ROS1[1].replace("/>", "><robotSimType>my/Sim</robotSimType></plugin>", 1))
+    assert told(spoil(own), ARM) == []
+
+
+def test_two_controllers_of_one_joint_are_a_note(arm, told):
+    (finding,) = told(arm, ARM + ARM.replace("arm:", "other:"))
+    assert (finding.code.name, finding.severity) == ("joint-claimed-twice", "info")
+    assert (finding.values["other"], finding.values["controller"]) == ("arm", "other")
+    assert finding.origin.line == 7
+    # Of two types one is the other's alternative.
+    other = "other:\n  type: effort_controllers/JointEffortController\n  joint: arm_joint\n"
+    assert "joint-claimed-twice" not in [each.code.name for each in told(arm, ARM + other)]
+
+
+def test_sizes_of_wheels_are_told_in_the_files_line(spoil, told, take):
+    wheels = [
+        transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
+        for side in ("left", "right")
+    ]
+    text = spoil(ROS1, *wheels)
+    wrong = WHEELS.replace("0.4 ", "0.5 ").replace("0.08", "0.16")
+    apart, radius = told(text, wrong)
+    assert (apart.code.name, apart.origin.line) == ("wheel-separation-mismatch", 5)
+    assert apart.instead == "wheel_separation: 0.4  # between the tyres"
+    assert (radius.code.name, radius.origin.line) == ("wheel-diameter-mismatch", 6)
+    assert told(text, take(take(wrong, apart), radius)) == []
+
+
+ROS2 = """controller_manager:
+  ros__parameters:
+    arm:
+      type: joint_trajectory_controller/JointTrajectoryController
+arm:
+  ros__parameters:
+    joints: [arm_joint]
+    command_interfaces: [position]
+    state_interfaces: [position]
+"""
+
+
+def system(*commands):
+    inner = "".join(f'<command_interface name="{name}"/>' for name in commands)
+    return (
+        "</robot>",
+        f'<ros2_control name="s" type="system">\n<joint name="arm_joint">{inner}</joint>'
+        "</ros2_control>\n</robot>",
+    )
+
+
+def test_a_command_that_ros2_control_does_not_offer_is_added(spoil, told, take):
+    assert told(spoil(system("position")), ROS2) == []
+    text = spoil(system("velocity"))
+    (finding,) = told(text, ROS2)
+    assert finding.code.name == "controller-interface-mismatch"
+    assert finding.instead == '<command_interface name="position"/>'
+    assert told(take(text, finding), ROS2) == []
+
+
+def test_a_trajectory_by_effort_needs_gains(spoil, told, take):
+    text = spoil(system("effort"))
+    yaml = ROS2.replace("command_interfaces: [position]", "command_interfaces: [effort]")
+    (finding,) = told(text, yaml)
+    assert (finding.code.name, finding.severity) == ("controller-gains-missing", "warning")
+    where = "      type: joint_trajectory_controller/JointTrajectoryController\n"
+    good = yaml + f"    {finding.instead}\n"
+    assert where in good
+    assert told(text, good) == []
+
+
+def test_a_type_of_ros1_in_a_file_of_ros2(spoil, told, take):
+    yaml = ROS2.replace("joint_trajectory_controller/", "position_controllers/")
+    text = spoil(system("position"))
+    (finding,) = told(text, yaml)
+    assert finding.code.name == "controller-type-unknown"
+    assert finding.values["meant"] == "joint_trajectory_controller/JointTrajectoryController"
+    assert told(text, take(yaml, finding)) == []
+
+
+def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm, tmp_path):
+    (tmp_path / "config").mkdir()
+    near = tmp_path / "config" / "arm.yaml"
+    near.write_text(ARM.replace("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""))
+    (finding,) = bench.find(arm, "controller-gains-missing")
+    assert finding.severity == "warning"
+    near.write_text(ARM.replace("arm_joint", "elbow").replace("  pid:", "  pids:"))
+    assert not [f for f in bench.report(arm).findings if f.code.name in RULES]
+    # Without gazebo_ros_control nothing of it matters.
+    near.write_text(ARM.replace("  pid:", "  pids:"))
+    without = arm.replace("libgazebo_ros_control.so", "libother.so")
+    assert not [f for f in bench.report(without).findings if f.code.name in RULES]
+
+
+def test_a_file_that_is_missing_or_damaged_is_told(arm, told, bench, tmp_path):
+    (finding,) = told(arm, "arm: [")
+    assert (finding.code.name, finding.origin.line) == ("controllers-file-unreadable", 1)
+    missing = bench.report(arm, controller_files=[tmp_path / "no.yaml"]).findings
+    assert [finding.code.name for finding in missing] == ["controllers-file-unreadable"]
+
+
+def test_one_controller_may_be_a_file(arm, told):
+    lines = [line.removeprefix("  ") for line in ARM.splitlines()[1:]]
+    assert told(arm, "\n".join(lines)) == []
+    (finding,) = told(arm, "\n".join(lines).replace("arm_joint", "arm_jiont"))
+    assert finding.origin.line == 2

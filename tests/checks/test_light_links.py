@@ -1,0 +1,37 @@
+"""What hardly weighs is no fault of the robot's."""
+
+import pytest
+
+from cartwheel.checks.checking import check
+
+BASE = (
+    '<link name="base"><inertial><mass value="{base}"/><inertia ixx="1" iyy="1" izz="1"/>'
+    '</inertial><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+)
+CAMERA = (
+    '<link name="camera"><inertial><mass value="0.01"/>{inertia}</inertial><collision><geometry>'
+    '<box size="0.1 0.1 0.1"/></geometry></collision></link><joint name="j" type="fixed">'
+    '<parent link="base"/><child link="camera"/></joint>'
+)
+IMPOSSIBLE = '<inertia ixx="1e-5" iyy="1e-5" izz="1e-4"/>'
+TINY = '<inertia ixx="1e-9" iyy="1e-9" izz="1e-9"/>'
+
+
+@pytest.fixture
+def severities(tmp_path):
+    def find(rule, base, inertia):
+        path = tmp_path / "robot.urdf"
+        text = BASE.format(base=base) + CAMERA.format(inertia=inertia)
+        path.write_text(f'<robot name="robot">{text}</robot>')
+        return [each.severity for each in check(str(path)).findings if each.code.name == rule]
+
+    return find
+
+
+@pytest.mark.parametrize(("base", "severity"), [(10.0, "info"), (0.5, "warning")])
+def test_a_tiny_inertia_of_a_link_without_weight_is_a_note(severities, base, severity):
+    assert severity in severities("inertia-geometry-mismatch", base, TINY)
+
+
+def test_an_impossible_inertia_that_hardly_counts_is_a_note(severities):
+    assert severities("inertia-impossible", 10.0, IMPOSSIBLE) == ["info"]
