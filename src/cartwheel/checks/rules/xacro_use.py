@@ -14,7 +14,7 @@ from cartwheel.checks.subject import Subject
 from cartwheel.codes import files as files_codes
 from cartwheel.description import xml
 from cartwheel.description.node import Node
-from cartwheel.description.xacro_unprefixed import PREFIX
+from cartwheel.description.xacro.unprefixed import PREFIX
 from cartwheel.errors import Diagnostic
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
