@@ -40,7 +40,7 @@ _PARAMETER = re.compile(
     r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?"""
     r"""(\$\{[^}]*\}|\$\([^)]*\)|(?:'[^']*'|"[^"]*"|[^\s'"]++)++|)(?:\s+|$)"""
 )
-"""A parameter of a macro with a default. The pattern does not backtrack, because there are very many
+"""A parameter of a macro with a default. The pattern does not backtrack: there are very many
 ways to split a line of quotation marks."""
 
 
@@ -53,7 +53,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
     def parse(_: object, filename: str) -> Document:
         path = Path(filename)
         if not path.exists():
-            # The caller detects a missing file, which may be optional, by this exception. It expects
+            # By this exception, the caller detects a missing file, which may be optional. It expects
             # that the entry of the file has been removed from the stack.
             space.filestack.pop()
             missing = FileNotFoundError(2, "no such file", filename)
