@@ -53,8 +53,8 @@ def replace_functions(module: ModuleType, run: Run) -> None:
     def parse(_: object, filename: str) -> Document:
         path = Path(filename)
         if not path.exists():
-            # By this exception, the caller detects a missing file, which may be optional. It expects
-            # that the entry of the file has been removed from the stack.
+            # The caller expects this exception for a missing file, which may be optional, and that
+            # the entry of the file is no longer in the stack.
             space.filestack.pop()
             missing = FileNotFoundError(2, "no such file", filename)
             raise space.XacroException("included file", exc=missing)
