@@ -152,7 +152,7 @@ class FrameSpring(Component):
             seconds,
         )
         error = half_rotation(quat_multiply(quat_conjugate(orientation), target.orientation))
-        # Gazebo damps all axes equally, using the inertia about the first axis.
+        # All axes are damped equally, with the inertia about the first axis.
         torque = spring_force(
             error, np.array(angular), config.half_angle_stiffness, float(link.inertia[0]), seconds
         )

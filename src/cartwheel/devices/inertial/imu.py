@@ -15,6 +15,7 @@ from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit, InertialUnitConfig
 from cartwheel.devices.noise import DriftingError, DriftingErrorConfig, VectorNoise
 from cartwheel.geometry import (
+    IDENTITY,
     Array,
     Quat,
     quat_conjugate,
@@ -53,7 +54,7 @@ class ImuConfig:
     """Further errors of the acceleration, m/s²."""
     yaw_error: DriftingErrorConfig | None = None
     """Error of the yaw, rad. The orientation then also has the tilt that the acceleration's error
-    causes, which must be set. None: the orientation has no error."""
+    causes. None: the orientation has no error."""
     orientation_covariance: Array | None = None
     """Shape (9,). None: computed from the noise."""
     rate_covariance: Array | None = None
@@ -61,7 +62,7 @@ class ImuConfig:
     acceleration_covariance: Array | None = None
     """Shape (9,). None: computed from the noise."""
     bias_topic: str | None = None
-    """Topic of the current errors: offset and drift, which must be set. None: not published."""
+    """Topic of the current errors: offset and drift. None: not published."""
     calibration_service: str | None = None
     """Service (Empty) that removes the drift of the angular velocity, if it has one. None: not
     offered."""
@@ -167,8 +168,9 @@ class Imu(Component):
             rate = self._rate.add(rate)
         if self._acceleration is not None:
             acceleration = self._acceleration.add(acceleration)
-        error = self._orientation_error()
-        if error is not None:
+        error = IDENTITY
+        if self._yaw is not None and self._acceleration is not None:
+            error = self._orientation_error(self._yaw, self._acceleration)
             orientation = quat_multiply(error, orientation)
         moment = header(self.part.time_ns, self._frame)
         if self._publisher.wanted:
@@ -176,19 +178,13 @@ class Imu(Component):
                 imu_message(moment, orientation, rate, acceleration, self._covariances)
             )
         if self._biases is not None and self._biases.wanted:
-            assert error is not None
-            assert self._rate is not None
-            assert self._acceleration is not None
-            biases = (self._rate.bias.tolist(), self._acceleration.bias.tolist())
+            biases = (_bias(self._rate), _bias(self._acceleration))
             self._biases.publish(imu_message(moment, error, *biases, self._covariances))
 
-    def _orientation_error(self) -> Quat | None:
-        if self._yaw is None or self._acceleration is None:
-            return None
-        bias = self._acceleration.bias.tolist()
-        (yaw,) = self._yaw.add([0.0])
-        x, y, _ = rotate(self._unit.orientation, bias)
-        return quat_normalize(orientation_error(yaw, x, y, self._strength or math.inf))
+    def _orientation_error(self, yaw: DriftingError, acceleration: DriftingError) -> Quat:
+        (angle,) = yaw.add([0.0])
+        x, y, _ = rotate(self._unit.orientation, acceleration.bias.tolist())
+        return quat_normalize(orientation_error(angle, x, y, self._strength or math.inf))
 
 
 def orientation_error(
@@ -216,6 +212,14 @@ def _variance(noise: float, *errors: VectorNoise | DriftingError | None) -> Arra
         if error is not None:
             variance = variance + error.variance
     return variance
+
+
+def _bias(error: DriftingError | None) -> Sequence[float]:
+    """Returns the current error of three quantities."""
+    if error is None:
+        return (0.0, 0.0, 0.0)
+    bias: list[float] = error.bias.tolist()
+    return bias
 
 
 def _bias_setter(error: DriftingError) -> Callable[[Any], Any]:

@@ -65,7 +65,9 @@ class InertialUnit:
         """
         orientation = IDENTITY
         if self.has_orientation:
-            orientation = quat_multiply(self._world, self.orientation)
+            _, link = self._link.place()
+            mounted = quat_multiply(link, self._mount.orientation)
+            orientation = quat_multiply(self._world, mounted)
         # Only the acceleration depends on the position on the link, which is rigid.
         rates = self.rates()
         acceleration = self._rotated(self._link.proper_acceleration(self._mount.position).tolist())
@@ -76,8 +78,8 @@ class InertialUnit:
     @property
     def orientation(self) -> Quat:
         """True orientation of the IMU in the world."""
-        _, orientation = self._link.place()
-        return quat_multiply(orientation, self._mount.orientation)
+        _, link = self._link.place()
+        return quat_multiply(link, self._mount.orientation)
 
     @property
     def gravity(self) -> Sequence[float]:

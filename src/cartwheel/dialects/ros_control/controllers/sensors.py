@@ -62,9 +62,9 @@ class _SensorBroadcaster(Controller):
                 )
                 for each in sensors
             ]
-        self.take(settings)
+        self.read_settings(settings)
 
-    def take(self, settings: Settings) -> None:
+    def read_settings(self, settings: Settings) -> None:
         """Reads the other parameters."""
 
     def start(self, time_ns: int) -> None:
@@ -102,7 +102,7 @@ class ImuBroadcaster(_SensorBroadcaster):
     message = "sensor_msgs/msg/Imu"
     topic = "imu"
 
-    def take(self, settings: Settings) -> None:
+    def read_settings(self, settings: Settings) -> None:
         self._covariances = [
             _nine(settings, f"static_covariance_{what}")
             for what in ("orientation", "angular_velocity", "linear_acceleration")
@@ -130,7 +130,7 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
     message = WRENCH_STAMPED
     topic = "wrench"
 
-    def take(self, settings: Settings) -> None:
+    def read_settings(self, settings: Settings) -> None:
         settings.ignore("interface_names")
         names = [f"{what}/{axis}" for what in ("force", "torque") for axis in "xyz"]
         self._offsets = [settings.number(f"offset/{name}", 0.0) for name in names]
