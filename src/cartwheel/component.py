@@ -80,6 +80,8 @@ class Scope:
     frame_prefix: str = ""
     remappings: Mapping[str, str] = field(default_factory=dict)
     """New names of topics and services by their names before the remapping."""
+    input_name: str = ""
+    """Name of the inputs for manual joint positions; empty: the node name."""
     owner: object | None = None
     """The plugin that fails if a callback raises an exception; None: the simulation reports it."""
     holder: Component | None = field(default=None, init=False)
@@ -297,13 +299,11 @@ class Component:
             put(wanted, seconds)
 
         return JointInput(
-            model=self.part.name, owner=self.input_name, joints=tuple(joints), put=checked
+            model=self.part.name,
+            owner=self.scope.input_name or self.node,
+            joints=tuple(joints),
+            put=checked,
         )
-
-    @property
-    def input_name(self) -> str:
-        """Name of the component's input for manual joint positions."""
-        return self.node
 
     def reconfigure(
         self,

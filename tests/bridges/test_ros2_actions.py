@@ -13,8 +13,8 @@ import pytest
 import yaml
 from tests.bridges.ros1_peers import wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer, Ros2Bridged
-from tests.plugins.control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
+from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.description import load_text
 from cartwheel.messages import decode_cdr

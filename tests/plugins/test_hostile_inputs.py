@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import yaml
 from tests.coded import coded
-from tests.plugins.control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
+from tests.dialects.ros_control.arms import ros2_system as system
 
 import cartwheel as cw
 from cartwheel.codes import running

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from tests.plugins.control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 CLIENT = """

@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from tests.plugins.control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose

@@ -31,3 +31,15 @@ class Periodic:
             return False
         self._due = self._multiples.due(time_ns + 1)
         return True
+
+
+class Elapsed:
+    """Measures the simulation time between the calls of a task."""
+
+    def __init__(self) -> None:
+        self._before_ns: int | None = None
+
+    def seconds(self, time_ns: int) -> float:
+        """Returns the time since the previous call in s; 0 at the first call."""
+        before, self._before_ns = self._before_ns, time_ns
+        return 0.0 if before is None else (time_ns - before) * 1e-9

@@ -96,6 +96,7 @@ class Plugin(Component, Generic[C]):
             namespace=namespace,
             frame_prefix=frame_prefix,
             remappings=_remappings(tag),
+            input_name=tag.name,
             owner=self,
             tag=tag,
         )
@@ -172,11 +173,6 @@ class Plugin(Component, Generic[C]):
         for name, value in values.items():
             if value > FARTHEST:
                 raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
-
-    @property
-    def input_name(self) -> str:
-        """Name of the plugin's input for manual joint positions."""
-        return self.tag.name or self.node
 
 
 def _remappings(tag: PluginTag) -> dict[str, str]:

@@ -3,7 +3,7 @@
 import math
 
 import yaml
-from tests.plugins.control.arms import ros2_joint, ros2_parameters, ros2_plugin, ros2_system
+from tests.dialects.ros_control.arms import ros2_joint, ros2_parameters, ros2_plugin, ros2_system
 
 RADIUS, BASE, TRACK = 0.1, 0.5, 0.4
 """m: of the wheels, between the axles, between the wheels of an axle."""

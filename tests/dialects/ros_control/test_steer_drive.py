@@ -5,8 +5,8 @@ import math
 import pytest
 import yaml
 from tests.coded import coded
+from tests.dialects.ros_control.arms import ROS1, transmission
 from tests.dialects.ros_control.cars import BASE, FRONT, RADIUS, REAR, car
-from tests.plugins.control.arms import ROS1, transmission
 
 from cartwheel.codes import running
 

@@ -30,7 +30,11 @@ class JointStatesConfig:
 
 
 class JointStates(Component):
-    """Publishes ``sensor_msgs/JointState`` messages when its owner calls `publish`."""
+    """Publishes ``sensor_msgs/JointState`` messages, when `publish` is called or at its rate.
+
+    Raises:
+        UnknownNameError: A joint does not exist.
+    """
 
     def __init__(self, scope: Scope, config: JointStatesConfig) -> None:
         super().__init__(scope)
@@ -40,8 +44,15 @@ class JointStates(Component):
         self._velocities, self._efforts = config.velocities, config.efforts
         self._frame = self.frame(config.frame) if config.frame else ""
         self._JointState = message_class("sensor_msgs/msg/JointState")
+        self._rate = config.rate
         self._publisher = self.advertise(
             config.topic, "sensor_msgs/msg/JointState", rate=config.rate or None
+        )
+
+    def schedule(self) -> None:
+        """Publishes at the rate from now on, while the topic has subscribers."""
+        self.part.schedule(
+            self._rate, after=lambda: self.publish(self.part.time_ns), active=self.wanted
         )
 
     def wanted(self) -> bool:

@@ -82,6 +82,19 @@ class Trajectory:
         return State(tuple(position), tuple(velocity), tuple(acceleration))
 
 
+def next_point(times_ns: Sequence[int], index: int, time_ns: int) -> int:
+    """Returns the index of the first point, from `index` on, whose time has not passed.
+
+    Args:
+        times_ns: Times of the points, which need not increase.
+        index: The current point.
+        time_ns: A point with exactly this time has not passed.
+    """
+    while index < len(times_ns) and times_ns[index] < time_ns:
+        index += 1
+    return index
+
+
 def _rest(position: Vector) -> State:
     still = (0.0,) * len(position)
     return State(position, still, still)

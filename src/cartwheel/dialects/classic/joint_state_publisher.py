@@ -70,7 +70,7 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
         if not ros2:
             self.under_model()
         names = [name.strip() for text in config.names for name in text.split(",")]
-        self._states = self.add(
+        states = self.add(
             JointStates(
                 self.scope,
                 JointStatesConfig(
@@ -80,11 +80,7 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
                 ),
             )
         )
-        self.part.schedule(
-            config.update_rate,
-            after=lambda: self._states.publish(self.part.time_ns),
-            active=self._states.wanted,
-        )
+        states.schedule()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -118,7 +114,7 @@ class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
         config, part = self.config, self.part
         self.check_not_negative("update_rate")
         topic = config.topic or f"/world/{part.world.name}/model/{part.name}/joint_state"
-        self._states = self.add(
+        states = self.add(
             JointStates(
                 self.scope,
                 JointStatesConfig(
@@ -130,8 +126,4 @@ class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
                 ),
             )
         )
-        part.schedule(
-            config.update_rate,
-            after=lambda: self._states.publish(part.time_ns),
-            active=self._states.wanted,
-        )
+        states.schedule()

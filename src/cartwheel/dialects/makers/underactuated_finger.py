@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
+from cartwheel.devices.joints.finger import Finger, FingerConfig, FingerJointConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import invalid, missing, number, tag
 from cartwheel.simulation.limits import FARTHEST
-from cartwheel.simulation.servo import ServoHandle
 
 _LEAST_SCALE = 1 / FARTHEST
 
@@ -29,13 +28,6 @@ class UnderactuatedFingerParameters:
     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Phalanx:
-    servo: ServoHandle
-    scale: float
-    limits: tuple[float, float]
-
-
 class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
     """Bends the joints of a finger in proportion to a motor's angle, up to the joint limits.
 
@@ -47,39 +39,27 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
     parameters: ClassVar[type] = UnderactuatedFingerParameters
 
     def configure(self) -> None:
-        self._motor = self.part.joint(self.config.actuated_joint, origin=self.tag.origin)
-        self._phalanges = [
-            self._phalanx(element) for element in self.tag.element.find_all("virtualJoint")
-        ]
-        if not self._phalanges:
+        elements = list(self.tag.element.find_all("virtualJoint"))
+        config = FingerConfig(
+            motor=self.config.actuated_joint, joints=tuple(_joint(each) for each in elements)
+        )
+        self.add(Finger(self.scope, config))
+        if not elements:
             self.warn(
                 devices.PLUGIN_IDLE, "the plugin has no <virtualJoint>, so the finger does not bend"
             )
-        self.part.schedule(0, before=self._bend)
 
-    def _phalanx(self, element: Element) -> _Phalanx:
-        children = {}
-        for each in ("name", "scale_factor"):
-            child = element.find(each)
-            if child is None:
-                raise missing("virtualJoint", each, element.origin)
-            children[each] = child
-        scale = number(children["scale_factor"], least=-FARTHEST, most=FARTHEST)
-        if abs(scale) < _LEAST_SCALE:
-            wanted = f"at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}"
-            raise invalid("scale_factor", scale, wanted, children["scale_factor"].origin)
-        name = children["name"].text.strip()
-        servo = self.part.servo(name, max_effort=None, origin=element.origin)
-        joint = self.part.description.joint(name)
-        low, high = (joint.axis.lower, joint.axis.upper) if joint is not None else (None, None)
-        return _Phalanx(
-            servo=servo,
-            scale=scale,
-            limits=(-math.inf if low is None else low, math.inf if high is None else high),
-        )
 
-    def _bend(self) -> None:
-        pulled = self._motor.position
-        for phalanx in self._phalanges:
-            low, high = phalanx.limits
-            phalanx.servo.command_position(min(max(pulled / phalanx.scale, low), high))
+def _joint(element: Element) -> FingerJointConfig:
+    children = {}
+    for each in ("name", "scale_factor"):
+        child = element.find(each)
+        if child is None:
+            raise missing("virtualJoint", each, element.origin)
+        children[each] = child
+    scale = number(children["scale_factor"], least=-FARTHEST, most=FARTHEST)
+    if abs(scale) < _LEAST_SCALE:
+        wanted = f"at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}"
+        raise invalid("scale_factor", scale, wanted, children["scale_factor"].origin)
+    name = children["name"].text.strip()
+    return FingerJointConfig(name=name, scale=scale, origin=element.origin)

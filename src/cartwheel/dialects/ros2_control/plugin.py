@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
+from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros2_control.components import HardwareComponents
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
@@ -28,7 +29,6 @@ from cartwheel.dialects.ros_control.interfaces import (
     ros2_control,
     simulated_systems,
 )
-from cartwheel.dialects.ros_control.pid import Gains
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import Origin
@@ -183,7 +183,7 @@ class Ros2Control(ControlPlugin):
 
 def _gains(
     joints: list[JointInterfaces], nodes: Mapping[str, Mapping[str, Any]]
-) -> dict[str, tuple[str, Gains]]:
+) -> dict[str, tuple[str, PidGains]]:
     """Returns the PID of each joint whose commands a PID converts to efforts.
 
     The gains are in the joint's ``<param>`` tags, or in the files under ``pid_gains``. Source:
@@ -210,7 +210,7 @@ def _gains(
         most = settings.number("max_integral_error", math.inf)
         gains[joint.name] = (
             joint.by_pid,
-            Gains(
+            PidGains(
                 p=settings.number("kp", 0.0),
                 i=settings.number("ki", 0.0),
                 d=settings.number("kd", 0.0),

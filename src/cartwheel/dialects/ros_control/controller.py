@@ -139,6 +139,7 @@ class Controller(Component):
                 title=f'controller "{name}"',
                 origin=outer.origin,
                 frame_prefix=outer.frame_prefix,
+                input_name=name,
                 name=name,
                 outer=outer,
                 base=rig.namespace,
@@ -287,11 +288,6 @@ class Controller(Component):
     def accept_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
         """Accepts manual joint positions while the controller runs; see `JointInput`."""
         self._input = self.joint_input([claim.joint for claim in self.claims.values()], put)
-
-    @property
-    def input_name(self) -> str:
-        """Name of the controller's input for manual joint positions."""
-        return self.name
 
     def publish_command(self, topic: str, type_name: str, **fields: object) -> None:
         """Publishes a message on one of the controller's own command topics."""

@@ -9,9 +9,9 @@ from functools import cache, partial
 from cartwheel.codes import devices
 from cartwheel.component import Component
 from cartwheel.description.model import Axis, Mimic, SoftLimits
+from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.dialects.ros_control.burden import burdens
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces
-from cartwheel.dialects.ros_control.pid import Gains, Pid
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.simulation.handles import JointHandle, MotorHandle
@@ -41,7 +41,7 @@ class JointHardware:
         owner: Component,
         interfaces: JointInterfaces,
         needs: Callable[[], Mapping[str, float]],
-        gains: tuple[str, Gains] | None = None,
+        gains: tuple[str, PidGains] | None = None,
         limits: Settings | None = None,
     ) -> None:
         part, name, origin = owner.part, interfaces.name, interfaces.origin
@@ -290,7 +290,7 @@ class Hardware:
         self,
         owner: Component,
         joints: list[JointInterfaces],
-        gains: Mapping[str, tuple[str, Gains]],
+        gains: Mapping[str, tuple[str, PidGains]],
         limits: Settings | None = None,
     ) -> None:
         self._description = owner.part.description

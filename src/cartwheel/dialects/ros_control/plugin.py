@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices
+from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.controller import Rig
@@ -18,9 +19,9 @@ from cartwheel.dialects.ros_control.files import (
     read_parameters,
     ros1_entries,
 )
+from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces, transmissions
-from cartwheel.dialects.ros_control.pid import Gains
 from cartwheel.dialects.ros_control.services import ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
@@ -164,12 +165,12 @@ class RosControl(ControlPlugin):
             self.graph.parameters.set(name, value)
         return entries
 
-    def _gains(self, joints: list[JointInterfaces]) -> dict[str, tuple[str, Gains]]:
+    def _gains(self, joints: list[JointInterfaces]) -> dict[str, tuple[str, PidGains]]:
         """Returns the PID of each joint whose commands a PID converts to efforts."""
         path = "gazebo_ros_control/pid_gains"
         parameters = self.graph.parameters
         listed = parameters.get(f"/{self.namespace}/{path}") or parameters.get(f"/{path}")
-        gains: dict[str, tuple[str, Gains]] = {}
+        gains: dict[str, tuple[str, PidGains]] = {}
         if not isinstance(listed, Mapping):
             return gains
         for joint in joints:
@@ -177,7 +178,7 @@ class RosControl(ControlPlugin):
             moves = [kind for kind in joint.commands if kind in ("position", "velocity")]
             if isinstance(values, Mapping) and moves:
                 settings = Settings(values, f"{path}/{joint.name}", f"/{self.namespace}")
-                gains[joint.name] = (moves[0], Gains.read(settings))
+                gains[joint.name] = (moves[0], read_gains(settings))
         return gains
 
 

@@ -8,10 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.devices.joints.pid import Pid
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.action import ActionServer
-from cartwheel.dialects.ros_control.pid import Gains, Pid
+from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.graph import Goal
 from cartwheel.messages import header, message_class
@@ -42,7 +43,7 @@ class GripperActionController(Controller):
         self._pid: Pid | None = None
         if interface == "effort":
             section = settings.section(f"gains/{self._joint.name}")
-            self._pid = Pid(Gains.read(section))
+            self._pid = Pid(read_gains(section))
             settings.ignore("gains")
         self._monitor = Periodic(settings.number("action_monitor_rate", 20.0))
         self._target = self._place = 0.0
@@ -79,7 +80,7 @@ class GripperActionController(Controller):
             joint.strength = self._limit if self._limit > 0 else math.inf
         else:
             law = self._pid.position(error, seconds, target=self._target, lightness=joint.lightness)
-            effort = law.effort - law.damping * joint.velocity
+            effort = law.at(joint.velocity)
             if 0 < self._limit < abs(effort):
                 joint.set_effort(math.copysign(self._limit, effort))
             else:

@@ -9,9 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import running
+from cartwheel.devices.joints.pid import Pid
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
-from cartwheel.dialects.ros_control.pid import Gains, Pid
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import header, message_class, zero
 
@@ -66,7 +67,7 @@ class JointPid(Controller):
         self._interface = self.type.partition("_")[0]
         self._follows = "position" if self.type.endswith("JointPositionController") else "velocity"
         self._joint = self.claim(settings.text("joint"), self._interface)
-        self._gains = Gains.read(settings.section("pid"))
+        self._gains = read_gains(settings.section("pid"))
         settings.ignore("pid")
         self._pid = Pid(self._gains)
         self._command = 0.0
@@ -94,7 +95,7 @@ class JointPid(Controller):
             else:
                 error = math.remainder(target - joint.position, 2 * math.pi)
             law = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
-        output = law.effort - law.damping * joint.velocity
+        output = law.at(joint.velocity)
         if self._interface == "effort":
             joint.set_effort(law.effort, damping=law.damping)
         else:
@@ -116,7 +117,7 @@ class JointPid(Controller):
                     i=gains.i,
                     d=gains.d,
                     i_clamp=gains.i_max,
-                    antiwindup=gains.antiwindup,
+                    antiwindup=gains.stored == "limited error",
                 )
             )
 
@@ -165,7 +166,7 @@ class JointGroup(Controller):
         if self.type == "effort_controllers/JointGroupPositionController":
             # ROS 2 files have the gains under the same key as for trajectory controllers.
             form = "gains/{}" if self.rig.ros2 and settings.raw("gains") else "{}/pid"
-            gains = [Gains.read(settings.section(form.format(name))) for name in names]
+            gains = [read_gains(settings.section(form.format(name))) for name in names]
             self._pids = [Pid(each) for each in gains]
             for name in ("gains", *names):
                 settings.ignore(name)

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices, running
+from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.devices.joints.trajectory import State, Trajectory
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
@@ -22,8 +23,8 @@ from cartwheel.dialects.ros_control.controllers.trajectory_reading import (
     TrajectoryReader,
 )
 from cartwheel.dialects.ros_control.controllers.trajectory_tolerances import Tolerances
+from cartwheel.dialects.ros_control.gains import read_gains, read_ros2_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
-from cartwheel.dialects.ros_control.pid import Gains, Pid
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.graph import Goal
 from cartwheel.messages import header, message_class, zero
@@ -165,9 +166,9 @@ class JointTrajectoryController(Controller):
             forward = 0.0
             if self.rig.ros2:
                 forward = section.number("ff_velocity_scale", 0.0)
-                gains = Gains.read_ros2(section)
+                gains = read_ros2_gains(section)
             elif section.has("p"):
-                gains = Gains.read(section)
+                gains = read_gains(section)
             elif self._interface == "effort":
                 raise settings.error(
                     devices.CONTROLLER_GAINS_MISSING,
@@ -175,7 +176,7 @@ class JointTrajectoryController(Controller):
                     values={"parameter": f"gains/{name}/p", "joint": name},
                 )
             else:
-                gains = Gains(p=0.0)
+                gains = PidGains(p=0.0)
             self._forward[index] = settings.number(f"velocity_ff/{name}", forward)
             self._pids.append(Pid(gains))
 
@@ -199,12 +200,12 @@ class JointTrajectoryController(Controller):
                 rate=velocity,
                 lightness=joint.lightness if self._interface == "effort" else 0.0,
             )
-            law = self._pids[index].bounded(law, joint.velocity)
+            law = self._pids[index].limited(law, joint.velocity)
             forward = self._forward[index] * velocity
             if self._interface == "effort":
                 joint.set_effort(law.effort + forward, damping=law.damping)
             else:
-                joint.command = law.effort - law.damping * joint.velocity + forward
+                joint.command = law.at(joint.velocity) + forward
 
     def _hold(self, time_ns: int) -> None:
         """Holds the current position."""

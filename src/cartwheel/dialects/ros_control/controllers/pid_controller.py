@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import running
+from cartwheel.devices.joints.pid import DampedEffort, Pid
 from cartwheel.dialects.ros_control.chaining import Reference
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.gains import read_ros2_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
-from cartwheel.dialects.ros_control.pid import Gains, Law, Pid
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import header, message_class, zero
 from cartwheel.messages.store import TWIN
@@ -61,7 +62,7 @@ class PidController(Controller):
                     damps=interface == "effort" and state is joint and not self._external,
                     forward=section.number("feedforward_gain", 0.0),
                     wraps=section.boolean("angle_wraparound", False),
-                    pid=Pid(Gains.read_ros2(section)),
+                    pid=Pid(read_ros2_gains(section)),
                 )
             )
         self.subscribe("reference", _COMMAND, self._on_reference)
@@ -189,14 +190,14 @@ class _Loop:
         else:
             law, speed = self.pid.velocity(wanted, measured, seconds), measured
         speed = speed if math.isfinite(speed) else 0.0
-        law = self.pid.bounded(law, speed)
+        law = self.pid.limited(law, speed)
         fed = rate if len(self.references) > 1 else wanted
         if ahead and math.isfinite(fed):
-            law = Law(law.effort + self.forward * fed, law.damping)
+            law = DampedEffort(law.effort + self.forward * fed, law.damping)
         if self.damps:
             self.joint.set_effort(law.effort, damping=law.damping)
         else:
-            self.joint.command = law.effort - law.damping * speed
+            self.joint.command = law.at(speed)
 
     def state_message(self, name: str, seconds: float) -> Any:
         """Returns the state as a message."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
+from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.pid import Gains, Pid
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import zero
 
@@ -32,12 +32,12 @@ class UnitreeJointController(Controller):
         self._joint = self.claim(settings.text("joint"), "effort")
         # The original reads these gains only in a tuning build.
         settings.ignore("pid")
-        self._command(Gains(p=0.0, d=_BRAKING))
+        self._command(PidGains(p=0.0, d=_BRAKING))
         self.subscribe("command", "unitree_legged_msgs/msg/MotorCmd", self._on_command)
         self._publisher = self.advertise("state", "unitree_legged_msgs/msg/MotorState")
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
-        self._command(Gains(p=0.0, d=_BRAKING))
+        self._command(PidGains(p=0.0, d=_BRAKING))
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
         joint = self._joint
@@ -55,7 +55,7 @@ class UnitreeJointController(Controller):
             self._publisher.publish(message)
 
     def _command(
-        self, gains: Gains, *, position: float = 0.0, velocity: float = 0.0, torque: float = 0.0
+        self, gains: PidGains, *, position: float = 0.0, velocity: float = 0.0, torque: float = 0.0
     ) -> None:
         self._pid = Pid(gains)
         self._position, self._velocity, self._torque = position, velocity, torque
@@ -65,12 +65,12 @@ class UnitreeJointController(Controller):
         if not all(math.isfinite(each) for each in numbers):
             return
         if message.mode == _BRAKE:
-            self._command(Gains(p=0.0, d=_BRAKING))
+            self._command(PidGains(p=0.0, d=_BRAKING))
         elif message.mode == _SERVO:
             position, velocity, torque, p, d = (float(each) for each in numbers)
             joint = self._joint
             self._command(
-                Gains(p=0.0 if _is(position, _NO_POSITION) else p,
+                PidGains(p=0.0 if _is(position, _NO_POSITION) else p,
                       d=0.0 if _is(velocity, _NO_VELOCITY) else d),
                 position=min(max(position, joint.lower), joint.upper),
                 velocity=min(max(velocity, -joint.velocity_limit), joint.velocity_limit),

@@ -1,7 +1,7 @@
 """Trajectories by topic and by action: followed, ended, missed, called off."""
 
 import pytest
-from tests.plugins.control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 GOAL = "/arm_controller/follow_joint_trajectory/goal"
 KIND = "control_msgs/msg/FollowJointTrajectoryActionGoal"

@@ -5,8 +5,7 @@ import math
 import pytest
 import yaml
 from tests.coded import coded
-from tests.dialects.ros_control.cars import RADIUS, TRACK, car, four_wheels
-from tests.plugins.control.arms import (
+from tests.dialects.ros_control.arms import (
     ARM,
     GRAVITY,
     INERTIA,
@@ -18,6 +17,7 @@ from tests.plugins.control.arms import (
     ros2_plugin,
     ros2_system,
 )
+from tests.dialects.ros_control.cars import RADIUS, TRACK, car, four_wheels
 
 from cartwheel.codes import running
 from cartwheel.messages import from_dict

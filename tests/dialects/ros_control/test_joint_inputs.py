@@ -1,7 +1,7 @@
 """Positions by hand: whatever controller has the joint, it goes there."""
 
 import pytest
-from tests.plugins.control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 GOAL = 0.4
 PID = {"p": 800.0, "d": 80.0}

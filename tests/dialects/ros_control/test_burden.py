@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tests.plugins.control.arms import ARM, GRAVITY, MASS, ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ARM, GRAVITY, MASS, ROS1, beam, robot, transmission
 
 from cartwheel.codes import devices
 from cartwheel.description import load_text

@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from tests.plugins.control.arms import (
+from tests.dialects.ros_control.arms import (
     ROS1,
     robot,
     ros2_joint,
@@ -10,7 +10,7 @@ from tests.plugins.control.arms import (
     ros2_plugin,
     transmission,
 )
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.graph import GoalState
 from cartwheel.messages import from_dict

@@ -2,8 +2,8 @@
 
 import pytest
 import yaml
-from tests.plugins.control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_parameters, ros2_plugin
+from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.codes import devices, running
 from cartwheel.messages import from_dict

@@ -4,7 +4,7 @@ import math
 
 import pytest
 import yaml
-from tests.plugins.control.arms import (
+from tests.dialects.ros_control.arms import (
     ARM,
     GRAVITY,
     MASS,
@@ -14,7 +14,7 @@ from tests.plugins.control.arms import (
     ros2_parameters,
     ros2_plugin,
 )
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import ros2_system as system
 
 RATE = 2.0
 """rad/s."""

@@ -1,8 +1,8 @@
 """Which files are offered to a robot whose controllers nobody starts."""
 
 import pytest
-from tests.plugins.control.arms import ROS1, beam, robot, ros2_joint, ros2_plugin, transmission
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import ROS1, beam, robot, ros2_joint, ros2_plugin, transmission
+from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.suggestion import suggested

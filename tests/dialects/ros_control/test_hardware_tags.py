@@ -3,7 +3,7 @@
 import pytest
 import yaml
 from tests.coded import coded
-from tests.plugins.control.arms import (
+from tests.dialects.ros_control.arms import (
     ROS1,
     beam,
     robot,
@@ -12,7 +12,7 @@ from tests.plugins.control.arms import (
     ros2_plugin,
     transmission,
 )
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.codes import devices, running
 from cartwheel.messages import from_dict

@@ -1,7 +1,7 @@
 """Soft limits of a <safety_controller>, and limits that are ROS 1's parameters."""
 
 import pytest
-from tests.plugins.control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 from cartwheel.errors import PluginError
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from tests.plugins.control.arms import ROS1, beam, robot, ros2_joint, ros2_plugin, transmission
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import ROS1, beam, robot, ros2_joint, ros2_plugin, transmission
+from tests.dialects.ros_control.arms import ros2_system as system
 
 import cartwheel as cw
 from cartwheel.codes import devices

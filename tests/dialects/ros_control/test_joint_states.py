@@ -5,7 +5,7 @@ import math
 import pytest
 import yaml
 from tests.coded import coded
-from tests.plugins.control.arms import (
+from tests.dialects.ros_control.arms import (
     beam,
     robot,
     ros2_joint,

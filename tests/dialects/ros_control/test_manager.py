@@ -2,7 +2,7 @@
 
 import pytest
 from tests.coded import coded
-from tests.plugins.control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
 
 from cartwheel.codes import devices, running
 

@@ -4,7 +4,16 @@ import math
 
 import pytest
 from tests.coded import coded
-from tests.plugins.control.arms import ARM, GRAVITY, INERTIA, MASS, ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import (
+    ARM,
+    GRAVITY,
+    INERTIA,
+    MASS,
+    ROS1,
+    beam,
+    robot,
+    transmission,
+)
 
 from cartwheel.codes import devices, running
 

@@ -3,7 +3,16 @@
 import math
 
 import pytest
-from tests.plugins.control.arms import ARM, GRAVITY, INERTIA, MASS, ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import (
+    ARM,
+    GRAVITY,
+    INERTIA,
+    MASS,
+    ROS1,
+    beam,
+    robot,
+    transmission,
+)
 
 WEIGHT = MASS * GRAVITY * ARM
 TURNED = INERTIA + MASS * ARM**2

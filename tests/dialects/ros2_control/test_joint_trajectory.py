@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from tests.plugins.control.arms import (
+from tests.dialects.ros_control.arms import (
     ARM,
     GRAVITY,
     MASS,
@@ -12,7 +12,7 @@ from tests.plugins.control.arms import (
     ros2_parameters,
     ros2_plugin,
 )
-from tests.plugins.control.arms import ros2_system as system
+from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.graph import GoalState
 from cartwheel.messages import from_dict

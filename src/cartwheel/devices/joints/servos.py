@@ -1,0 +1,120 @@
+"""Servos of single joints: they hold the last commanded position or velocity, or apply a force."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from cartwheel.component import Component, Scope
+from cartwheel.devices.joints.pid import Pid, PidGains
+from cartwheel.devices.periodic import Elapsed
+from cartwheel.messages import message_class
+
+_FLOAT = "std_msgs/msg/Float64"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointServosConfig:
+    joints: tuple[str, ...]
+    """Names of the joints, which have the same target."""
+    topic: str
+    """Topic of the target (Float64)."""
+    quantity: Literal["position", "velocity"]
+    """Quantity of the target: a position in rad or m, or a velocity in rad/s or m/s."""
+    initial: float = 0.0
+    """Target until the first command."""
+    gains: PidGains | None = None
+    """Gains of a PID controller for each joint. The derivative gain damps a joint with a target
+    position, and has no effect with a target velocity. None: the joints reach the target regardless
+    of their loads."""
+    max_velocity: float = math.inf
+    """Maximum velocity of joints that move to a position without gains, rad/s or m/s."""
+
+
+class JointServos(Component):
+    """Holds joints at the last commanded position or velocity, from the next step on.
+
+    Positions can also be commanded manually.
+
+    Raises:
+        UnknownNameError: A joint does not exist.
+    """
+
+    def __init__(self, scope: Scope, config: JointServosConfig) -> None:
+        super().__init__(scope)
+        part, origin = self.part, self.origin
+        self._config = config
+        self._joints = [
+            (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
+            for name in config.joints
+        ]
+        self.subscribe(config.topic, _FLOAT, self._on_command)
+        self.reset()
+        moves = config.quantity == "position"
+        part.schedule(0, before=self._move if moves else self._turn)
+        if moves:
+            # Joints with the same target share one input.
+            self.take_positions(config.joints[:1], self._publish_command)
+
+    def reset(self) -> None:
+        gains = self._config.gains
+        self._target = self._config.initial
+        self._pids = [Pid(gains) for _ in self._joints] if gains is not None else []
+        self._elapsed = Elapsed()
+
+    def _on_command(self, message: Any) -> None:
+        self._target = float(message.data)
+
+    def _publish_command(self, wanted: Mapping[str, float], seconds: float) -> None:  # noqa: ARG002
+        (value,) = wanted.values()
+        message = message_class(_FLOAT)(data=float(value))
+        self.graph.publish(self.resolve(self._config.topic), _FLOAT, message)
+
+    def _move(self) -> None:
+        config, target = self._config, self._target
+        if config.gains is None:
+            for _, servo in self._joints:
+                servo.command_position(target, max_velocity=config.max_velocity)
+            return
+        seconds = self._elapsed.seconds(self.part.time_ns)
+        for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
+            effort = pid.effort(target - joint.position, seconds)
+            servo.command_effort(effort, damping=config.gains.d)
+
+    def _turn(self) -> None:
+        if self._config.gains is None:
+            for _, servo in self._joints:
+                servo.command_velocity(self._target)
+            return
+        seconds = self._elapsed.seconds(self.part.time_ns)
+        for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
+            servo.command_effort(pid.effort(self._target - joint.velocity, seconds))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointForceConfig:
+    joint: str
+    """Name of the joint."""
+    topic: str
+    """Topic of the force in N or the torque in N m (Float64)."""
+
+
+class JointForce(Component):
+    """Applies the last commanded force or torque to a joint.
+
+    Raises:
+        UnknownNameError: The joint does not exist.
+    """
+
+    def __init__(self, scope: Scope, config: JointForceConfig) -> None:
+        super().__init__(scope)
+        self._servo = self.part.servo(config.joint, max_effort=None, origin=self.origin)
+        self.subscribe(config.topic, _FLOAT, self._on_command)
+
+    def reset(self) -> None:
+        self._servo.release()
+
+    def _on_command(self, message: Any) -> None:
+        self._servo.command_effort(float(message.data))
