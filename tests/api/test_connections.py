@@ -20,7 +20,7 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.bridges.recording.opening import open_recording
-from cartwheel.codes.command import OPTIONS_CONFLICT, SIMULATION_SILENT
+from cartwheel.codes.command import CONTROL_LIMIT, OPTIONS_CONFLICT, SIMULATION_SILENT
 from cartwheel.codes.recording import RECORDING_BROKE_OFF
 from cartwheel.codes.wires import ADDRESS_UNAVAILABLE, ROS_NODE_NAME_INVALID
 from cartwheel.control import ControlClient, operations, running
@@ -107,6 +107,23 @@ def test_a_command_between_two_runs_fails_in_time(monkeypatch: pytest.MonkeyPatc
         world.run(0.1)
         # The caller was told that it failed, so it must not happen later.
         assert "rosbots" in world.models
+
+
+def test_messages_that_wait_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(operations, "_MOST_WAITING", 3)
+    with cw.World("empty") as world, client_of(world) as client:
+        world.spawn("rosbots.xacro")
+        arrived: list[Any] = []
+        world.subscribe(CMD, arrived.append)
+        message = {"linear": {"x": 0.5}}
+        for _ in range(2):
+            for _ in range(3):
+                client.request("publish", topic=CMD, type=TWIST, message=message)
+            with raises(CONTROL_LIMIT, most=3) as caught:
+                client.request("publish", topic=CMD, type=TWIST, message=message)
+            assert "World.run" in (caught.value.hint or "")
+            world.run(0.1)
+        assert len(arrived) == 6
 
 
 def test_a_client_can_pause_a_run(on_thread: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ the physics are passed to the simulation's thread.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
@@ -13,7 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cartwheel.codes.command import CONTROL_REQUEST_INVALID, NO_PAGE, SIMULATION_SILENT
+from cartwheel.codes.command import (
+    CONTROL_LIMIT,
+    CONTROL_REQUEST_INVALID,
+    NO_PAGE,
+    SIMULATION_SILENT,
+)
 from cartwheel.control.faults import packed
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.place import AXES, placed
@@ -24,6 +30,9 @@ from cartwheel.graph import TopicInfo, resolve_name
 from cartwheel.interfaces import RunningSession
 from cartwheel.messages import decode_cdr, from_dict, service_classes, to_dict, type_name
 from cartwheel.simulation import RunState
+
+_MOST_WAITING = 1000
+"""Maximum number of messages that wait for the simulation."""
 
 T = TypeVar("T")
 Answer = dict[str, Any]
@@ -57,6 +66,9 @@ class Operations:
         self._graph = session.graph
         self._load = load
         self._page: Future[PageOffer | None] = Future()
+        self._counting = threading.Lock()
+        self._waiting = 0
+        """Messages that the simulation has not delivered yet."""
         self._by_name: dict[str, Callable[[Parameters, bytes], Answer]] = {
             "status": self.status,
             "pause": self.pause,
@@ -217,8 +229,26 @@ class Operations:
             # Without subscribers, skip the message, so that topic names do not accumulate in the
             # graph.
             return {"subscribers": 0, "topics": list(known)}
-        self._graph.publish(name, wanted, message)
+        self._publish(name, wanted, message)
         return {"subscribers": len(topic.subscribers), "topics": []}
+
+    def _publish(self, name: str, type_name: str, message: Any) -> None:
+        """Publishes a message, unless too many others wait for the simulation."""
+        with self._counting:
+            if self._waiting >= _MOST_WAITING:
+                raise ControlError(
+                    f"{_MOST_WAITING} messages wait for the simulation, so this one is rejected",
+                    code=CONTROL_LIMIT,
+                    hint=self._hint,
+                    values={"most": _MOST_WAITING},
+                )
+            self._waiting += 1
+        self._graph.publish(name, type_name, message)
+        self._graph.post(self._published)
+
+    def _published(self) -> None:
+        with self._counting:
+            self._waiting -= 1
 
     def services(self, _: Parameters, __: bytes) -> Answer:
         return {
@@ -259,14 +289,17 @@ class Operations:
         except TimeoutError as error:
             if cancel:
                 future.cancel()
-            hint = ""
-            if self._simulation.run_state is RunState.WAITING:
-                hint = "The simulation's program must call World.run or World.spin."
             raise ControlError(
                 f"the simulation did not respond within {PATIENCE:.0f} s",
                 code=SIMULATION_SILENT,
-                hint=hint,
+                hint=self._hint,
             ) from error
+
+    @property
+    def _hint(self) -> str:
+        if self._simulation.run_state is RunState.WAITING:
+            return "The simulation's program must call World.run or World.spin."
+        return ""
 
     def _then_time(self, function: Callable[[], None]) -> Answer:
         def run() -> Answer:
