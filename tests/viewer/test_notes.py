@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
+from tests.coded import coded
 
 from cartwheel.codes.recording import SCAN_NOT_SHOWN, UPLOAD_REFUSED
 from cartwheel.errors import UNCLASSIFIED, Diagnostic
@@ -21,20 +22,25 @@ def notes():
 
 def test_a_note_has_the_code_the_message_and_the_hint(notes):
     shown, page = notes
-    page.show(UPLOAD_REFUSED.diagnostic("it is empty", hint="Choose another file."))
+    refused = UPLOAD_REFUSED.diagnostic("it is empty", hint="Choose another file.")
+    page.show(refused)
     page.show(Diagnostic(severity="error", message="m", code=UNCLASSIFIED))
     (title, body, how), (plain, *_) = shown
     assert (title, plain) == ("Error CW921", "Error")
-    assert body == "it is empty\nChoose another file."
+    assert body == f"{refused.message}\n{refused.hint}"
     assert how["color"] == "red"
 
 
 def test_data_of_an_unknown_frame_is_reported_once(notes):
     shown, page = notes
+    reported = []
+    show = page.show
+    page.show = lambda diagnostic: (reported.append(diagnostic), show(diagnostic))
     scans = SimpleNamespace(page=page, _told=set())
     for _ in range(3):
         Scans._tell(scans, "/scan", "lasr", "robot")
     ((title, body, how),) = shown
     assert title == f"Warning {SCAN_NOT_SHOWN.number}"
-    assert "/scan" in body and '"lasr"' in body
+    assert coded(reported, SCAN_NOT_SHOWN, topic="/scan", frame="lasr", model="robot")
+    assert body == reported[0].message
     assert how["color"] is None

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from cartwheel.codes.wires import PAGE_REFUSED
 from cartwheel.control.registry import running as registered
 
 from .browsing import Browser, browsing
@@ -56,6 +57,15 @@ def test_a_foreign_page_cannot_upload_a_file(simulation: Running) -> None:
     for options in ({"origin": f"http://127.0.0.1:{port}"}, {}):
         with browsing(port, **options) as browser:
             upload(browser)
+    simulation.process.terminate()
+    out, _ = simulation.process.communicate(timeout=60)
+    assert out.count(f"[{PAGE_REFUSED}]") == 3
+
+
+@pytest.mark.wording
+def test_a_foreign_page_is_named_with_the_option_that_allows_it(simulation: Running) -> None:
+    with pytest.raises(InvalidStatus), browsing(simulation.port, origin="http://evil.example"):
+        pass
     simulation.process.terminate()
     out, _ = simulation.process.communicate(timeout=60)
     assert "the viewer rejected a web page from the origin http://evil.example" in out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import socket
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from cartwheel.codes import files
+from cartwheel.codes.recording import UPLOAD_REFUSED
 from cartwheel.viewer import uploads
 
 from .browsing import CAMERA, browsing
@@ -136,6 +138,12 @@ def note(text: str):
     return lambda m: "Notification" in m["type"] and text in str(m)
 
 
+def nth(wanted, count: int):
+    """The message of a kind with this number, from 1 on."""
+    numbers = itertools.count(1)
+    return lambda m: wanted(m) and next(numbers) == count
+
+
 def ended(transfer: str):
     """Nothing more of an upload is expected."""
     kind = "FileTransferPartAck"
@@ -195,28 +203,42 @@ def test_browsers_that_die_amid_an_upload_leave_room_for_others(simulation):
     assert out.count("Traceback") == 0
 
 
+REASONS = ("20 MB", "does not match", "wrong size", "already uploading")
+
+
+@pytest.mark.wording
+def test_why_uploads_are_refused_is_said(simulation):
+    use_up(simulation, [note(each) for each in REASONS])
+
+
 def test_uploads_are_bounded_while_they_arrive(simulation):
+    use_up(simulation, [nth(note(UPLOAD_REFUSED.number), count) for count in range(1, 5)])
+
+
+def use_up(simulation, refusals):
+    """Uploads whatever is refused; the notes of the first ones are `refusals`."""
+    large, false, longer, second = refusals
     with browsing(simulation.port) as browser:
         browser.look()
         upload = browser.control("Open a file")
         whole = bytes(uploads.PART_BYTES)
         browser.send(start(upload, "large", uploads.MOST_BYTES + 1))
-        browser.hear(note("20 MB"))
+        browser.hear(large)
         # Its button waits for the end, and the note of its progress for being taken away.
         browser.hear(ended("large"))
         browser.hear(hidden("large"))
         for index in range(200):
             browser.send(part(upload, "large", index, whole))
         browser.send(start(upload, "lies", 10, parts=1000))
-        browser.hear(note("does not match"))
+        browser.hear(false)
         # It announces little and sends much.
         browser.send(start(upload, "more", 10))
         browser.send(part(upload, "more", 0, whole))
-        browser.hear(note("wrong size"))
+        browser.hear(longer)
         browser.hear(ended("more"))
         browser.send(start(upload, "first", 2 * len(whole)))
         browser.send(start(upload, "second", 2 * len(whole)))
-        browser.hear(note("already uploading"))
+        browser.hear(second)
         browser.send(part(upload, "first", 0, whole))
         browser.send(part(upload, "first", 0, whole))
         browser.send(start(upload, "ball", len(BALL)))

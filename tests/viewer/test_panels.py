@@ -3,6 +3,7 @@
 import asyncio
 import math
 import queue
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from types import SimpleNamespace
 from unittest.mock import MagicMock
@@ -58,7 +59,10 @@ def test_the_value_of_a_control_is_that_of_the_moment_it_was_used():
     page._jobs = queue.SimpleQueue()
     slider = SimpleNamespace(value=3.0, _impl=SimpleNamespace(removed=False))
     used = page.on_value(lambda _, value: seen.append(value))
-    asyncio.run(used(SimpleNamespace(target=slider, client_id=1)))
+    # Not on this thread, on which the browser of other tests runs a loop of its own.
+    with ThreadPoolExecutor(1) as pool:
+        event = SimpleNamespace(target=slider, client_id=1)
+        pool.submit(asyncio.run, used(event)).result(timeout=60)
     slider.value = 0.0  # A panel that follows the simulation sets it back.
     function, _ = page._jobs.get_nowait()
     function()
