@@ -10,7 +10,7 @@ images = world.mailbox("/rosbots/camera1/image_raw", size=1)
 world.run(seconds=1)
 
 image = images.get(timeout=0)
-assert image is not None, "no image: cameras need OpenGL, see world.diagnostics"
+assert image is not None, "no image: cameras require OpenGL, see world.diagnostics"
 pixels = image.data.reshape(image.height, image.width, 3)
 Image.fromarray(pixels).save("camera.png")
 

@@ -93,7 +93,7 @@ def test_a_wheel_of_half_the_stated_diameter_drives_half_as_fast(tried):
 @pytest.mark.wording
 def test_how_much_too_slowly_a_robot_drives_is_said(tried):
     (reason,) = tried(cart(0.2)).reasons
-    assert "50% too slowly" in reason
+    assert "50% slower than commanded" in reason
 
 
 def test_what_is_top_heavy_tips(tried):

@@ -92,7 +92,7 @@ def test_numbers(text):
         ("", "robot.urdf:12: mass is empty, but must be a number"),
         (
             "0,5",
-            'robot.urdf:12: mass "0,5" is not a number\n  Write decimals with a point: "0.5".',
+            'robot.urdf:12: mass "0,5" is not a number\n  Use a decimal point: "0.5".',
         ),
         ("١", 'robot.urdf:12: mass "١" is not a number'),
     ],

@@ -151,7 +151,7 @@ class Recording:
                 self._summary = self._process.call("close", self._process.written, timeout=None)
             except ControlError:
                 self._failure = RecordingError(
-                    f'the recording "{self.path}" stopped because its process was ended',
+                    f'the recording "{self.path}" stopped because its process exited',
                     code=RECORDING_BROKE_OFF,
                     hint="Earlier messages can be read. Inspect the file with cartwheel info.",
                     values={"path": str(self.path)},

@@ -79,7 +79,7 @@ AllowPath = Annotated[
     typer.Option(
         "--allow-path",
         metavar="FOLDER",
-        help="Let services read files in this folder, in addition to packages and models."
+        help="Allow services to read files in this folder, in addition to packages and models."
         " Can be repeated.",
         rich_help_panel=help.LOOKUP,
     ),
@@ -171,7 +171,7 @@ def split(words: Sequence[str] | None) -> tuple[str | None, dict[str, str]]:
             raise CartwheelError(
                 f'only one file is allowed (got "{file}" and "{word}")',
                 code=USAGE,
-                hint=f"Write a xacro argument as {word.partition('=')[0]}:=value.",
+                hint=f"Pass a xacro argument as {word.partition('=')[0]}:=value.",
                 values={"argument": word},
             )
     return file, values

@@ -63,7 +63,9 @@ MODEL_NOT_BUILT = Code("CW619", "model-not-built", "error", "the physics engine 
 PHYSICS_SETTING_IGNORED = Code(
     "CW620", "physics-setting-ignored", "info", "a physical property is not simulated"
 )
-OPENGL_MISSING = Code("CW621", "opengl-missing", "warning", "cameras need OpenGL, which is missing")
+OPENGL_MISSING = Code(
+    "CW621", "opengl-missing", "warning", "cameras require OpenGL, which is not available"
+)
 OPENGL_FORKED = Code(
     "CW622",
     "opengl-forked",

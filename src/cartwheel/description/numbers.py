@@ -91,7 +91,7 @@ def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...
             f"{_quoted(text.strip())} is not a list of numbers",
             text,
             origin,
-            "Separate numbers with spaces, and write decimals with a point.",
+            "Separate numbers with spaces, and use a decimal point.",
         )
     parts = text.split()
     values = tuple(number(part, label, origin) for part in parts)
@@ -151,7 +151,7 @@ def boolean(text: str, label: str, origin: Origin) -> bool:
         f"{_quoted(text.strip())} is neither true nor false",
         text,
         origin,
-        "Write true, false, 1 or 0.",
+        "Valid values: true, false, 1, 0.",
     )
 
 
@@ -176,5 +176,5 @@ def _number_hint(value: str) -> str | None:
             'xmlns:xacro="http://www.ros.org/wiki/xacro".'
         )
     if _NUMBER.match(value.replace(",", ".", 1)):
-        return f'Write decimals with a point: "{value.replace(",", ".", 1)}".'
+        return f'Use a decimal point: "{value.replace(",", ".", 1)}".'
     return None

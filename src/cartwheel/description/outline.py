@@ -101,9 +101,7 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
     # trapezoids.
     slanting = _slanting(edges)
     if len(edges) > MOST_EDGES:
-        raise OutlineError(
-            f"the outlines have {len(edges)} points, but at most {MOST_EDGES} are supported"
-        )
+        raise OutlineError(f"the <polyline> has {len(edges)} points; the limit is {MOST_EDGES}")
     levels = _levels(edges)
     open_pieces: dict[tuple[Edge, Edge], tuple[float, float]] = {}
     done: list[Loop] = []
@@ -121,7 +119,7 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
             # Between the same two edges, the trapezoid of the lower strip is extended.
             open_pieces[pair] = (open_pieces.get(pair, (low, high))[0], high)
         if len(done) > MOST_PIECES:
-            raise OutlineError(f"the outlines have more than {MOST_PIECES} convex pieces")
+            raise OutlineError(f"the <polyline> consists of more than {MOST_PIECES} convex pieces")
     done += [_trapezoid(pair, *span) for pair, span in open_pieces.items()]
     return [piece for piece in done if len(piece) >= 3]
 
@@ -144,7 +142,7 @@ def _levels(edges: Sequence[Edge]) -> list[float]:
         within = (t > _SAME) & (t < 1 - _SAME) & (u > _SAME) & (u < 1 - _SAME)
         count += int(within.sum())
         if count > 2 * MOST_CROSSINGS:  # each crossing is found from both edges
-            raise OutlineError(f"the outlines cross more than {MOST_CROSSINGS} times")
+            raise OutlineError(f"the <polyline> crosses itself more than {MOST_CROSSINGS} times")
         (_, y0), (_, y1) = slanting[i]
         found.update((y0 + t[within] * (y1 - y0)).tolist())
     return sorted(found)

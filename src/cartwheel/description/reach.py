@@ -10,7 +10,7 @@ from pathlib import Path
 
 ALLOW = "Allow its folder: start the simulation with --allow-path FOLDER."
 NAME_IT = (
-    "A description may read files in its workspace and in packages, and files in arguments on the "
+    "A description may read files in its workspace and in packages, and files passed on the "
     "command line."
 )
 

@@ -146,7 +146,7 @@ def _shape(asked: Any) -> tuple[Floats, float]:
         raise Refusal(UNSUPPORTED, f"bounds of type {asked.type} are not supported")
     given = [vector(point, f"points[{index}]") for index, point in enumerate(asked.points)]
     if len(given) < 3 if asked.type == CONVEX_HULL else len(given) != 2:
-        raise Refusal(FAILED, f"bounds of type {asked.type} need {needed[asked.type]}")
+        raise Refusal(FAILED, f"bounds of type {asked.type} require {needed[asked.type]}")
     points = np.array(given)
     if asked.type == SPHERE:
         radius = float(points[1, 0])

@@ -199,7 +199,7 @@ def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
     raise GraphError(
         f"{_where(path)} {_shown(given)} is not a valid {type_name}",
         code=FIELD_VALUE_INVALID,
-        hint=f"Write it as {{{', '.join(f'{name}: …' for name in names)}}}.",
+        hint=f"Use the form {{{', '.join(f'{name}: …' for name in names)}}}.",
         values={"type": type_name, "field": path.rstrip("."), "value": _shown(given)},
     )
 
@@ -215,7 +215,7 @@ def _value(field: Field, value: Any, path: str) -> Any:
         raise GraphError(
             f"{path}: expected a list for {field.described}, got {_shown(value)}",
             code=FIELD_VALUE_INVALID,
-            hint="Write it as [a, b, …].",
+            hint="Use the form [a, b, …].",
             values={"field": path.rstrip("."), "value": _shown(value)},
         )
     if field.length is not None and len(value) != field.length:

@@ -218,7 +218,7 @@ def _unsupported() -> SimulationError:
         f"MuJoCo {mujoco.__version__} computes contacts in a way that this version of "
         "Cartwheel does not support, so anisotropic friction (mu1 ≠ mu2) is not available",
         code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
-        hint="Install an older MuJoCo, or give mu1 and mu2 the same value.",
+        hint="Install an older MuJoCo, or set mu1 and mu2 to the same value.",
     )
 
 
@@ -235,7 +235,7 @@ def _library() -> Path:
             f"MuJoCo's library is not in {folder}, so anisotropic friction (mu1 ≠ mu2) is not "
             "available",
             code=world_codes.FRICTION_DIRECTION_UNSUPPORTED,
-            hint="Install MuJoCo again.",
+            hint="Reinstall MuJoCo.",
         )
     return found[0]
 

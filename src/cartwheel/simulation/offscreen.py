@@ -131,7 +131,7 @@ def _open(width: int, height: int) -> Any:
         else:
             return context
     raise NoOpenGLError(
-        f"cameras need OpenGL, which this machine lacks ({'; '.join(reasons)})",
+        f"cameras require OpenGL, which is not available on this computer ({'; '.join(reasons)})",
         hint=f"On Debian or Ubuntu: sudo apt-get install {' '.join(_PACKAGES)}. Only camera images "
         "require OpenGL.",
         values={"packages": _PACKAGES},

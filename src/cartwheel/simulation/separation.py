@@ -101,7 +101,7 @@ def overlap(
     floor = max((d for other, d in overlaps if other.startswith("ground")), default=0.0)
     height = math.ceil((z + floor) * 100) / 100
     return world_codes.MODELS_OVERLAP.diagnostic(
-        f'model "{name}" overlaps {others}, so they are pushed apart',
+        f'model "{name}" overlaps {others}, so the models are pushed apart',
         origin=origin,
         hint=f"Set z to {height:g} to place the model on the ground." if floor else "",
         values={

@@ -62,7 +62,7 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
             why = f"a {joint.type} joint that closes a loop constrains only one point"
             note("the axis of a joint", joint.origin, why)
         elif joint.type != "fixed" and joint.resists:
-            why = "a joint that closes a loop turns freely"
+            why = "not simulated for joints that close a loop"
             note("a joint's limits, damping, friction or spring", joint.origin, why)
     heeded = _controlled(description)
     for joint in description.joints:

@@ -120,5 +120,5 @@ def test_opengl_that_is_named_and_missing_is_told_and_no_more(tmp_path):
     )
     counts, *told = done.stdout.splitlines()
     assert counts.split() == ["0", "True", "1"], done.stderr
-    assert "cameras need OpenGL" in told[0]
+    assert "cameras require OpenGL" in told[0]
     assert "no OpenGL here" in told[0]

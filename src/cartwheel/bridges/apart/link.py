@@ -192,7 +192,7 @@ class Link:
         if self._reported == 0:
             self._on_fault(
                 ControlError(
-                    "the bridge reads too slowly, so goal feedback is dropped",
+                    "the bridge is too slow, so goal feedback is dropped",
                     code=BRIDGE_SLOW,
                     values={"dropped": "feedback"},
                 )
@@ -209,7 +209,7 @@ class Link:
             count, self._reported = self.dropped - self._reported, self.dropped
         self._on_fault(
             ControlError(
-                f"the bridge reads again; {count} feedback messages were dropped",
+                f"the bridge has caught up; {count} feedback messages were dropped",
                 code=BRIDGE_RECOVERED,
                 values={"dropped": count},
             )

@@ -421,7 +421,7 @@ class FoxgloveBridge:
         known = self._gate.peer(int(port)) if self._gate is not None and port.isdigit() else None
         self._warn(
             SLOW_SUBSCRIBER.diagnostic(
-                f"client {known or client} reads too slowly, so messages to it are dropped",
+                f"client {known or client} is too slow, so messages to this client are dropped",
                 values={"peer": known or client},
             )
         )
@@ -462,7 +462,7 @@ def require() -> None:
         import foxglove  # noqa: F401
     except ImportError as error:
         raise CartwheelError(
-            f"--foxglove needs the package foxglove-sdk: {error}",
+            f"--foxglove requires the package foxglove-sdk: {error}",
             code=PACKAGE_MISSING,
             hint='pip install "cartwheel[foxglove]"',
             values={"package": "foxglove-sdk", "extra": "foxglove"},

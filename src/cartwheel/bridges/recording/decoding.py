@@ -38,7 +38,8 @@ def decoder(topic: RecordedTopic) -> Decode:
     """
     if topic.encoding not in ("cdr", "ros1"):
         raise RecordingError(
-            f"{topic.name} contains {topic.encoding or 'bytes'}, not ROS messages",
+            f"the messages on {topic.name} are not ROS messages (encoding: "
+            f"{topic.encoding or 'unknown'})",
             code=RECORDED_TYPE_UNUSABLE,
             values={"topic": topic.name, "encoding": topic.encoding, "why": "encoding"},
         )

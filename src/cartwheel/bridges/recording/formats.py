@@ -53,7 +53,7 @@ def encoding_for(path: Path, wanted: Encoding | None) -> Encoding:
     if (form == "bag") != (wanted == "ros1") and form != "mcap":
         other = "ROS 2" if form == "bag" else "ROS 1"
         raise RecordingError(
-            f'"{path.name}" cannot contain {other} messages',
+            f'"{path.name}" does not support {other} messages',
             code=ENCODING_UNFIT,
             hint="Use .mcap, which supports both.",
             values={"name": path.name, "encoding": wanted},
@@ -69,7 +69,7 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
     """
     if not path.name:
         raise RecordingError(
-            "a recording needs a name",
+            "the name of the recording is empty",
             code=RECORDING_NAME_INVALID,
             hint="Pass a file name such as drive.mcap.",
             values={"name": ""},

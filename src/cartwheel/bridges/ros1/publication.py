@@ -92,8 +92,8 @@ class Publication:
         link.on_close = lambda: self._leave(link)
         link.on_drop = lambda: self._tell(
             SLOW_SUBSCRIBER.diagnostic(
-                f"{link.peer or 'a node'} reads {self.topic} too slowly, so messages to it are "
-                "dropped",
+                f"{link.peer or 'a node'} receives {self.topic} too slowly, so messages to this "
+                "node are dropped",
                 values={"peer": link.peer, "topic": self.topic},
             )
         )

@@ -150,7 +150,7 @@ class Dds:
         writer.on_readers = lambda: on_readers(bool(writer.proxies))
         writer.on_drop = lambda: self._tell(
             SLOW_SUBSCRIBER.diagnostic(
-                f"a node reads {topic} too slowly, so messages to it are dropped",
+                f"a node receives {topic} too slowly, so messages to this node are dropped",
                 values={"topic": topic},
             )
         )
@@ -162,7 +162,8 @@ class Dds:
         )
         writer.on_silence = lambda: self._tell(
             UNRESPONSIVE_SUBSCRIBER.diagnostic(
-                f"a subscriber of {topic} no longer responds, so messages to it are dropped",
+                f"a subscriber of {topic} no longer responds, so messages to this subscriber are "
+                "dropped",
                 values={"topic": topic},
             )
         )

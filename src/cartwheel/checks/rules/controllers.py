@@ -43,7 +43,7 @@ _OF_OTHER_ROS = {
 }
 """Controller types of the other ROS version and their equivalents, by whether the file is ROS 2."""
 _GAINS = "{p: 100.0, i: 0.0, d: 1.0}"
-_TUNED = "Tune the gains: p in N m per rad, d in N m s per rad."
+_TUNED = "Tune the gains: p in N m/rad, d in N m s/rad."
 
 
 @rule(devices_codes.CONTROLLERS_FILE_UNREADABLE)
@@ -175,13 +175,13 @@ def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
         yield devices_codes.CONTROLLER_GAINS_MISSING.diagnostic(
             severity="warning" if ros2 else _severity(controller.file),
             message=f'controller "{controller.name}" has no gains{of} ({under} is missing), so '
-            + ("nothing moves" if ros2 else "it does not start"),
+            + ("its joints do not move" if ros2 else "it does not start"),
             values={"controller": controller.name, "joints": tuple(names), "missing": under},
             origin=controller.type.origin if whole else missing[0][1].origin,
             instead=text if whole else f"{under.rpartition('/')[2]}: 100.0",
             place="after" if whole and _has_own_line(controller.type) else "",
             mark="" if whole else missing[0][1].text,
-            hint=_TUNED if whole else f"Add it under {under.rpartition('/')[0]}. {_TUNED}",
+            hint=_TUNED if whole else f"Add the gains to {under.rpartition('/')[0]}. {_TUNED}",
         )
 
 
@@ -234,7 +234,7 @@ def _unanswered(
         if joint not in held:
             yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
                 severity=_severity(claim.controller.file),
-                message=f"{who}, which no {where} contains, so the controller does not start",
+                message=f"{who}, which no {where} lists, so the controller does not start",
                 values={
                     "controller": claim.controller.name,
                     "joint": joint,
@@ -249,7 +249,9 @@ def _unanswered(
         element = held[joint][0][1]
         if claim.interface not in ("position", "velocity", "effort"):
             continue
-        old = f"offers {', '.join(dict.fromkeys(offered))}" if offered else "offers no commands"
+        old = (
+            f"offers {', '.join(dict.fromkeys(offered))}" if offered else "has no command interface"
+        )
         written = element.tag == "hardwareInterface"
         text = f"<hardwareInterface>{_interface(claim)}</hardwareInterface>"
         yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(

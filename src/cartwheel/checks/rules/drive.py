@@ -152,7 +152,7 @@ def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagn
     stated = "" if node is not None or written is None else " (the default)"
     text = f'xyz="{xyz}"'
     return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
-        message=f'the wheel of joint "{joint.name}" cannot roll forward because its axis '
+        message=f'the wheel of joint "{joint.name}" cannot roll forward because the axis '
         f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} is not '
         "parallel to the axle",
         values={"joint": joint.name, "axis": joint.axis.xyz, "attribute": "askew"},
@@ -183,8 +183,8 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 )
             alone = node is not None and bool(text) and len(link.collisions) == 1
             yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
-                message=f'the collision of the driven wheel "{link.name}" is not round: '
-                f"perpendicular to its axis, its width varies from {widths.min():.3g} m to "
+                message=f'the collision of the driven wheel "{link.name}" is not round: its width '
+                f"perpendicular to the joint axis varies from {widths.min():.3g} m to "
                 f"{widths.max():.3g} m",
                 values={
                     "link": link.name,

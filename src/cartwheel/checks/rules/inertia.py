@@ -38,10 +38,10 @@ _LIGHTEST_IN_KG = 0.1
 _ROUNDED = 1e-9
 """Relative rounding error of a value that should be 0."""
 _NEVERTHELESS = (
-    "Gazebo Classic simulates this inertia anyway, but gz-sim rejects it. Cartwheel raises the "
+    "Gazebo Classic simulates this inertia anyway, but gz-sim rejects it. Cartwheel increases the "
     "smaller moments."
 )
-_WITHOUT = "Gazebo Classic divides by zero. Cartwheel uses the inertia of the geometry."
+_WITHOUT = "Gazebo Classic divides by zero. Cartwheel computes the inertia from the geometry."
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -118,7 +118,7 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
             instead=f'value="{nodes.short(-mass) if mass < 0 else _mass_of(subject, link)}"',
             place="attribute",
             mark="value",
-            hint="" if mass < 0 else "Write its mass in kg.",
+            hint="" if mass < 0 else "Set the mass in kg.",
         )
 
 
@@ -152,7 +152,7 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
                 instead=_inertial_text(_shape_inertia(robot, link), 1.0),
                 place="inside",
                 mark=f'name="{link.name}"',
-                hint="The suggestion is for 1 kg. Scale mass and inertia together.",
+                hint="The suggested values are for 1 kg. Scale mass and inertia together.",
             )
 
 
@@ -174,8 +174,8 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity=None if _matters(robot, link, stated) else "info",
                 message=f'the inertia of link "{link.name}" is {_ratio(stated / largest)} times '
-                f"larger than physically possible for {_weight(inertial.mass)} within this "
-                "geometry",
+                f"the largest inertia that a {_weight(inertial.mass)} body of this geometry can "
+                "have",
                 values={
                     "link": link.name,
                     "ratio": stated / largest,
@@ -195,8 +195,7 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
             yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
                 severity="info" if light else None,
                 message=f'the inertia of link "{link.name}" is {_ratio(solid / stated)} times '
-                "smaller than that of a solid with this geometry and a mass of "
-                f"{_weight(inertial.mass)}",
+                f"smaller than that of a solid {_weight(inertial.mass)} body of this geometry",
                 values={
                     "link": link.name,
                     "ratio": stated / solid,
@@ -227,13 +226,13 @@ def mass_outside(subject: Subject) -> Iterator[Diagnostic]:
             node = robot.node_at(inertial.origin)
             origin = nodes.child(node, "origin")
             yield robot_codes.CENTER_OF_MASS_OUTSIDE.diagnostic(
-                message=f'the centre of mass of link "{link.name}" is {away:.3g} m outside its '
-                f"geometry, which is {across:.3g} m across",
+                message=f'the centre of mass of link "{link.name}" is {away:.3g} m outside the '
+                f"link's geometry, which is {across:.3g} m across",
                 values={"link": link.name, "distance": away, "size": across},
                 origin=origin.origin if origin is not None else inertial.origin,
                 instead=f"<pose>{xyz} 0 0 0</pose>" if in_sdf else f'<origin xyz="{xyz}"/>',
                 place="" if in_sdf else "element" if origin is not None else "inside",
-                hint="The suggestion is the centre of the geometry.",
+                hint="The suggested position is the centre of the geometry.",
                 mark="xyz",
             )
 
@@ -251,9 +250,9 @@ def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
         in_grams = density / 1000 > _FOAM
         node = _urdf_mass(robot, link, inertial)
         yield robot_codes.MASS_IN_GRAMS.diagnostic(
-            message=f'link "{link.name}" weighs {inertial.mass:g} kg within a bounding box of '
-            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, which "
-            f"makes it denser than any metal ({_ratio(density / 1000)} kg per litre)",
+            message=f'link "{link.name}" weighs {inertial.mass:g} kg and has a bounding box of '
+            f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, so its "
+            f"density of {_ratio(density / 1000)} kg/L is higher than that of any metal",
             values={"link": link.name, "mass": inertial.mass, "density": density},
             origin=node.origin if node is not None else inertial.origin,
             instead=_mass_text(inertial.mass / 1000, sdf=node is None) if in_grams else "",

@@ -41,11 +41,11 @@ def limit_missing(subject: Subject) -> Iterator[Diagnostic]:
                 if rolls
                 else f'<limit lower="-{span}" upper="{span}" effort="10" velocity="3"/>',
                 place="attribute" if rolls else "inside",
-                hint='A wheel that turns without limits needs type="continuous".'
+                hint='For a wheel that turns without limits, use type="continuous".'
                 if rolls
-                else 'Write its range, or type="continuous" if it turns without limits.'
+                else 'Set lower and upper to its range, or use type="continuous" for no limits.'
                 if kind == "revolute"
-                else "Write its range.",
+                else "Set lower and upper to the joint's range.",
             )
 
 
@@ -81,7 +81,7 @@ def limit_zero(subject: Subject) -> Iterator[Diagnostic]:
                 instead='type="continuous"' if not stated and _turns(joint) else "",
                 hint='If it should not move, write type="fixed" in its <joint>.'
                 if stated
-                else "Write lower and upper.",
+                else "Set lower and upper to the joint's range.",
                 mark="lower" if stated else "",
             )
 
@@ -106,8 +106,8 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 instead=f'effort="{nodes.short(usual)}"',
                 place="attribute",
                 mark="effort",
-                hint="Cartwheel treats 0 as no limit. The suggestion is twice the effort that "
-                "holds the load. Use the actual limit of the motor.",
+                hint="Cartwheel treats 0 as no limit. The suggested limit is twice the effort "
+                "required to hold the load. Replace it with the motor's actual limit.",
             )
         if nodes.number(limit.attributes.get("velocity")) == 0.0:
             yield robot_codes.EFFORT_ZERO.diagnostic(
@@ -118,7 +118,7 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 instead=f'velocity="{"1" if slides else "10"}"',
                 place="attribute",
                 mark="velocity",
-                hint="Write the maximum speed of the motor.",
+                hint="Set the velocity limit to the motor's maximum speed.",
             )
 
 
@@ -136,7 +136,7 @@ def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
                         instead=nodes.written(element.tag, {}, "5"),
                         place="element",
                         mark=element.text.strip(),
-                        hint="Write the torque of the motors.",
+                        hint=f"Set <{element.tag}> to the motors' maximum torque.",
                     )
 
 

@@ -111,7 +111,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
             known = stated and any(element.find(name) for name in stated.tags if name != "torque")
             if torque is not None and stated is not None and not known:
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
-                    message="Gazebo 11 ignores <torque>, so the wheels get "
+                    message="Gazebo 11 ignores <torque>, so the wheel torque is "
                     f"{stated.default[0]:g} N m instead of {torque.text.strip()} N m",
                     values={"tag": "torque", "plugin": drive.tag.name},
                     origin=torque.origin,

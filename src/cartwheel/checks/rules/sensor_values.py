@@ -110,8 +110,8 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
             instead=nodes.written("min_angle", {}, nodes.short(high)),
             place="element",
             mark=first.text.strip(),
-            hint="Most programs expect counterclockwise scans. Also write "
-            f"<max_angle>{nodes.short(low)}</max_angle>.",
+            hint="Most programs expect counterclockwise scans. Also set <max_angle> to "
+            f"{nodes.short(low)}.",
         )
 
 
@@ -128,7 +128,7 @@ def _span(element: Element) -> Iterator[Diagnostic]:
         instead=nodes.written(near, {}, nodes.short(high if 0 <= high < low else 0.1)),
         place="element",
         mark=first.text.strip(),
-        hint=f"Also write <{far}>{nodes.short(low)}</{far}>." if 0 <= high < low else "",
+        hint=f"Also set <{far}> to {nodes.short(low)}." if 0 <= high < low else "",
     )
 
 

@@ -43,7 +43,7 @@ def view_blocked(subject: Subject) -> Iterator[Diagnostic]:
                     if block.within
                     else f'{block.share:.0%} of the rays of the {view.kind} "{sensor.name}" '
                     f'end at the {part} of link "{block.link}", {block.distance:.3g} m in '
-                    "front of it",
+                    "front of the sensor",
                     values={
                         "sensor": sensor.name,
                         "link": block.link,
@@ -65,9 +65,7 @@ def _way_out(view: _View, block: _Block) -> str:
             f"more than {farther} m."
         )
     past = " Cartwheel ignores geometry that encloses a sensor." if block.within else ""
-    return (
-        f"Move the sensor out of the geometry, or write <min>{farther}</min> in its <range>.{past}"
-    )
+    return f"Move the sensor out of the geometry, or set <min> in its <range> to {farther}.{past}"
 
 
 @rule(devices_codes.RATE_ABOVE_PHYSICS)

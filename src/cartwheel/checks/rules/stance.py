@@ -33,8 +33,8 @@ def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
                     continue
                 node = _surface_node(robot, link.name, "mu1")
                 yield robot_codes.WHEEL_FRICTIONLESS.diagnostic(
-                    message=f'the friction of the driven wheel "{link.name}" is {max(mu):g}, so '
-                    "the wheel slips",
+                    message=f'the friction coefficient of the driven wheel "{link.name}" is '
+                    f"{max(mu):g}, so the wheel slips",
                     values={"link": link.name, "friction": max(mu)},
                     origin=node.origin if node is not None else collision.origin,
                     instead="<mu1>1.0</mu1>" if node is not None else "",
@@ -61,7 +61,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
             yield robot_codes.CASTER_FRICTION.diagnostic(
-                message=f'the caster "{link.name}" cannot roll and has a friction of '
+                message=f'the caster "{link.name}" cannot roll, and its friction coefficient is '
                 f"{'1, the default' if mu is None else f'{mu:g}'}",
                 values={"link": link.name, "friction": mu},
                 origin=collision.origin,
@@ -185,8 +185,8 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
                 yield robot_codes.OVERLAPPING_COLLISIONS.diagnostic(
                     # Gazebo collides with the mesh itself, not with its convex hull.
                     severity="info" if meshes else None,
-                    message=f'the collisions of "{a.name}" and "{b.name}" overlap while all '
-                    "joints are at 0, so they push each other apart",
+                    message=f'the collisions of "{a.name}" and "{b.name}" overlap when all '
+                    "joints are at 0, so the links push each other apart",
                     values={"link": a.name, "other": b.name},
                     origin=b.collisions[0].origin,
                     hint="Make one of the collisions smaller, or disable <selfCollide> for one of "

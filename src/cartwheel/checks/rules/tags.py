@@ -46,7 +46,7 @@ def gazebo_ignores(subject: Subject) -> Iterator[Diagnostic]:
             value = child.text or child.attributes.get("value", "")
             if on_link and child.tag == "mu":
                 yield codes.GAZEBO_IGNORES.diagnostic(
-                    message="Gazebo does not support <mu> here, so the friction stays 1",
+                    message="Gazebo ignores <mu> in this element, so the friction coefficient is 1",
                     origin=child.origin,
                     instead=f"<mu1>{value}</mu1><mu2>{value}</mu2>",
                     place="element",

@@ -37,7 +37,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
             continue
         # A wheel may be offset from its joint; either distance is accepted.
         if _differs(one.value, apart, _LEAST) and _differs(one.value, joints, _LEAST):
-            far = "far" if one.value > apart else "little"
+            more = "more" if one.value > apart else "less"
             said = (
                 "the wheels are"
                 if one.measure == "apart"
@@ -48,7 +48,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
                 one,
                 apart,
                 f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}, so the robot turns "
-                f"{abs(one.value / apart - 1):.0%} too {far}",
+                f"{abs(one.value / apart - 1):.0%} {more} than commanded",
             )
 
 
@@ -58,13 +58,13 @@ def wheel_base(subject: Subject) -> Iterator[Diagnostic]:
         if one.measure == "base":
             apart = _mean_between(one, 0)
             if _differs(one.value, apart, _LEAST):
-                far = "far" if one.value > apart else "little"
+                more = "more" if one.value > apart else "less"
                 yield _differing(
                     robot_codes.WHEEL_BASE_MISMATCH,
                     one,
                     apart,
                     f"the axles are {apart:.4g} m apart, so the robot turns "
-                    f"{abs(one.value / apart - 1):.0%} too {far}",
+                    f"{abs(one.value / apart - 1):.0%} {more} than commanded",
                 )
 
 
@@ -81,14 +81,14 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
             continue
         real = radius if one.measure == "radius" else 2 * radius
         if _differs(one.value, real, _LEAST / 2):
-            slow = "slowly" if one.value > real else "fast"
+            slow = "slower" if one.value > real else "faster"
             far = abs(real / one.value - 1) if one.value else 1.0
             yield _differing(
                 robot_codes.WHEEL_DIAMETER_MISMATCH,
                 one,
                 real,
                 f'the {one.measure} of the wheel "{wheel.child}" is {real:.4g} m, so the robot '
-                f"drives {far:.0%} too {slow}",
+                f"drives {far:.0%} {slow} than commanded",
             )
 
 

@@ -157,7 +157,7 @@ def _first_paragraph(code: Any) -> str:
 def _text(finding: Diagnostic) -> str:
     parts = [finding.message, finding.hint]
     if finding.instead:
-        parts.append(f"Write {finding.instead}")
+        parts.append(f"Use {finding.instead}")
     return ". ".join(part.rstrip(".") for part in parts if part) + "."
 
 

@@ -34,7 +34,7 @@ def parse_yaml(words: Sequence[str]) -> Any:
         raise CartwheelError(
             f"the message is not valid YAML: {str(error).splitlines()[0]}",
             code=MESSAGE_TEXT_INVALID,
-            hint="Write it as '{linear: {x: 0.5}}', with a space after each colon.",
+            hint="Use the form '{linear: {x: 0.5}}', with a space after each colon.",
         ) from None
     if not values:
         return {}

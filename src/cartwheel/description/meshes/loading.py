@@ -179,7 +179,7 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
     if size > MOST_BYTES:
         raise MeshError(
             path,
-            f"the file has {size >> 20} MiB; the limit is {MOST_BYTES >> 20} MiB",
+            f"the file size is {size >> 20} MiB; the limit is {MOST_BYTES >> 20} MiB",
             hint=_COARSER,
             values={"bytes": size, "most": MOST_BYTES},
         )

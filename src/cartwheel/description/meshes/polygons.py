@@ -24,7 +24,8 @@ def triangulate(counts: Sequence[int] | Indices, positions: NDArray[Any]) -> Ind
     sizes = np.asarray(counts, dtype=np.int64).reshape(-1)
     if (sizes < 0).any() or int(sizes.sum()) != len(positions):
         raise ValueError(
-            f"the polygons need {int(sizes.sum())} corners, but only {len(positions)} exist"
+            f"the polygons have {int(sizes.sum())} vertices, but the index list has "
+            f"{len(positions)} entries"
         )
     starts = np.cumsum(sizes) - sizes
     parts: list[Indices] = []

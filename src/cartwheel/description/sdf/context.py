@@ -143,7 +143,7 @@ def require_name(node: Node) -> str:
     if name.startswith("__") and name.endswith("__"):
         raise node.fail(
             f'the name "{name}" is reserved',
-            "Choose one without the underscores.",
+            "Remove the underscores from the start and end of the name.",
             code=codes.NAME_TAKEN,
             values={"name": name},
         )

@@ -46,8 +46,11 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("material", "render_order"): _LIGHT,
     ("material", "shader"): _LIGHT,
     ("material", "shininess"): _LIGHT,
-    ("mesh", "convex_decomposition"): "moving meshes collide as hulls, static ones as surfaces",
-    ("mimic", "@axis"): "the first axis of the joint is followed",
+    (
+        "mesh",
+        "convex_decomposition",
+    ): "moving meshes collide as convex hulls, static meshes as surfaces",
+    ("mimic", "@axis"): "the joint mimics the first axis",
     ("model", "allow_auto_disable"): _REST,
     ("model", "enable_wind"): _WIND,
     ("model", "static"): "the first one is used",

@@ -104,7 +104,7 @@ def _file(uri: Node, ctx: Context) -> Path:
     """The SDF file of a model's folder, or the file itself."""
     text = uri.text.strip()
     if not text:
-        hint = "Write <uri>model://sun</uri>, for example."
+        hint = "For example: <uri>model://sun</uri>"
         raise NotThereError(
             "<uri> is empty",
             code=tags.TAG_MISSING,

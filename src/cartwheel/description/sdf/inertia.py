@@ -79,14 +79,13 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         # About the stated centre of mass, along the link's axes.
         made = replace(weighing(shape, i.mass), pose=Pose(i.pose.position))
         here = (
-            f"Cartwheel uses the inertia of its collisions, {made.ixx:.4g}, {made.iyy:.4g}, "
-            f"{made.izz:.4g}"
+            f"Cartwheel computes {made.ixx:.4g}, {made.iyy:.4g}, {made.izz:.4g} from the collisions"
         )
     else:
         (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
         made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
         a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
-        here = f"Cartwheel raises the smaller moments to {a:.4g} and {b:.4g}"
+        here = f"Cartwheel increases the smaller moments to {a:.4g} and {b:.4g}"
     ctx.report(
         INERTIA_IMPOSSIBLE.diagnostic(
             f"{message}; {here}", origin=i.origin, hint=hint, severity="warning", values=values

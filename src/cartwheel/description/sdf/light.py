@@ -26,7 +26,7 @@ def read_light(node: Node, pose: Pose) -> Light:
     if kind is None:
         raise node.fail(
             f'the light type "{node.attributes["type"]}" is unknown',
-            "Write directional, point or spot.",
+            "Valid types: directional, point, spot.",
             code=TYPE_UNKNOWN,
             values={"name": node.attributes["type"]},
         )

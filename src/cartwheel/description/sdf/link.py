@@ -226,7 +226,7 @@ def _visual(node: Node, ctx: Context, place: Place) -> Visual | None:
     pose = place(node)
     for part in node.all("plugin"):
         part.mark()
-        ctx.report(not_simulated("plugins of visuals are not run", part))
+        ctx.report(not_simulated("visual plugins are not supported", part))
     shape = read_shape(node, ctx)
     if shape is None:
         return None

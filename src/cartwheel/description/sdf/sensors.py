@@ -104,7 +104,7 @@ def read_camera(node: Node) -> CameraIntrinsics:
     if not NARROWEST <= fov < 2 * math.pi:
         raise (node.child("horizontal_fov") or node).fail(
             f"horizontal_fov {fov:g} must be from {NARROWEST:g} to {2 * math.pi:.4g} rad",
-            f"In degrees it would be {math.radians(fov):.4g}." if fov > 0 else None,
+            f"If {fov:g} is in degrees, use {math.radians(fov):.4g}." if fov > 0 else None,
         )
     centre = node.find("distortion/center")
     cx, cy = centre.vector(2) if centre is not None else default.distortion_center
@@ -144,7 +144,7 @@ def _noise(node: Node | None) -> tuple[float, float]:
     if kind != "gaussian":
         raise node.fail(
             f'noise of type "{kind}" is not supported',
-            "Write none or gaussian.",
+            "Valid types: none, gaussian.",
             code=TYPE_UNKNOWN,
             values={"name": kind},
         )

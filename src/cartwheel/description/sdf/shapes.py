@@ -65,7 +65,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
             )
         ctx.report(
             tags.TAG_EMPTY.diagnostic(
-                f"the <geometry> of {_label(owner)} is empty, so it has no shape",
+                f"the <geometry> of {_label(owner)} is empty",
                 origin=owner.origin,
                 values={"tag": "geometry", "left_out": owner.tag},
             )
@@ -180,7 +180,7 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
     for node in nodes:
         points = [point.vector(2) for point in node.all("point")]
         if len(points) < 3:
-            raise node.fail(f"a polyline needs three points (got {len(points)})")
+            raise node.fail(f"a polyline requires at least three points (got {len(points)})")
         outlines.append(tuple((x, y) for x, y in points))
     heights = [positive(node.require_child("height"), "a height") for node in nodes]
     if any(height != heights[0] for height in heights):
@@ -195,7 +195,7 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
     try:
         pieces = convex_pieces(shape)
     except OutlineError as error:
-        raise nodes[0].fail(str(error), "Use a mesh for a shape this fine.") from None
+        raise nodes[0].fail(str(error), "Use a mesh instead.") from None
     if not pieces:
         raise nodes[0].fail("all points of the polyline are on one line")
     return shape
@@ -206,7 +206,7 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
     if uri is None or not uri.text.strip():
         raise node.fail(
             "the mesh has no <uri>",
-            "Write <uri>model://my_robot/meshes/part.dae</uri>.",
+            "For example: <uri>model://my_robot/meshes/part.dae</uri>",
             code=tags.TAG_MISSING,
             values={"missing": "uri"},
         )

@@ -64,8 +64,8 @@ def join_models(
             if joint.type != "fixed" and joint.resists:
                 ctx.report(
                     tags.NOT_SIMULATED.diagnostic(
-                        f'joint "{joint.name}" between two models turns freely, so its limits, '
-                        "damping, friction and spring have no effect",
+                        f'the limits, damping, friction and spring of joint "{joint.name}" are not '
+                        "simulated because the joint connects two models",
                         origin=each.origin,
                         severity="warning",
                         values={"joint": joint.name},

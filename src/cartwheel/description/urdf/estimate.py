@@ -95,10 +95,10 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
     inertial = replace(stated, pose=Pose(stated.pose.position), **values)
     ctx.report(
         robot.INERTIA_IMPOSSIBLE.diagnostic(
-            f'link "{link.name}" moves, but its inertia is 0; Cartwheel uses the inertia of its '
-            "geometry",
+            f'link "{link.name}" moves, but its inertia is 0; Cartwheel computes the inertia from '
+            "the geometry",
             origin=stated.origin,
-            hint=f"Write {inertial_text(inertial)}",
+            hint=f"Use instead: {inertial_text(inertial)}",
             values={"link": link.name},
         )
     )
@@ -164,9 +164,9 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
     first = parts[0][0]
     if len(roots) == 1:
         assert first.inertial is not None
-        advice = "`cartwheel check` shows the <inertial> to write."
+        advice = "`cartwheel check` shows the missing <inertial>."
         if len(parts[0]) == 1:
-            advice = f'Write in link "{first.name}": {inertial_text(first.inertial)}'
+            advice = f'Add to link "{first.name}": {inertial_text(first.inertial)}'
         ctx.report(
             robot.INERTIA_MISSING.diagnostic(
                 f"{_mover(roots[0], holders[0])} has no <inertial>. {_fate(holders[0])}; Cartwheel "

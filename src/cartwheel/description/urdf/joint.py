@@ -91,7 +91,7 @@ def _end(node: Node, joint: str, which: str, links: Collection[str]) -> str:
     if end is None:
         raise node.fail(
             f'joint "{joint}" has no <{which}>',
-            f'Write <{which} link="…"/>.',
+            f'Add <{which} link="…"/>.',
             code=tags.TAG_MISSING,
             values={"joint": joint, "missing": which},
         )

@@ -250,7 +250,7 @@ def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape 
         )
     raise geometry.fail(
         f'the <geometry> of a {kind} of link "{link}" is empty',
-        f"Write one of: {', '.join(SHAPES)}.",
+        f"Add one of: {', '.join(SHAPES)}.",
         code=tags.TAG_MISSING,
         values={"link": link},
     )
@@ -388,8 +388,8 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     smaller = principal_moments(made.diagonal, made.products)
     ctx.report(
         robot.INERTIA_IMPOSSIBLE.diagnostic(
-            f'link "{link}": {message}; Cartwheel raises the smaller moments to {smaller[0]:.4g} '
-            f"and {smaller[1]:.4g}",
+            f'link "{link}": {message}; Cartwheel increases the smaller moments to '
+            f"{smaller[0]:.4g} and {smaller[1]:.4g}",
             origin=i.origin,
             hint=hint,
             severity="info" if rigid else "warning",

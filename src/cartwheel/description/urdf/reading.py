@@ -155,7 +155,7 @@ def _warn_unprefixed(root: Node, ctx: UrdfContext) -> None:
                 files.XACRO_PREFIX.diagnostic(
                     f"<{tag}> without its prefix has no effect",
                     origin=node.origin,
-                    hint=f"Write <xacro:{tag}>.",
+                    hint=f"Use <xacro:{tag}>.",
                     values={"tag": tag, "meant": f"xacro:{tag}"},
                 )
             )

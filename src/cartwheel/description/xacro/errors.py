@@ -79,7 +79,7 @@ def explain(failure: Failure) -> DescriptionError:
         message = f'the property "{match[1]}" is not defined' + _expression(text)
         hint, near = _meant(match[1], [*failure.properties, *_FUNCTIONS])
         if match[1] in failure.arguments:
-            hint = f"It is an argument. Write $(arg {match[1]})."
+            hint = f"It is an argument: use $(arg {match[1]})."
         code, values = _unknown("property", match[1], near)
         values["expression"] = _evaluated(text)
     elif match := _ARGUMENT.search(text):
@@ -122,7 +122,7 @@ def explain(failure: Failure) -> DescriptionError:
         code, values = _unknown("command", match[1], meant(match[1], _COMMANDS))
     elif match := _ENVIRONMENT.search(text):
         message = f'the environment variable "{match[1]}" is not set'
-        hint = f"Write $(optenv {match[1]} default) to use a default if it is not set."
+        hint = f"To use a default if it is not set: $(optenv {match[1]} default)."
         code, values = _unknown("environment variable", match[1], "")
     elif _EXPRESSION.search(text):
         reason = str(inner).splitlines()[0] if str(inner) else type(inner).__name__

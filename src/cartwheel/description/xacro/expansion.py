@@ -175,7 +175,7 @@ class Run:
             codes.XACRO_PREFIX.diagnostic(
                 f"<{tag}> is read as <{PREFIX}{tag}>, but ROS has ignored it since Noetic{more}",
                 origin=element.origin,
-                hint=f"Write <{PREFIX}{tag}>.",
+                hint=f"Use <{PREFIX}{tag}>.",
                 values=values,
             )
         )

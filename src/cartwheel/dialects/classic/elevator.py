@@ -129,8 +129,8 @@ class Elevator(Plugin[ElevatorParameters]):
         if self._lift.within(height) != height:
             self.warn(
                 running.COMMAND_IGNORED,
-                f"a command is ignored: floor {floor} at {height:g} m is beyond the limits of the "
-                "lift's joint",
+                f"a command is ignored: floor {floor} at {height:g} m is beyond the limits of "
+                "<lift_joint>",
                 values={"floor": str(floor)},
             )
             return

@@ -84,10 +84,10 @@ class GzAckermannParameters(GzLimitedParameters):
         "is not set.",
     )
     steering_only: bool = tag(
-        "steering_only", default=False, doc="No effect: the car is driven by Twist messages."
+        "steering_only", default=False, doc="No effect: only Twist commands are supported."
     )
     actuators: bool = tag(
-        "use_actuator_msg", default=False, doc="No effect: the car is driven by Twist messages."
+        "use_actuator_msg", default=False, doc="No effect: only Twist commands are supported."
     )
 
 
@@ -118,7 +118,7 @@ class GzAckermannDrive(Plugin[GzAckermannParameters]):
             if flag:
                 self.warn(
                     devices.PLUGIN_PARAMETER_IGNORED,
-                    f"<{what}> has no effect: the car is driven by Twist messages",
+                    f"<{what}> has no effect: only Twist commands are supported",
                     values={"parameter": what},
                 )
         report_limits(self, config)

@@ -34,7 +34,7 @@ class _ServoParameters:
         "cmd_offset", default=0.0, unit="N m or N", doc="Constant added to the output."
     )
     actuators: bool = tag(
-        "use_actuator_msg", default=False, doc="No effect: the joint is driven by Float64 messages."
+        "use_actuator_msg", default=False, doc="No effect: only Float64 commands are supported."
     )
     topic: str = tag(
         "topic",
@@ -110,7 +110,7 @@ def _joints(plugin: Plugin[Any]) -> tuple[str, ...]:
     if config.actuators:
         plugin.warn(
             devices.PLUGIN_PARAMETER_IGNORED,
-            "<use_actuator_msg> has no effect: the joint is driven by Float64 messages",
+            "<use_actuator_msg> has no effect: only Float64 commands are supported",
             values={"parameter": "use_actuator_msg"},
         )
     return tuple(name.strip() for name in config.joints)
@@ -170,7 +170,7 @@ class JointPositionController(Plugin[JointPositionParameters]):
         if config.index and not (config.topic or config.sub_topic):
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,
-                "<joint_index> has no effect: only the first axis of a joint is moved",
+                "<joint_index> has no effect: only the first axis of a joint is controlled",
                 values={"parameter": "joint_index"},
             )
 

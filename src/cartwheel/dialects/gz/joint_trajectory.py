@@ -74,8 +74,10 @@ class JointTrajectoryParameters:
     )
     velocity_p_gain: tuple[float, ...] = _gain_tag("velocity", "p_gain", "Proportional gain of the")
     velocity_i_gain: tuple[float, ...] = _gain_tag("velocity", "i_gain", "Integral gain of the")
-    velocity_d_gain: tuple[float, ...] = _gain_tag(
-        "velocity", "d_gain", "No effect: derivative gain of the"
+    velocity_d_gain: tuple[float, ...] = tag(
+        "velocity_d_gain",
+        default=(),
+        doc="No effect: the velocity controller has no derivative term.",
     )
     velocity_i_min: tuple[float, ...] = _gain_tag(
         "velocity", "i_min", "Lower limit of the integral term of the"
@@ -98,7 +100,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
     """Drives joints to the points of a trajectory, one after the other.
 
     Each point is the target until its ``time_from_start`` has passed. Points are not interpolated,
-    so smooth motion needs closely spaced points. The force on a joint is the sum of the position
+    so smooth motion requires closely spaced points. The force on a joint is the sum of the position
     controller's output, the velocity controller's output and the point's effort. The progress,
     published on ``<topic>_progress`` (Float32), is the number of the current point divided by the
     total number of points. Original plugin: ``JointTrajectoryController`` in gz-sim.

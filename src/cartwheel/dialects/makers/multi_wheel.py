@@ -81,7 +81,7 @@ class MultiWheelDrive(Plugin[MultiWheelParameters]):
         left, right = config.left.split(), config.right.split()
         if not left or not right:
             raise PluginError(
-                "<leftJoints> and <rightJoints> must each contain a joint",
+                "<leftJoints> and <rightJoints> must each list at least one joint",
                 code=devices.WHEELS_UNPAIRED,
                 origin=self.tag.origin,
                 values={"left": len(left), "right": len(right)},

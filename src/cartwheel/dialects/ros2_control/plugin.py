@@ -111,7 +111,7 @@ class Ros2Control(ControlPlugin):
         if not joints:
             self.warn(
                 devices.CONTROL_WITHOUT_JOINTS,
-                "no <ros2_control> contains a joint, so controllers have no joint to command",
+                "no <ros2_control> element lists a joint, so controllers have no joint to command",
             )
         known = {sensor.name for link in part.description.links for sensor in link.sensors}
         for sensor in sensors:

@@ -173,7 +173,7 @@ def read_ros2(path: Path, robot: RobotDescription) -> dict[str, Any]:
             "the file has no ros__parameters, but the robot uses ros2_control",
             code=devices.CONTROLLERS_FILE_MISMATCH,
             origin=Origin(file=str(path)),
-            hint="Write the parameters below the name of their node and ros__parameters.",
+            hint="Nest the parameters under the name of their node and ros__parameters.",
         )
     return content
 

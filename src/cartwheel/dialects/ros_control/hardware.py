@@ -330,7 +330,7 @@ class Hardware:
         stated = self._description.joint(name)
         if name not in self._joints and stated is not None:
             raise PluginError(
-                f'joint "{name}" is not available to controllers because {self._tags} contains it',
+                f'joint "{name}" is not available to controllers because {self._tags} lists it',
                 code=devices.CONTROLLER_INTERFACE_MISMATCH,
                 origin=stated.origin,
                 values={"joint": name},

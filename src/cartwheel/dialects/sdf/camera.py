@@ -125,7 +125,7 @@ def _distortion(plugin: Component, lens: CameraIntrinsics, configured: Distortio
     if lens.distortion_center != (0.5, 0.5):
         plugin.warn(
             devices.SENSOR_SETTING_IGNORED,
-            "the <center> of the distortion is rendered, but camera_info cannot contain it",
+            "the <center> of the distortion is rendered, but camera_info has no field for it",
             values={"setting": "center"},
         )
     return own

@@ -44,7 +44,7 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
         controller.warn(
             robot.WHEEL_AXIS_MISALIGNED,
             f'the axis of joint "{joint}" points along the robot\'s -{name} axis, so '
-            "positive commands turn it in the opposite direction",
+            "positive commands turn the wheel in the opposite direction",
             at=described.origin,
             values={"joint": joint, "axis": f"-{name}"},
         )
