@@ -112,7 +112,7 @@ def test_an_outline_that_crosses_itself_everywhere_is_refused_with_its_place():
     with raises(VALUE_INVALID, tag="polyline") as error:
         load_text(text, file="a.sdf")
     assert error.value.origin.line == 3
-    with pytest.raises(OutlineError, match="3000 points, but at most 2000"):
+    with pytest.raises(OutlineError, match="3000 points; the limit is 2000"):
         convex_pieces(polyline(points))
 
 
