@@ -14,7 +14,6 @@ from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros2_control.components import HardwareComponents
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.controller import Rig
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
     controller_entries,
@@ -29,6 +28,7 @@ from cartwheel.dialects.ros_control.interfaces import (
     ros2_control,
     simulated_systems,
 )
+from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import Origin
@@ -132,7 +132,7 @@ class Ros2Control(ControlPlugin):
             )
         hardware = Hardware(self, joints, _gains(joints, merged.nodes))
         hardware.holds = config.hold_joints
-        rig = Rig(
+        robot = ControlledRobot(
             self,
             hardware,
             namespace=self.namespace,
@@ -140,7 +140,7 @@ class Ros2Control(ControlPlugin):
             sensors=self._sensors(),
             push=self._push(entry.type for entry in entries),
         )
-        manager = self._run(rig, rate)
+        manager = self._run(robot, rate)
         self._start(entries)
         Ros2ManagerServices(
             self,

@@ -21,7 +21,8 @@ from cartwheel.dialects.ros_control.files import (
     remappings,
     ros2_file,
 )
-from cartwheel.dialects.ros_control.manager import ControllerManager, report_error, wrong_state
+from cartwheel.dialects.ros_control.manager import ControllerManager
+from cartwheel.dialects.ros_control.switching import wrong_state
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.messages import message_class
 
@@ -62,7 +63,7 @@ class Ros2ManagerServices:
         """Controllers that started automatically and that no request has named yet."""
         self._unconfigured: dict[str, ControllerEntry] = {}
         self._name = name
-        namespace = manager.rig.namespace.strip("/")
+        namespace = manager.robot.namespace.strip("/")
         prefix = f"/{namespace}/{name}" if namespace else f"/{name}"
         plugin.graph.nodes[plugin.node] = prefix
         stated = {f"{entry.name}.type": entry.type for entry in entries}
@@ -126,7 +127,7 @@ class Ros2ManagerServices:
 
     @property
     def _rate(self) -> int:
-        period_ns = self._manager.rig.period_ns
+        period_ns = self._manager.robot.period_ns
         return round(1e9 / period_ns) if period_ns else 0
 
     def _types(self, request: Any) -> Any:  # noqa: ARG002
@@ -148,7 +149,7 @@ class Ros2ManagerServices:
             CartwheelError: The type is not specified, or a file cannot be read.
         """
         stated = self._parameters.below(name)
-        namespace = self._manager.rig.namespace
+        namespace = self._manager.robot.namespace
         entry = self._entries.get(name)
         if entry is None:
             entry = ControllerEntry(
@@ -157,7 +158,7 @@ class Ros2ManagerServices:
         files = stated.get("params_file", [])
         paths = [Path(each) for each in ([files] if isinstance(files, str) else files)]
         if paths:
-            robot = self._manager.rig.plugin.part.description
+            robot = self._manager.robot.plugin.part.description
             contents = [read_ros2(path, robot) for path in paths]
             read = ros2_file(contents, namespace, self._name)
             more = controller_entry(read, name, namespace, ", ".join(map(str, paths)))
@@ -236,7 +237,7 @@ class Ros2ManagerServices:
             wanted = [name for name in start if name not in (*unready, *away)]
             self._manager.switch(wanted, stop, strict=strict)
         except CartwheelError as error:
-            report_error(self._manager.rig, error)
+            self._manager.robot.report_error(error)
             return _response("SwitchController")(ok=False, message=error.message)
         self._by_itself.difference_update(start, stop)
         return _response("SwitchController")(ok=True, message="")
@@ -264,7 +265,7 @@ class Ros2ManagerServices:
             ]
             self._manager.switch([], self._manager.with_leaders(away))
         except CartwheelError as error:
-            report_error(self._manager.rig, error)
+            self._manager.robot.report_error(error)
             return _response("SetHardwareComponentState")(
                 ok=False, state=self._components.state(request.name)
             )
@@ -279,7 +280,7 @@ class Ros2ManagerServices:
             try:
                 function(request)
             except CartwheelError as error:
-                report_error(self._manager.rig, error)
+                self._manager.robot.report_error(error)
                 return _response(kind)(ok=False)
             return _response(kind)(ok=True)
 

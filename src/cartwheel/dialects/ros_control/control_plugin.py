@@ -11,11 +11,11 @@ from cartwheel.devices.contact.loads import JointLoad
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.ros_control.controller import Rig, SensedLink
 from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
 from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
 from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.ordering import in_order
+from cartwheel.dialects.ros_control.robot import ControlledRobot, RobotSensor
 from cartwheel.dialects.sdf.force_torque import read_joint_load
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.errors import CartwheelError
@@ -36,20 +36,20 @@ class ControlPlugin(Plugin[Any]):
             self.manager.close()
         super().close()
 
-    def _run(self, rig: Rig, rate: float) -> ControllerManager:
+    def _run(self, robot: ControlledRobot, rate: float) -> ControllerManager:
         """Creates the controller manager and schedules it.
 
         Args:
-            rig: The robot.
+            robot: The robot.
             rate: Control rate, Hz; 0: every step.
         """
-        manager = self.manager = ControllerManager(rig)
+        manager = self.manager = ControllerManager(robot)
         part = self.part
-        rig.period_ns = part.period_ns(rate)
-        nominal = rig.period_ns / 1e9
+        robot.period_ns = part.period_ns(rate)
+        nominal = robot.period_ns / 1e9
         part.schedule(rate, before=lambda: manager.update(part.time_ns, nominal))
         step_ns = part.period_ns(0)
-        if rig.hardware.follows and rig.period_ns > step_ns:
+        if robot.hardware.follows and robot.period_ns > step_ns:
             # As in Gazebo, controllers run at their rate, and PIDs of joints at every step.
             manager.writes = False
             part.schedule(0, before=lambda: manager.write(part.time_ns, part.period_ns(0) / 1e9))
@@ -58,10 +58,10 @@ class ControlPlugin(Plugin[Any]):
         )
         return manager
 
-    def _sensors(self) -> list[SensedLink]:
+    def _sensors(self) -> list[RobotSensor]:
         """Returns the robot's sensors that a broadcaster can publish."""
         return [
-            SensedLink(name=each.name, type=each.type, sensor=each, unit=self._unit(each))
+            RobotSensor(name=each.name, type=each.type, sensor=each, unit=self._unit(each))
             for link in self.part.description.links
             for each in link.sensors
             if each.type == "imu" or (each.type == "force_torque" and each.joint)

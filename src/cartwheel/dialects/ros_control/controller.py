@@ -1,118 +1,21 @@
-"""The base class of all controllers."""
+"""The base class of controllers."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
-from cartwheel.component import Component, Scope
-from cartwheel.description.model import Sensor
-from cartwheel.devices.contact.loads import JointLoad
-from cartwheel.devices.inertial.unit import InertialUnit
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.component import Component
 from cartwheel.dialects.ros2_control.parameters import ParameterServices
 from cartwheel.dialects.ros_control.chaining import Reference
-from cartwheel.dialects.ros_control.hardware import Hardware, JointHardware
+from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.robot import ControlledRobot
+from cartwheel.dialects.ros_control.scope import ControllerScope
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Severity, Value
 from cartwheel.graph import JointInput, resolve_name
 from cartwheel.messages import message_class
-from cartwheel.simulation.pushing import BodyDriveHandle
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SensedLink:
-    """A sensor that broadcasters can publish."""
-
-    name: str
-    type: str
-    """``imu`` or ``force_torque``."""
-    sensor: Sensor
-    unit: InertialUnit | JointLoad
-    """Measures the sensor, for all controllers."""
-
-
-class Rig:
-    """The parts of a robot that its controllers share.
-
-    Args:
-        plugin: The plugin of the controller manager.
-        hardware: The joints.
-        namespace: Namespace of the controllers.
-        ros2: Use the names and defaults of ros2_control.
-        sensors: Sensors that broadcasters can publish.
-        push: Servo that moves the whole robot; None if no controller needs one.
-    """
-
-    def __init__(
-        self,
-        plugin: Plugin[Any],
-        hardware: Hardware,
-        *,
-        namespace: str,
-        ros2: bool,
-        sensors: Sequence[SensedLink] = (),
-        push: BodyDriveHandle | None = None,
-    ) -> None:
-        self.plugin = plugin
-        self.hardware = hardware
-        self.namespace = namespace
-        self.ros2 = ros2
-        self.sensors = {each.name: each for each in sensors}
-        self.push = push
-        """Moves a robot whose wheels cannot do so by friction: mecanum wheels without rollers."""
-        self.period_ns = 0
-        """Control period, ns."""
-        self.remappings: dict[str, Mapping[str, str]] = {}
-        """Remapped topic names, by controller."""
-
-    def report(
-        self,
-        code: Code,
-        message: str,
-        *,
-        at: Origin | None = None,
-        hint: str = "",
-        values: Mapping[str, Value] | None = None,
-    ) -> None:
-        """Reports a warning at `at`, by default at the plugin's tag; see `Plugin.warn`."""
-        self.plugin.warn(code, message, at=at, hint=hint, values=values)
-
-
-@dataclass(kw_only=True, slots=True)
-class ControllerScope(Scope):
-    """The names of a controller, which are below its own name."""
-
-    name: str
-    """The controller's name."""
-    outer: Scope
-    """The scope of the controller manager's plugin."""
-    base: str
-    """Namespace of the controller manager."""
-    own: Mapping[str, str]
-    """New names of the controller's topics by their names before the remapping."""
-
-    def resolve(self, name: str) -> str:
-        """Returns a topic name after remapping; below the controller's name unless global."""
-        full = self._full(f"~/{name}")
-        for source, target in self.own.items():
-            if self._full(source) == full:
-                full = self._full(target)
-                break
-        return self.outer.resolve(full)
-
-    def published(self, name: str, type_name: str) -> str:  # noqa: ARG002
-        """Returns `resolve`: controllers' topics are ROS topics already."""
-        return self.resolve(name)
-
-    def _full(self, name: str) -> str:
-        """Resolves a name as a node does: ``~/…`` is below the controller's name."""
-        space = self.base.strip("/")
-        if name.startswith("~/"):
-            name, space = name.removeprefix("~/"), f"{space}/{self.name}"
-        return resolve_name(name, space)
 
 
 class Controller(Component):
@@ -125,12 +28,14 @@ class Controller(Component):
     types: ClassVar[tuple[str, ...]]
     """Names of the type in ROS 1 and ROS 2."""
 
-    def __init__(self, name: str, type_name: str, settings: Settings, rig: Rig) -> None:
+    def __init__(
+        self, name: str, type_name: str, settings: Settings, robot: ControlledRobot
+    ) -> None:
         self.name = name
         self.type = type_name
         self.settings = settings
-        self.rig = rig
-        outer = rig.plugin.scope
+        self.robot = robot
+        outer = robot.plugin.scope
         super().__init__(
             ControllerScope(
                 part=outer.part,
@@ -142,8 +47,8 @@ class Controller(Component):
                 input_name=name,
                 name=name,
                 outer=outer,
-                base=rig.namespace,
-                own=rig.remappings.get(name, {}),
+                base=robot.namespace,
+                own=robot.remappings.get(name, {}),
             )
         )
         self.running = False
@@ -158,14 +63,14 @@ class Controller(Component):
         self.references: list[Reference] = []
         """Reference interfaces that other controllers can command."""
         self._input: JointInput | None = None
-        if rig.ros2:
-            self.graph.nodes[self.node] = resolve_name(name, rig.namespace)
+        if robot.ros2:
+            self.graph.nodes[self.node] = resolve_name(name, robot.namespace)
         try:
             self.configure(settings)
         except CartwheelError:
             Controller.close(self)
             raise
-        if rig.ros2:
+        if robot.ros2:
             values = {**settings.flat(), "type": type_name, "use_sim_time": True}
             ParameterServices(self._offer_parameters, self.graph.nodes[self.node], values)
 
@@ -224,7 +129,7 @@ class Controller(Component):
         self._leave_joints()
         super().close()
         for each in self.references:
-            self.rig.hardware.references.pop(each.full_name, None)
+            self.robot.hardware.references.pop(each.full_name, None)
         self.references.clear()
 
     def claim(self, joint: str, interface: str) -> JointHardware:
@@ -234,7 +139,7 @@ class Controller(Component):
             UnknownNameError: The joint does not exist.
             PluginError: The joint does not have this command interface.
         """
-        hardware = self.rig.hardware.joint(joint, interface)
+        hardware = self.robot.hardware.joint(joint, interface)
         self.claims[joint] = hardware
         self.interfaces[joint] = interface
         return hardware
@@ -243,7 +148,7 @@ class Controller(Component):
         """Creates a reference interface, by which other controllers can command the joint."""
         reference = Reference(self.name, joint, interface)
         self.references.append(reference)
-        self.rig.hardware.references[reference.full_name] = reference
+        self.robot.hardware.references[reference.full_name] = reference
         return reference
 
     @property

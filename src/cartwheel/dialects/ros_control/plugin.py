@@ -10,7 +10,6 @@ from cartwheel.codes import devices
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
-from cartwheel.dialects.ros_control.controller import Rig
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
     ControllerFiles,
@@ -22,6 +21,7 @@ from cartwheel.dialects.ros_control.files import (
 from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces, transmissions
+from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.services import ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
@@ -102,7 +102,7 @@ class RosControl(ControlPlugin):
         hardware = Hardware(self, joints, self._gains(joints), limits)
         self._hardware = hardware
         manager = self._run(
-            Rig(
+            ControlledRobot(
                 self,
                 hardware,
                 namespace=self.namespace,

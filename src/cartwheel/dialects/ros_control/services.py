@@ -11,8 +11,9 @@ from cartwheel.codes import running
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.catalogue import controller_types
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.manager import ControllerManager, report_error, wrong_state
+from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.switching import wrong_state
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import resolve_name
 from cartwheel.messages import message_class
@@ -34,7 +35,7 @@ class ManagerServices:
     def __init__(self, plugin: Plugin[Any], manager: ControllerManager) -> None:
         self._plugin = plugin
         self._manager = manager
-        namespace = manager.rig.namespace.strip("/")
+        namespace = manager.robot.namespace.strip("/")
         prefix = f"/{namespace}/controller_manager" if namespace else "/controller_manager"
         for name, kind, handler, threaded in (
             ("list_controllers", "ListControllers", self._list, False),
@@ -76,10 +77,10 @@ class ManagerServices:
     def _load(self, request: Any) -> Any:
         name = request.name.strip("/ ")
         try:
-            path = resolve_name(name, self._manager.rig.namespace)
+            path = resolve_name(name, self._manager.robot.namespace)
         except GraphError as error:
             fault = error  # Python deletes the name of an except clause at its end.
-            self._plugin.graph.post(lambda: report_error(self._manager.rig, fault))
+            self._plugin.graph.post(lambda: self._manager.robot.report_error(fault))
             return _response("LoadController")(ok=False)
         values = self._plugin.graph.parameters.get(path)
 
@@ -132,7 +133,7 @@ class ManagerServices:
         try:
             return function()
         except CartwheelError as error:
-            report_error(self._manager.rig, error)
+            self._manager.robot.report_error(error)
             return False
 
     def _on_owner(self, function: Callable[[], T]) -> T:

@@ -37,7 +37,7 @@ class DiffDriveController(Controller):
     types: ClassVar[tuple[str, ...]] = ("diff_drive_controller/DiffDriveController",)
 
     def configure(self, settings: Settings) -> None:
-        ros2 = self.rig.ros2
+        ros2 = self.robot.ros2
         left = settings.texts("left_wheel_names" if ros2 else "left_wheel")
         right = settings.texts("right_wheel_names" if ros2 else "right_wheel")
         if not left or len(left) != len(right):

@@ -94,7 +94,7 @@ class GripperActionController(Controller):
 
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         self._joint.strength = math.inf
-        self._finish("abort" if self.rig.ros2 else "cancel")
+        self._finish("abort" if self.robot.ros2 else "cancel")
 
     def _watch(self, time_ns: int, error: float) -> None:
         goal = self._active
@@ -118,7 +118,7 @@ class GripperActionController(Controller):
                 text = "the position is not a finite number"
             goal.reject(self._message("Result"), text)
             return
-        self._finish("abort" if self.rig.ros2 else "cancel")
+        self._finish("abort" if self.robot.ros2 else "cancel")
         self._active = goal
         self._target, self._place = position, self._joint.position
         self._speed = speed
@@ -127,7 +127,7 @@ class GripperActionController(Controller):
         goal.accept()
 
     def _put(self, wanted: Mapping[str, float]) -> None:
-        self._finish("abort" if self.rig.ros2 else "cancel")
+        self._finish("abort" if self.robot.ros2 else "cancel")
         self._target, self._place = wanted[self._joint.joint], self._joint.position
         self._speed, self._limit = math.inf, self._effort
 

@@ -165,13 +165,13 @@ class JointGroup(Controller):
         self._pids: list[Pid] = []
         if self.type == "effort_controllers/JointGroupPositionController":
             # ROS 2 files have the gains under the same key as for trajectory controllers.
-            form = "gains/{}" if self.rig.ros2 and settings.raw("gains") else "{}/pid"
+            form = "gains/{}" if self.robot.ros2 and settings.raw("gains") else "{}/pid"
             gains = [read_gains(settings.section(form.format(name))) for name in names]
             self._pids = [Pid(each) for each in gains]
             for name in ("gains", *names):
                 settings.ignore(name)
         self._commands: list[float] | None = None
-        topic = "commands" if self.rig.ros2 else "command"
+        topic = "commands" if self.robot.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
         if interface == "position" or self._pids:
             self.accept_positions(lambda wanted, _: self._put(topic, wanted))

@@ -36,30 +36,30 @@ class JointStateController(Controller):
     )
 
     def configure(self, settings: Settings) -> None:
-        rig = self.rig
-        self._rate = 0.0 if rig.ros2 else settings.number("publish_rate")
-        if self._rate < 0 or (not rig.ros2 and self._rate == 0):
+        robot = self.robot
+        self._rate = 0.0 if robot.ros2 else settings.number("publish_rate")
+        if self._rate < 0 or (not robot.ros2 and self._rate == 0):
             raise settings.invalid("publish_rate", self._rate, "positive")
-        names = sorted(rig.hardware.names) if not rig.ros2 else rig.hardware.names
+        names = sorted(robot.hardware.names) if not robot.ros2 else robot.hardware.names
         self._sources = {kind: kind for kind in COMMANDS}
         self._chosen: list[str] = []
         self._frame = ""
-        if rig.ros2:
+        if robot.ros2:
             names = self._choose(settings, names)
-        self._joints = [rig.hardware.joint(name) for name in names]
-        local = rig.ros2 and settings.boolean("use_local_topics", False)
+        self._joints = [robot.hardware.joint(name) for name in names]
+        local = robot.ros2 and settings.boolean("use_local_topics", False)
         self._extra: list[tuple[str, float, float, float]] = []
-        if rig.ros2:
+        if robot.ros2:
             extra = settings.texts("extra_joints", [])
             self._extra = [(name, 0.0, 0.0, 0.0) for name in extra if name not in names]
         else:
             self._extra = self._read_extra(settings.raw("extra_joints") or [], names)
-        space = "" if local else f"/{rig.namespace.strip('/')}/"
+        space = "" if local else f"/{robot.namespace.strip('/')}/"
         self._publisher = self.advertise(
             f"{space}joint_states", "sensor_msgs/msg/JointState", rate=self._rate or None
         )
         self._dynamic: Publisher | None = None
-        if rig.ros2 and settings.boolean("publish_dynamic_joint_states", True):
+        if robot.ros2 and settings.boolean("publish_dynamic_joint_states", True):
             self._dynamic = self.advertise(f"{space}dynamic_joint_states", _DYNAMIC)
         self._names = [*names, *(each[0] for each in self._extra)]
         self._periodic = Periodic(self._rate)

@@ -60,7 +60,7 @@ class JointTrajectoryController(Controller):
     )
 
     def configure(self, settings: Settings) -> None:
-        ros2 = self.rig.ros2
+        ros2 = self.robot.ros2
         self._names = settings.texts("joints")
         if not self._names:
             raise settings.invalid("joints", self._names, "a list of at least one joint")
@@ -141,7 +141,7 @@ class JointTrajectoryController(Controller):
 
     def stop(self, time_ns: int) -> None:
         self._hold(time_ns)
-        how = "abort" if self.rig.ros2 else "cancel"
+        how = "abort" if self.robot.ros2 else "cancel"
         self._finish(how, INVALID_GOAL, "the controller was stopped")
 
     # -- joint commands
@@ -164,7 +164,7 @@ class JointTrajectoryController(Controller):
         for index, name in enumerate(self._names):
             section = settings.section(f"gains/{name}")
             forward = 0.0
-            if self.rig.ros2:
+            if self.robot.ros2:
                 forward = section.number("ff_velocity_scale", 0.0)
                 gains = read_ros2_gains(section)
             elif section.has("p"):
@@ -312,7 +312,7 @@ class JointTrajectoryController(Controller):
         if not off:
             self._finish("succeed", SUCCESSFUL, "")
             return
-        endless = self.rig.ros2 and self._goal_patience == 0
+        endless = self.robot.ros2 and self._goal_patience == 0
         late_ns = followed.end_ns + _SETTLING_NS + round(min(self._goal_patience, 1e9) * 1e9)
         if not endless and time_ns > late_ns:
             self._finish("abort", GOAL, off[0])
@@ -320,7 +320,7 @@ class JointTrajectoryController(Controller):
 
     def _preempt(self, text: str) -> None:
         """Cancels a replaced goal, or aborts it in ROS 2, where only clients cancel goals."""
-        if self.rig.ros2:
+        if self.robot.ros2:
             self._finish("abort", INVALID_GOAL, text)
         else:
             self._finish("cancel", SUCCESSFUL, text)
@@ -340,7 +340,7 @@ class JointTrajectoryController(Controller):
     ) -> None:
         desired, actual, error = self._points(wanted, errors)
         fields = {"header": header(time_ns, ""), "joint_names": self._names, "error": error}
-        if not self.rig.ros2:
+        if not self.robot.ros2:
             kind = message_class("control_msgs/msg/JointTrajectoryControllerState")
             self._state.publish(kind(desired=desired, actual=actual, **fields))
             return

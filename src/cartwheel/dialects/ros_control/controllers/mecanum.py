@@ -41,7 +41,7 @@ class MecanumDriveController(Controller):
     types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
 
     def configure(self, settings: Settings) -> None:
-        ros2 = self.rig.ros2
+        ros2 = self.robot.ros2
         husarion = ros2 and settings.has("front_left_wheel_name")
         names = []
         for corner, plain in zip(_ROS2_CORNERS, _CORNERS, strict=True):
@@ -124,8 +124,8 @@ class MecanumDriveController(Controller):
                         values={"parameters": (name,)},
                     )
         wheels = [(joint,) for joint in self._joints]
-        self._wheels = MecanumWheels(config, wheels, self.rig.push, self._odometry.reckoning)
-        if self.rig.push is None and not has_rollers(description):
+        self._wheels = MecanumWheels(config, wheels, self.robot.push, self._odometry.reckoning)
+        if self.robot.push is None and not has_rollers(description):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
                 "the wheels do not model rollers, so the robot does not move sideways",

@@ -52,7 +52,7 @@ class PidController(Controller):
         for name, state_name in zip(names, self._names, strict=True):
             joint = self.claim(name, interface)
             # Only the state of a joint with a different name is used.
-            state = joint if name == state_name else self.rig.hardware.joint(state_name)
+            state = joint if name == state_name else self.robot.hardware.joint(state_name)
             section = settings.section(f"gains/{name}")
             self._loops.append(
                 _Loop(

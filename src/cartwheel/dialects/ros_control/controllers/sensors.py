@@ -12,7 +12,8 @@ from cartwheel.devices.contact.wrench import WRENCH_STAMPED, wrench_stamped
 from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.periodic import Periodic
-from cartwheel.dialects.ros_control.controller import Controller, SensedLink
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.robot import RobotSensor
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Array
@@ -28,11 +29,11 @@ class _SensorBroadcaster(Controller):
     topic: ClassVar[str]
 
     def configure(self, settings: Settings) -> None:
-        self._outputs: list[tuple[SensedLink, Publisher, str]] = []
-        rate = 0.0 if self.rig.ros2 else settings.number("publish_rate")
+        self._outputs: list[tuple[RobotSensor, Publisher, str]] = []
+        rate = 0.0 if self.robot.ros2 else settings.number("publish_rate")
         self._periodic = Periodic(rate)
-        sensors = [each for each in self.rig.sensors.values() if each.type == self.kind]
-        if self.rig.ros2:
+        sensors = [each for each in self.robot.sensors.values() if each.type == self.kind]
+        if self.robot.ros2:
             name = settings.text("sensor_name", "")
             if not name and len(sensors) == 1:
                 name = sensors[0].name
@@ -43,7 +44,7 @@ class _SensorBroadcaster(Controller):
                     [each.name for each in sensors],
                     code=running.UNKNOWN_SENSOR,
                 )
-            chosen = self.rig.sensors[name]
+            chosen = self.robot.sensors[name]
             frame = settings.text("frame_id", chosen.sensor.link)
             self._outputs.append((chosen, self.advertise(self.topic, self.message), frame))
         else:
@@ -53,7 +54,7 @@ class _SensorBroadcaster(Controller):
                     f"the robot has no {self.kind} sensor in a <gazebo> tag",
                     values={"type": self.kind},
                 )
-            space = f"/{self.rig.namespace.strip('/')}/"
+            space = f"/{self.robot.namespace.strip('/')}/"
             self._outputs = [
                 (
                     each,
@@ -81,7 +82,7 @@ class _SensorBroadcaster(Controller):
             if publisher.wanted:
                 publisher.publish(self.measure(sensed, header(time_ns, self.frame(frame))))
 
-    def measure(self, sensed: SensedLink, head: Any) -> Any:
+    def measure(self, sensed: RobotSensor, head: Any) -> Any:
         """Returns the message of a measurement."""
         raise NotImplementedError
 
@@ -108,7 +109,7 @@ class ImuBroadcaster(_SensorBroadcaster):
             for what in ("orientation", "angular_velocity", "linear_acceleration")
         ]
 
-    def measure(self, sensed: SensedLink, head: Any) -> Any:
+    def measure(self, sensed: RobotSensor, head: Any) -> Any:
         assert isinstance(sensed.unit, InertialUnit)
         return imu_message(head, *sensed.unit.measure(), self._covariances)
 
@@ -136,7 +137,7 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
         self._offsets = [settings.number(f"offset/{name}", 0.0) for name in names]
         self._factors = [settings.number(f"multiplier/{name}", 1.0) for name in names]
 
-    def measure(self, sensed: SensedLink, head: Any) -> Any:
+    def measure(self, sensed: RobotSensor, head: Any) -> Any:
         assert isinstance(sensed.unit, JointLoad)
         values = [
             factor * value + offset

@@ -67,5 +67,5 @@ def frame_prefix(controller: Controller, settings: Settings) -> str:
     """Returns the prefix of a ROS 2 drive's frames: ``tf_frame_prefix``, or the namespace."""
     wanted = settings.boolean("tf_frame_prefix_enable", True)
     own = settings.text("tf_frame_prefix", "")
-    space = (own or controller.rig.namespace).strip("/")
+    space = (own or controller.robot.namespace).strip("/")
     return f"{space}/" if wanted and space else ""
