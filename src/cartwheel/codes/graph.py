@@ -87,3 +87,24 @@ FRAMES_SHARED = Code(
     "warning",
     "two robots have frames with the same names",
 )
+MESSAGE_DEFINITION_INVALID = Code(
+    "CW728", "message-definition-invalid", "error", "a .msg, .srv or .action file is invalid"
+)
+MESSAGE_TYPE_BUILT_IN = Code(
+    "CW729",
+    "message-type-built-in",
+    "warning",
+    "a package defines a built-in message type with other fields",
+)
+MESSAGE_DEFINITIONS_DIFFER = Code(
+    "CW730",
+    "message-definitions-differ",
+    "warning",
+    "two packages with the same name define a message type differently",
+)
+MESSAGE_TYPE_IN_USE = Code(
+    "CW731",
+    "message-type-in-use",
+    "error",
+    "the process already uses a message type with the same name and other fields",
+)

@@ -138,10 +138,11 @@ _COUNTS = tuple(_aligned(["I"], start) for start in range(4))
 
 def _counted(field: Field, path: str) -> _Writer:
     get = attrgetter(path)
+    write = _wide_text_writer if field.wide else _text_writer
     if not field.array:
-        return _text_writer(get)
+        return write(get)
     if field.kind == "string":
-        return _list_writer(field, get, _text_writer(lambda text: text))
+        return _list_writer(field, get, write(lambda text: text))
     if field.kind == "message":
         return _list_writer(field, get, _plan(field.type))
     return _array_writer(field, get)
@@ -161,6 +162,19 @@ def _text_writer(get: Callable[[Any], Any]) -> _Writer:
         made = _short_text(text, at & 3) if len(text) <= _SHORT else _text(text, at & 3)
         parts.append(made)
         return at + len(made)
+
+    return write_text
+
+
+def _wide_text_writer(get: Callable[[Any], Any]) -> _Writer:
+    """ROS 2 writes each UTF-16 code unit as four bytes. Source: rosidl_typesupport_fastrtps."""
+
+    def write_text(message: Any, parts: _Parts, at: int) -> int:
+        units = np.frombuffer(get(message).encode("utf-16-le", "surrogatepass"), dtype="<u2")
+        way = _COUNTS[at & 3]
+        parts.append(way.pack(units.size))
+        parts.append(units.astype("<u4").tobytes())
+        return at + way.size + 4 * units.size
 
     return write_text
 
@@ -200,6 +214,8 @@ def _array_writer(field: Field, get: Callable[[Any], Any]) -> _Writer:
 
 def _write_count(field: Field, count: int, parts: _Parts, at: int) -> int:
     if field.length is None:
+        if field.most and count > field.most:
+            raise ValueError(f"{field.name} has at most {field.most} values (got {count})")
         way = _COUNTS[at & 3]
         parts.append(way.pack(count))
         return at + way.size

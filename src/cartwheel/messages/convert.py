@@ -224,6 +224,12 @@ def _value(field: Field, value: Any, path: str) -> Any:
             code=FIELD_VALUE_INVALID,
             values={"field": path, "count": len(value)},
         )
+    if field.most and len(value) > field.most:
+        raise GraphError(
+            f"{path}: expected at most {field.most} values for {field.described}, got {len(value)}",
+            code=FIELD_VALUE_INVALID,
+            values={"field": path, "count": len(value)},
+        )
     if field.kind in ("message", "string"):
         return [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
     return _numbers(field, value, path)
@@ -250,6 +256,12 @@ def _one(field: Field, value: Any, path: str) -> Any:
     if isinstance(value, np.generic):
         value = value.item()
     if field.kind == "string":
+        if isinstance(value, str) and field.longest and len(value) > field.longest:
+            raise GraphError(
+                f"{path}: expected at most {field.longest} characters, got {len(value)}",
+                code=FIELD_VALUE_INVALID,
+                values={"field": path.rstrip("."), "count": len(value)},
+            )
         if isinstance(value, str):
             return value
         raise GraphError(
@@ -314,6 +326,12 @@ def _int(field: Field, value: Any, path: str) -> int:
 
 
 def _empty(field: Field) -> Any:
+    if field.default is not None:
+        if not field.array:
+            return field.default
+        if field.kind == "string":
+            return list(field.default)
+        return np.array(field.default, dtype=field.type)
     if field.array:
         if field.kind == "message":
             return [zero(field.type) for _ in range(field.length or 0)]

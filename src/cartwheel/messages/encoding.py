@@ -7,6 +7,7 @@ from typing import Any
 
 from cartwheel.codes.graph import MESSAGE_NOT_DECODABLE
 from cartwheel.errors import GraphError
+from cartwheel.messages.cdr_reading import has_wide_text, read_cdr
 from cartwheel.messages.cdr_writing import encode_cdr
 from cartwheel.messages.store import loaded, message_class
 
@@ -25,6 +26,8 @@ def decode_cdr(data: bytes | memoryview, type_name: str, *, padded: bool = False
     """
     full = message_class(type_name).__msgtype__
     try:
+        if has_wide_text(full):
+            return read_cdr(data, full, padded=padded)
         if padded:
             data = memoryview(data)[: _size(data, full)]
         return loaded().deserialize_cdr(data, full)

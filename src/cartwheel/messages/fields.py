@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from cartwheel.messages.learnt import learnt
 from cartwheel.messages.store import loaded, message_class
 
 FILLER = "structure_needs_at_least_one_member"
@@ -42,13 +43,24 @@ class Field:
     array: bool = False
     length: int | None = None
     """Length of an array with fixed length."""
+    most: int = 0
+    """Maximum length of a sequence; 0 if unlimited."""
+    longest: int = 0
+    """Maximum length of a string; 0 if unlimited."""
+    wide: bool = False
+    """Whether it is a ``wstring``, which CDR represents differently."""
+    default: Any = None
+    """Value of an omitted field: a value, a tuple for an array, or None for zero or empty."""
 
     @property
     def described(self) -> str:
         """The type as in a message definition."""
+        text = f"{self.type}<={self.longest}" if self.longest else self.type
         if not self.array:
-            return self.type
-        return f"{self.type}[{'' if self.length is None else self.length}]"
+            return text
+        if self.most:
+            return f"{text}[<={self.most}]"
+        return f"{text}[{'' if self.length is None else self.length}]"
 
 
 @functools.cache
@@ -59,8 +71,11 @@ def fields(name: str) -> tuple[Field, ...]:
         UnknownNameError: The type does not exist.
     """
     full = message_class(name).__msgtype__
+    definition = learnt(full)
+    stated = () if definition is None else definition.fields
+    defaults = {field.name: field.default for field in stated}
     return tuple(
-        field_of(field, description)
+        replace(field_of(field, description), default=defaults.get(field))
         for field, description in loaded().fielddefs[full][1]
         if field != FILLER
     )
@@ -74,12 +89,14 @@ def field_of(name: str, description: Any) -> Field:
     if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
         inner = field_of(name, value[0])
         length = value[1] if node == Nodetype.ARRAY else None
-        return Field(name=name, kind=inner.kind, type=inner.type, array=True, length=length)
+        most = value[1] if node == Nodetype.SEQUENCE else 0
+        return replace(inner, array=True, length=length, most=most or 0)
     if node == Nodetype.NAME:
         return Field(name=name, kind="message", type=value)
     base = value[0]
     if base in ("string", "wstring"):
-        return Field(name=name, kind="string", type="string")
+        wide = base == "wstring"
+        return Field(name=name, kind="string", type="string", longest=value[1] or 0, wide=wide)
     if base == "bool":
         return Field(name=name, kind="bool", type="bool")
     kind: Kind = "float" if base.startswith("float") else "int"

@@ -10,8 +10,10 @@ from typing import Any
 
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
+from cartwheel.messages.definition import Definition
 from cartwheel.messages.fields import FILLER
-from cartwheel.messages.store import parsed_definitions, service_name, type_name
+from cartwheel.messages.learnt import learnt, learnt_since
+from cartwheel.messages.store import learning, parsed_definitions, service_name, type_name
 
 _PRIMITIVES = {
     "builtin_interfaces/msg/Time": "time",
@@ -42,18 +44,30 @@ class Ros1Service:
     response: str
 
 
-@functools.cache
 def ros1_store() -> Any:
-    """Typestore for ROS 1: Noetic's types and the fields of Cartwheel's definitions.
+    """Typestore for ROS 1: Noetic's types, Cartwheel's definitions, and those found in packages.
 
-    Cartwheel's own types have no classes here, because encoding and decoding do not need any.
+    Types that are not from Noetic have no classes here, because encoding and decoding do not need
+    any.
     """
+    made, added = _ros1_store()
+    with learning:
+        for each in learnt_since(len(added)):
+            added.append(each.name)
+            if not each.has_wide_text and all(used.type in made.fielddefs for used in each.uses):
+                made.fielddefs.setdefault(each.name, each.fielddefs(bounded=False))
+    return made
+
+
+@functools.cache
+def _ros1_store() -> tuple[Any, list[str]]:
+    """The store, and the names of the types that were added to it."""
     from rosbags.typesys import Stores, get_typestore
 
     made = get_typestore(Stores.ROS1_NOETIC)
     # rosbags shares this table between all stores of the same kind.
     made.fielddefs = {**parsed_definitions(), **made.fielddefs}
-    return made
+    return made, []
 
 
 def ros1_name(name: str) -> str:
@@ -70,8 +84,33 @@ def ros1_type(name: str) -> Ros1Type:
         UnknownNameError: ROS 1 does not have this type.
     """
     full = _known(type_name(name))
-    text, md5 = ros1_store().generate_msgdef(full)
+    if learnt(full) is None:
+        text, md5 = ros1_store().generate_msgdef(full)
+    else:
+        text, md5 = _learnt_text(full), _md5(_hashed_text(full))
     return Ros1Type(name=ros1_name(full), md5=md5, definition=text)
+
+
+def _learnt_text(full: str) -> str:
+    """The definition of a type from a package, with all nested types."""
+    texts: dict[str, str] = {}
+    waiting = [full]
+    while waiting:
+        name = waiting.pop()
+        if name in texts or name in _PRIMITIVES:
+            continue
+        known = learnt(name)
+        if known is not None:
+            texts[name] = known.written(1)
+            waiting += [used.type for used in reversed(known.uses)]
+        else:
+            nested: dict[str, tuple[str, str]] = {}
+            texts[name], _ = ros1_store().gendefhash(name, nested, 1)
+            texts.update({each: text for each, (text, _) in nested.items() if each not in texts})
+    line = "=" * 80
+    return texts.pop(full) + "".join(
+        f"{line}\nMSG: {ros1_name(name)}\n{text}" for name, text in texts.items()
+    )
 
 
 @functools.cache
@@ -118,6 +157,10 @@ def _hashed_text(full: str) -> str:
 def _hashed_lines(full: str) -> Iterator[str]:
     from rosbags.interfaces import Nodetype
 
+    known = learnt(full)
+    if known is not None:
+        yield from _learnt_lines(known)
+        return
     constants, fields = ros1_store().fielddefs[full]
     for name, base, value in constants:
         yield f"{base} {name}={value}"
@@ -137,3 +180,16 @@ def _hashed_lines(full: str) -> Iterator[str]:
         else:
             # The hash of an array of messages contains the md5 sum of one message.
             yield f"{_md5(_hashed_text(inner))} {name}"
+
+
+def _learnt_lines(known: Definition) -> Iterator[str]:
+    for constant in known.constants:
+        text = constant.text
+        if known.dialect == "ros2" and constant.type == "string":
+            text = str(constant.value)
+        yield f"{constant.type} {constant.name}={text}"
+    for field in known.fields:
+        if field.is_message and field.type not in _PRIMITIVES:
+            yield f"{_md5(_hashed_text(field.type))} {field.name}"
+        else:
+            yield field.written(1)

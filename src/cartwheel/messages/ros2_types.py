@@ -9,7 +9,17 @@ from typing import Any
 
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
-from cartwheel.messages.store import FIRST, TWIN, service_classes, service_name, store, type_name
+from cartwheel.messages.learnt import learnt, learnt_since
+from cartwheel.messages.ros2_hash import rihs01
+from cartwheel.messages.store import (
+    FIRST,
+    TWIN,
+    learning,
+    service_classes,
+    service_name,
+    store,
+    type_name,
+)
 
 _ROS1_ONLY = frozenset(
     {
@@ -82,7 +92,7 @@ def ros2_type(name: str) -> Ros2Type:
     if full not in known or is_ros1_only(full):
         raise UnknownNameError("ROS 2 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
     real = ros2_name(full)
-    return Ros2Type(name=real, dds=dds_name(real), hash=_hash_store().hash_rihs01(real))
+    return Ros2Type(name=real, dds=dds_name(real), hash=rihs01(_hash_store().fielddefs, real))
 
 
 @functools.cache
@@ -105,11 +115,11 @@ def ros2_service(name: str) -> Ros2Service:
     return Ros2Service(
         name=real,
         dds=dds_name(real),
-        hash=made.hash_rihs01(real),
+        hash=rihs01(made.fielddefs, real),
         request=request,
         response=response,
-        request_hash=made.hash_rihs01(f"{real}_Request"),
-        response_hash=made.hash_rihs01(f"{real}_Response"),
+        request_hash=rihs01(made.fielddefs, f"{real}_Request"),
+        response_hash=rihs01(made.fielddefs, f"{real}_Response"),
     )
 
 
@@ -120,7 +130,7 @@ def ros2_hash_of(name: str) -> str:
         UnknownNameError: ROS 2 does not have this type.
     """
     fields_of(name)
-    return str(_hash_store().hash_rihs01(name))
+    return rihs01(_hash_store().fielddefs, name)
 
 
 def fields_of(name: str) -> list[tuple[str, Any]]:
@@ -157,6 +167,8 @@ def twin_name(name: str) -> str:
 
 def is_ros1_only(name: str) -> bool:
     """Whether a type does not exist in ROS 2."""
+    if learnt(name) is not None:
+        return False
     return name.partition("/")[0] in _ROS1_ONLY or _PART.sub("", name) in _ROS1_TYPES
 
 
@@ -172,13 +184,21 @@ def _is_first(name: str) -> bool:
 
 
 def _hash_store(*, first: bool = False) -> Any:
-    return _hash_stores()[first]
+    stores, added = _hash_stores()
+    with learning:
+        for each in learnt_since(len(added)):
+            added.append(each.name)
+            constants, kinds = each.fielddefs(hashed=True)
+            described = [(field, _hashed(kind)) for field, kind in kinds]
+            for made in stores:
+                made.fielddefs.setdefault(each.name, (constants, described))
+    return stores[first]
 
 
 @functools.cache
-def _hash_stores() -> tuple[Any, Any]:
-    """Stores without and with the first versions of types."""
-    return _made_hash_store(first=False), _made_hash_store(first=True)
+def _hash_stores() -> tuple[tuple[Any, Any], list[str]]:
+    """Stores without and with the first versions of types, and the types that were added."""
+    return (_made_hash_store(first=False), _made_hash_store(first=True)), []
 
 
 def _made_hash_store(*, first: bool) -> Any:
@@ -198,7 +218,7 @@ def _made_hash_store(*, first: bool) -> Any:
         for name, (constants, fields) in sorted(
             store().fielddefs.items(), key=lambda item: _is_first(item[0])
         )
-        if not is_ros1_only(name) and (first or not _is_first(name))
+        if not is_ros1_only(name) and (first or not _is_first(name)) and learnt(name) is None
     }
     return made
 

@@ -9,11 +9,13 @@ package, and so are types from older ROS 2 releases.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import threading
 from collections.abc import Iterator
+from contextvars import ContextVar
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
@@ -34,7 +36,33 @@ FIRST = "_v1"
 _GOAL_ID = "unique_identifier_msgs/UUID goal_id\n"
 
 
-_learning = threading.RLock()
+learning = threading.RLock()
+"""Held while types are registered."""
+
+
+class Finder(Protocol):
+    """Finds types that Cartwheel does not contain; see `TypeLibrary`."""
+
+    def find(self, name: str) -> bool:
+        """Registers a type. Returns False if it does not exist."""
+
+
+_finder: ContextVar[Finder | None] = ContextVar("finder", default=None)
+
+
+@contextlib.contextmanager
+def finding_with(finder: Finder) -> Iterator[None]:
+    """Lets `message_class` find further types during the block, in this thread."""
+    token = _finder.set(finder)
+    try:
+        yield
+    finally:
+        _finder.reset(token)
+
+
+def _find(name: str) -> bool:
+    finder = _finder.get()
+    return finder is not None and finder.find(name)
 
 
 @functools.cache
@@ -44,6 +72,8 @@ def loaded() -> Any:
     # messages.
     from rosbags.typesys import Stores, get_typestore
 
+    # rosbags shares its table of types between stores, so read it before types are added.
+    _of_rosbags()
     return get_typestore(Stores.ROS2_JAZZY)
 
 
@@ -51,7 +81,7 @@ def loaded() -> Any:
 def store() -> Any:
     """The complete typestore: Jazzy's types and all of Cartwheel's. `loaded` is faster."""
     made = loaded()
-    with _learning:
+    with learning:
         ours = parsed_definitions() | parsed_definitions(ROS2_DEFINITIONS)
         made.register({name: ours[name] for name in ours if name not in made.fielddefs})
     return made
@@ -60,7 +90,7 @@ def store() -> Any:
 def _learn(name: str) -> bool:
     """Loads one of Cartwheel's types and its nested types. Returns False if it does not exist."""
     made = loaded()
-    with _learning:
+    with learning:
         if name in made.types:
             return True
         text = _texts().get(name)
@@ -121,16 +151,32 @@ def definitions(folder: Path = DEFINITIONS) -> Iterator[tuple[str, str]]:
 
 
 def _action(name: str, text: str) -> Iterator[tuple[str, str]]:
-    """The parts of an action. Source: rosidl's design article on actions."""
     goal, result, feedback = text.split(SEPARATOR)
     yield f"{name}_Goal", goal
     yield f"{name}_Result", result
     yield f"{name}_Feedback", feedback
+    yield from action_parts(name)
+
+
+def action_parts(name: str) -> Iterator[tuple[str, str]]:
+    """The parts that ROS 2 generates for an action. Source: rosidl's design article on actions."""
     yield f"{name}_SendGoal_Request", f"{_GOAL_ID}{name}_Goal goal\n"
     yield f"{name}_SendGoal_Response", "bool accepted\nbuiltin_interfaces/Time stamp\n"
     yield f"{name}_GetResult_Request", _GOAL_ID
     yield f"{name}_GetResult_Response", f"int8 status\n{name}_Result result\n"
     yield f"{name}_FeedbackMessage", f"{_GOAL_ID}{name}_Feedback feedback\n"
+
+
+def is_bundled(name: str) -> bool:
+    """Whether Cartwheel contains a message type, or this part of a service or action."""
+    return name in _texts() or name in _of_rosbags()
+
+
+@functools.cache
+def _of_rosbags() -> frozenset[str]:
+    from rosbags.typesys import Stores, get_typestore
+
+    return frozenset(get_typestore(Stores.ROS2_JAZZY).fielddefs)
 
 
 def is_ros2_only(name: str) -> bool:
@@ -164,7 +210,7 @@ def message_class(name: str) -> Any:
     """
     full = type_name(name)
     types = loaded().types
-    if full not in types and not _learn(full):
+    if full not in types and not _learn(full) and not _find(full):
         raise UnknownNameError("message type", name, store().types, code=MESSAGE_TYPE_UNKNOWN)
     return types[full]
 
@@ -176,7 +222,7 @@ def service_classes(name: str) -> tuple[Any, Any]:
         UnknownNameError: The type does not exist.
     """
     full = service_name(name)
-    if not _learn(f"{full}_Request"):
+    if not _learn(f"{full}_Request") and not _find(f"{full}_Request"):
         known = [key.removesuffix("_Request") for key in store().types if key.endswith("_Request")]
         raise UnknownNameError("service type", name, known, code=MESSAGE_TYPE_UNKNOWN)
     return message_class(f"{full}_Request"), message_class(f"{full}_Response")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.messages.learnt import learnt
 from cartwheel.messages.ros2_types import fields_of
 from cartwheel.messages.store import message_class
 
@@ -35,9 +36,16 @@ def _describe(name: str, described: dict[str, Any]) -> None:
     described[name] = message_class(f"{_PACKAGE}/IndividualTypeDescription")(
         type_name=name, fields=fields
     )
+    known = learnt(name)
+    stated = () if known is None else known.fields
+    defaults = {field.name: field.default_text for field in stated}
     for field, kind in fields_of(name):
         type_ = _field_type(kind)
-        fields.append(message_class(f"{_PACKAGE}/Field")(name=field, type=type_, default_value=""))
+        fields.append(
+            message_class(f"{_PACKAGE}/Field")(
+                name=field, type=type_, default_value=defaults.get(field, "")
+            )
+        )
         if type_.nested_type_name:
             _describe(type_.nested_type_name, described)
 
