@@ -212,6 +212,7 @@ class Component:
             rate: Publish rate for listings, Hz.
             qos: Quality of service on ROS 2.
         """
+        self._name_type(type_name)
         name = self.scope.published(topic, type_name)
         return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
 
@@ -228,6 +229,7 @@ class Component:
             callback: Receives each message, before the next step.
             unset: Accept NaN and infinity, which some commands use for values that are not set.
         """
+        self._name_type(type_name)
         checked = self.checked(callback, unset=unset)
         name, kind, receiver = self.scope.subscribed(topic, type_name, checked)
         subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
@@ -252,6 +254,7 @@ class Component:
         Returns:
             Whether the service is offered.
         """
+        self._name_type(type_name)
         try:
             service = self.graph.serve(
                 self.resolve(name), type_name, handler, node=self.node, threaded=threaded
@@ -269,6 +272,26 @@ class Component:
             return False
         self._open.callback(self.graph.withdraw, service)
         return True
+
+    def message_class(self, type_name: str) -> Any:
+        """Returns the class of a message type, which a package of the workspace may define.
+
+        Args:
+            type_name: ``pkg/msg/Name``.
+
+        Raises:
+            UnknownNameError: The type does not exist.
+            GraphError: The definition of the type is invalid.
+        """
+        return self.graph.types.message_class(type_name)
+
+    def _name_type(self, type_name: str) -> None:
+        """Looks for the type in packages, also if its package is one that Cartwheel contains.
+
+        Cartwheel's own components use only its own types, for which no files are searched.
+        """
+        if not type(self).__module__.startswith("cartwheel."):
+            self.graph.types.named(type_name)
 
     def take_positions(
         self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]

@@ -9,6 +9,7 @@ from typing import Any
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.component import Shared
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.package_files import SimulationPackages
 from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
@@ -19,9 +20,12 @@ from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
 from cartwheel.graph.graph import Subscription
 from cartwheel.messages import message_class, stamp
-from cartwheel.simulation import Simulation
+from cartwheel.messages.library import TypeLibrary
+from cartwheel.messages.store import finding_with
+from cartwheel.simulation import Part, Simulation
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.pacing import Pacer
+from cartwheel.simulation.resident import Behaviour
 
 CLOCK_RATE = 100.0
 """Default rate of ``/clock``, Hz of simulation time."""
@@ -39,6 +43,7 @@ class Session:
         bridge: Configuration files of ros_gz_bridge, which define topic names.
         plugins: Python files that define plugins. They are executed.
         allow_path: Folders with files that clients of the session's services may load.
+        package_path: Folders to search for the packages of message types first.
 
     Raises:
         CartwheelError: The world or a configuration file cannot be used.
@@ -54,24 +59,48 @@ class Session:
         bridge: Sequence[Path] = (),
         plugins: Sequence[Path] = (),
         allow_path: Sequence[Path] = (),
+        package_path: Sequence[Path] = (),
     ) -> None:
         self.allow_path = tuple(allow_path)
-        self.graph = Graph()
+        self._packages = SimulationPackages(package_path)
+        self.types = TypeLibrary(self._packages)
+        """The message types that the session's packages define."""
+        early: list[Diagnostic] = []
+        self.types.report = early.append
+        self.graph = Graph(types=self.types)
         self.shared = Shared(self.graph)
         """Objects that all components of the simulation share."""
         for path in bridge:
             self.shared.renaming.add(read_bridge(path))
         for path in plugins:
-            self.shared.get(PluginFiles).load(path)
+            self._packages.add(path)
+        self._packages.add(world.origin.file)
+        with finding_with(self.types):
+            for path in plugins:
+                self.shared.get(PluginFiles).load(path)
         self.strict = strict
+        # Without a reference to the session, because the simulation would keep it alive.
+        types, shared = self.types, self.shared
+
+        def attach_model(part: Part) -> list[Behaviour]:
+            with finding_with(types):
+                return attach(part, shared, lenient=lenient)
+
+        def attach_to_world(part: Part) -> list[Behaviour]:
+            with finding_with(types):
+                return attach_world(part, shared)
+
         self.simulation = Simulation(
             world,
-            attach=lambda part: attach(part, self.shared, lenient=lenient),
-            attach_world=lambda part: attach_world(part, self.shared),
+            attach=attach_model,
+            attach_world=attach_to_world,
             seed=seed,
         )
         self.graph.post = self.simulation.post
         self.graph.post_read = self.simulation.post_read
+        self.types.report = self.simulation.report
+        for diagnostic in early:
+            self.simulation.report(diagnostic)
         self.graph.on_error = self._subscriber_failed
         self.simulation.strict = strict
         self._clock = self.graph.advertise(
@@ -89,6 +118,7 @@ class Session:
         namespace: str = "/",
         frame_prefix: str = "",
         controllers: Sequence[Path] = (),
+        package_path: Sequence[Path] = (),
     ) -> str:
         """Spawns a model as `Simulation.spawn` does; in strict mode, warnings are errors.
 
@@ -102,11 +132,14 @@ class Session:
                 leaves the default to each plugin.
             frame_prefix: Prefix of frame names.
             controllers: YAML files whose controllers the model's controller manager starts.
+            package_path: Folders to search for the packages of message types first.
 
         Raises:
             PluginError: The model has no controller manager.
         """
         before = len(self.simulation.diagnostics)
+        if self._packages.add(description.origin.file, package_path):
+            self.types.forget_missing()
         files = self.shared.get(ControllerFiles)
         files.paths = tuple(controllers)
         try:
@@ -179,6 +212,7 @@ class Session:
     def close(self) -> None:
         """Stops the simulation; see `Simulation.close`."""
         self.simulation.close()
+        self.types.report = _ignore
         self.shared.get(ControllerFiles).loaded.clear()
         self.graph.close()
         self._clock_task.forget()
@@ -208,3 +242,7 @@ class Session:
             clock=stamp(self.simulation.time_ns)
         )
         self._clock.publish(message)
+
+
+def _ignore(_: Diagnostic) -> None:
+    """Receives the diagnostics of a closed session."""

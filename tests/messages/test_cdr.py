@@ -29,6 +29,8 @@ def grown(name: str, chance: random.Random) -> Any:
     message = zero(name)
     for field in fields(name):
         count = field.length if field.length is not None else chance.randrange(3)
+        if field.most:
+            count = min(count, field.most)
         if not field.array:
             value = _one(field, chance)
         elif field.kind in ("string", "message"):

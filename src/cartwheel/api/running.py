@@ -12,6 +12,7 @@ from cartwheel.assembly.driver import Driver
 from cartwheel.assembly.turns import Turns
 from cartwheel.codes.world import SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError
+from cartwheel.messages.store import finding_with
 from cartwheel.session import Session
 from cartwheel.simulation.clock import to_ns
 
@@ -149,7 +150,9 @@ class RunningWorld:
             if not outer[0]:
                 self._driver.begin()
             try:
-                yield simulation
+                # Plugins of users may call `message_class` at any time.
+                with finding_with(self.session.types):
+                    yield simulation
                 if self._connections is not None:
                     self._connections.raise_failure()
             finally:

@@ -14,7 +14,7 @@ from cartwheel.api.running import RunningWorld
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
-from cartwheel.graph import Graph, Mailbox
+from cartwheel.graph import Graph, Mailbox, Publisher
 from cartwheel.messages import from_dict, from_flat, type_name
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
@@ -49,6 +49,7 @@ class World(RunningWorld):
         allow_path: Folders with files that clients may load.
         host: Address on which the web interface and Foxglove's server listen.
         allow_origin: Origins of further web pages that may connect to them.
+        package_path: Folders to search for the packages of message types first.
 
     Raises:
         DescriptionError: The world's file cannot be used.
@@ -73,6 +74,7 @@ class World(RunningWorld):
         record_topics: Sequence[str] = (),
         overwrite: bool = False,
         allow_path: Sequence[str | Path] = (),
+        package_path: Sequence[str | Path] = (),
         host: str = "127.0.0.1",
         allow_origin: Sequence[str] = (),
     ) -> None:
@@ -108,6 +110,7 @@ class World(RunningWorld):
                 bridge=[Path(file) for file in bridge],
                 allow_path=[Path(folder) for folder in allow_path],
                 plugins=[Path(file) for file in plugins],
+                package_path=[Path(folder) for folder in package_path],
             )
             super().__init__(
                 session, host=host, allow_origin=allow_origin, connections=connections, plan=plan
@@ -181,7 +184,10 @@ class World(RunningWorld):
         pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
         files = [Path(file) for file in controllers]
         with self.used():
-            return Model(self, self.session.spawn(robot, name=name, pose=pose, controllers=files))
+            spawned = self.session.spawn(
+                robot, name=name, pose=pose, controllers=files, package_path=package_path
+            )
+            return Model(self, spawned)
 
     def model(self, name: str) -> Model:
         """Returns a handle to a model in the world.
@@ -228,7 +234,36 @@ class World(RunningWorld):
             except BaseException as error:  # noqa: BLE001 - raised by `run`
                 simulation.defer(error)
 
-        self.graph.subscribe(topic, guarded, type_name=type_name(type) if type else None)
+        full = type_name(type) if type else None
+        if full is not None:
+            self.graph.types.named(full)
+        self.graph.subscribe(topic, guarded, type_name=full)
+
+    def advertise(self, topic: str, type: str) -> Publisher:
+        """Advertises a topic, and returns its publisher.
+
+        Args:
+            topic: Topic name.
+            type: ``geometry_msgs/msg/Twist``, or a type that a package of the workspace defines.
+
+        Raises:
+            GraphError: The topic exists with a different type, or the definition of the type is
+                invalid.
+        """
+        full = self.message_class(type).__msgtype__
+        return self.graph.advertise(topic, full)
+
+    def message_class(self, type: str) -> Any:
+        """Returns the class of a message type: a dataclass with the message's fields.
+
+        Args:
+            type: ``geometry_msgs/msg/Twist``, or a type that a package of the workspace defines.
+
+        Raises:
+            UnknownNameError: The type does not exist.
+            GraphError: The definition of the type is invalid.
+        """
+        return self.graph.types.message_class(type)
 
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
         """Buffers the topic's messages, to be read after `run`.

@@ -94,6 +94,11 @@ class ControlClient:
         except BaseException:
             connection.close()
             raise
+        if answer["types"]:
+            # Only then are libraries for messages needed, which take time to import.
+            from cartwheel.control.types import register_types
+
+            register_types(answer["types"])
         return Subscription(connection, answer["topic"], answer["type"])
 
     def publish(

@@ -24,6 +24,7 @@ from cartwheel.control.faults import packed
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.place import AXES, placed
 from cartwheel.control.protocol import PATIENCE
+from cartwheel.control.types import packed_types
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import ControlError, UnknownNameError
 from cartwheel.graph import TopicInfo, resolve_name
@@ -219,6 +220,7 @@ class Operations:
         """Accepts a message as a mapping, or as CDR in the payload."""
         name = resolve_name(parameters.text("topic"))
         wanted = type_name(parameters.text("type"))
+        self._graph.types.named(wanted)
         known = {topic.name: topic for topic in self._graph.topics()}
         if payload:
             message = decode_cdr(payload, wanted)
@@ -263,7 +265,11 @@ class Operations:
         request_class, _response_class = service_classes(service.type)
         request = from_dict(request_class.__msgtype__, parameters.value("request") or {})
         response = self._in_time(self._graph.call(service.name, request))
-        return {"response": to_dict(response), "type": response.__msgtype__}
+        return {
+            "response": to_dict(response),
+            "type": response.__msgtype__,
+            "types": packed_types(response.__msgtype__),
+        }
 
     # -- the viewer
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from cartwheel.control.parameters import Parameters
 from cartwheel.control.protocol import Connection, pack
+from cartwheel.control.types import packed_types
 from cartwheel.graph import Mailbox, TopicInfo
 from cartwheel.interfaces import RunningSession
 
@@ -59,7 +60,8 @@ class Streams:
         )
         subscription.dropped = lambda: box.dropped
         try:
-            client.send({"ok": {"topic": topic.name, "type": topic.type}})
+            types = packed_types(topic.type)
+            client.send({"ok": {"topic": topic.name, "type": topic.type, "types": types}})
             while not self._closed.is_set():
                 first = box.get(_LOOK)
                 if first is not None:

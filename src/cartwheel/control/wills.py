@@ -38,6 +38,7 @@ class Wills:
             self._messages.pop(name, None)
             return
         wanted = type_name(parameters.text("type"))
+        self._graph.types.named(wanted)
         message = from_dict(wanted, content)
         if name not in self._messages and len(self._messages) >= MOST:
             raise ControlError(

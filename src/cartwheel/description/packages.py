@@ -111,6 +111,17 @@ class Packages:
             )
         return found
 
+    def all_named(self, name: str) -> list[Path]:
+        """The folders of all packages with a name, in search order."""
+        first = self._known(name)
+        if first is None:
+            return []
+        found = [first]
+        for roots in (self.package_path, self._ancestors(), self._environment_roots()):
+            for root in roots:
+                found += [each for each in (root, *_nested(root)) if _package_name(each) == name]
+        return list(dict.fromkeys(found))
+
     def find_model(self, name: str, origin: Origin | None = None) -> Path:
         """The folder of a Gazebo model, or of a package with this name.
 

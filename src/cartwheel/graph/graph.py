@@ -30,6 +30,7 @@ from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
 from cartwheel.graph.transforms import StaticTransforms
 from cartwheel.messages import CdrCache
+from cartwheel.messages.library import TypeLibrary
 
 Callback = Callable[[Any], None]
 Handler = Callable[[Any], Any]
@@ -189,13 +190,15 @@ class Graph:
     Args:
         post: Runs a function on the owner's thread soon. The simulation passes its own.
             Without it, functions run at once, for single-threaded use.
+        types: Finds message types in packages. None finds only built-in types.
     """
 
-    def __init__(self, post: Post | None = None) -> None:
+    def __init__(self, post: Post | None = None, *, types: TypeLibrary | None = None) -> None:
         self.post: Post = post or _at_once
         self.post_read: Post | None = None
         """Like `post`, for functions that may also run while the simulation waits, on another
         thread."""
+        self.types = types or TypeLibrary()
         self._lock = threading.RLock()
         self._topics: dict[str, Topic] = {}
         self._services: dict[str, Service] = {}
@@ -255,8 +258,10 @@ class Graph:
         """Creates a publisher for a topic of the ROS 2 type ``pkg/msg/Name``.
 
         Raises:
-            GraphError: The topic exists with a different type, or the name is invalid.
+            GraphError: The topic exists with a different type, or the name or the definition of
+                the type is invalid.
         """
+        self.types.note(type_name)
         with self._lock:
             topic = self._topic(name, type_name)
             publisher = Publisher(self, topic, node=node, rate=rate, qos=qos)
@@ -285,8 +290,10 @@ class Graph:
 
         Raises:
             UnknownNameError: The topic does not exist, and no type is given.
-            GraphError: The topic has a different type.
+            GraphError: The topic has a different type, or the definition of the type is invalid.
         """
+        if type_name is not None:
+            self.types.note(type_name)
         with self._lock:
             if type_name is None:
                 if name not in self._topics:
@@ -336,9 +343,10 @@ class Graph:
         """Offers a service of type ``pkg/srv/Name``. `Service` describes on which thread it runs.
 
         Raises:
-            GraphError: The name is already in use.
+            GraphError: The name is already in use, or the definition of the type is invalid.
         """
         name = resolve_name(name)
+        self.types.note(type_name)
         with self._lock:
             if name in self._services:
                 raise GraphError(
@@ -363,8 +371,9 @@ class Graph:
         """Registers an action; see `Action`.
 
         Raises:
-            GraphError: The name is already in use.
+            GraphError: The name is already in use, or the definition of the type is invalid.
         """
+        self.types.note(action.type)
         with self._lock:
             if action.name in self._actions:
                 raise GraphError(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import struct
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -57,7 +57,7 @@ class _Source:
     def __init__(self, data: bytes | memoryview) -> None:
         if len(data) < _HEAD or data[0] or data[1] not in (0, 1):
             raise ValueError("the encapsulation header is invalid")
-        self._order = "<" if data[1] else ">"
+        self._order: Literal["<", ">"] = "<" if data[1] else ">"
         self.data = memoryview(data)[_HEAD:]
         self.at = 0
         self._elements = len(data) + _EMPTIES

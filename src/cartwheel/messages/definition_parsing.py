@@ -302,30 +302,13 @@ class _Parser:
         return DefinedConstant(type=base, name=name, value=value, text=text)
 
     def _value(self, base: str, name: str, text: str) -> Scalar:
-        if base in ("string", "wstring"):
-            if len(text) > 1 and _QUOTED.fullmatch(text):
-                return _unquoted(text)
-            return text
-        if base == "bool":
-            word = text.lower()
-            if word in ("true", "1"):
-                return True
-            if word in ("false", "0"):
-                return False
-        elif base in ("float32", "float64"):
-            if len(text) <= _LONGEST_NUMBER and "_" not in text:
-                try:
-                    return float(text)
-                except ValueError:
-                    pass
-        elif len(text) <= _LONGEST_NUMBER and _INTEGER.match(text):
-            value = int(text, 0) if text.lstrip("+-")[:2].lower() in _PREFIXES else int(text)
-            least, most = _INTEGERS[base]
-            if base == "byte" and self._dialect != "ros2":
-                least, most = -128, 255
-            if least <= value <= most:
-                return value
-        self._fail(f'"{name}": {_shown(text)} is not a valid {base}', {"name": name})
+        value = _scalar(base, text)
+        least, most = _INTEGERS.get(base, (0, 0))
+        if base == "byte" and self._dialect != "ros2":
+            least = -128
+        if value is None or (base in _INTEGERS and not least <= int(value) <= most):
+            self._fail(f'"{name}": {_shown(text)} is not a valid {base}', {"name": name})
+        return value
 
     # -- dialects
 
@@ -387,6 +370,24 @@ def _without_comment(text: str) -> str:
 
 def _unquoted(text: str) -> str:
     return re.sub(r"\\(.)", r"\1", text[1:-1], flags=re.DOTALL)
+
+
+def _scalar(base: str, text: str) -> Scalar | None:
+    """A value of a primitive type; None if it is invalid."""
+    if base in ("string", "wstring"):
+        return _unquoted(text) if len(text) > 1 and _QUOTED.fullmatch(text) else text
+    if base == "bool":
+        return {"true": True, "1": True, "false": False, "0": False}.get(text.lower())
+    if len(text) > _LONGEST_NUMBER:
+        return None
+    if base in ("float32", "float64"):
+        try:
+            return None if "_" in text else float(text)
+        except ValueError:
+            return None
+    if not _INTEGER.match(text):
+        return None
+    return int(text, 0) if text.lstrip("+-")[:2].lower() in _PREFIXES else int(text)
 
 
 def _shown(text: str) -> str:

@@ -155,7 +155,7 @@ def recorded(name: str, fielddefs: Any) -> Definition:
         ),
         fields=tuple(fields),
     )
-    text = "".join(f"{line}\n" for line in made._lines(2))
+    text = "".join(f"{line}\n" for line in made.lines(2))
     return Definition(
         name=name,
         dialect="ros2",

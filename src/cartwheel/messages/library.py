@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn, Protocol
+from typing import Any, NoReturn, Protocol
 
 from cartwheel.codes.graph import (
     MESSAGE_DEFINITION_INVALID,
@@ -170,7 +170,7 @@ class TypeLibrary:
                 self._compare_bundled(part)
         self.find(name)
 
-    def message_class(self, name: str) -> type:
+    def message_class(self, name: str) -> Any:
         """Class of a message type.
 
         Raises:
@@ -179,8 +179,7 @@ class TypeLibrary:
         """
         full = type_name(name)
         self.named(full)
-        made: type = message_class(full)
-        return made
+        return message_class(full)
 
     def find(self, name: str) -> bool:
         """Registers a type with its nested types. Returns False if it does not exist.
@@ -277,9 +276,13 @@ class TypeLibrary:
             GraphError: The file cannot be read, or its content is invalid.
         """
         origin = Origin(file=str(file.path))
-        if not self._packages.may_read(file.path, file.folder):
+        try:
+            allowed = self._packages.may_read(file.path, file.folder)
+        except (OSError, RuntimeError):  # a link that leads to itself
+            allowed = False
+        if not allowed:
             raise GraphError(
-                f'the file is a link that leads out of the package "{file.package}"',
+                f'the file is a link that does not lead to a file of the package "{file.package}"',
                 code=MESSAGE_DEFINITION_INVALID,
                 origin=origin,
                 values={"type": f"{file.package}/{kind}/{stem}", "name": str(file.path)},

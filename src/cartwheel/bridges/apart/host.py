@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from typing import Any
 
@@ -20,6 +20,8 @@ from cartwheel.codes.wires import MESSAGE_NOT_SENT
 from cartwheel.errors import Diagnostic, Reporter
 from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
+from cartwheel.messages.definition import Definition
+from cartwheel.messages.learnt import needed
 
 _TOLD = 500
 """Maximum number of different warnings."""
@@ -70,6 +72,10 @@ class GraphHost:
         self._services: Offers[Service] = Offers()
         self._server = _RemoteServer(link)
         self._actions = HostedActions(link, graph, time_ns)
+        self._defined: set[str] = set()
+        """Message types whose definitions the bridge has received."""
+        self._known: set[str] = set()
+        """Topic, service and action types that the bridge has received."""
         self._changing = False
         self._closed = False
         self.waited = 0.0
@@ -116,13 +122,33 @@ class GraphHost:
 
     def _state(self) -> GraphState:
         graph = self._graph
+        topics = tuple(graph.topics())
+        services = self._services.update(graph.services())
+        actions = self._actions.update()
         return GraphState(
             time_ns=self._time_ns(),
-            topics=tuple(graph.topics()),
-            services=self._services.update(graph.services()),
-            actions=self._actions.update(),
+            topics=topics,
+            services=services,
+            actions=actions,
             nodes=dict(graph.nodes),
+            types=tuple(
+                self._new_types(
+                    {each.type for each in topics}
+                    | {each.type for each in services}
+                    | {each.type for each in actions}
+                )
+            ),
         )
+
+    def _new_types(self, names: set[str]) -> Iterator[Definition]:
+        """The definitions that the bridge does not know yet."""
+        new = names - self._known
+        self._known |= new
+        for name in sorted(new):
+            for definition in needed(name):
+                if definition.name not in self._defined:
+                    self._defined.add(definition.name)
+                    yield definition
 
     def _subscribe(self, number: int, name: str, type_name: str, node: str) -> None:
         kind = _Times if type_name == _CLOCK and not self._patient else _Relay

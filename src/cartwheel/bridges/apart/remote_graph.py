@@ -19,6 +19,8 @@ from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.graph import ParameterServer, Service, TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
+from cartwheel.messages.definition import Definition
+from cartwheel.messages.learnt import register
 
 T = TypeVar("T")
 _LOOKS = 0.25
@@ -34,6 +36,8 @@ class GraphState:
     services: tuple[Offer, ...] = ()
     actions: tuple[Offer, ...] = ()
     nodes: Mapping[str, str]
+    types: tuple[Definition, ...] = ()
+    """Message types that this process does not know yet, nested ones first."""
 
 
 class _Packer:
@@ -220,6 +224,7 @@ class RemoteGraph:
 
     def _changed(self, state: GraphState) -> None:
         self.time_ns = state.time_ns
+        register(state.types)
         services, actions = self._services, self._actions
         # Existing services stay the same objects, because mirrors of the graph compare them.
         self._services = {

@@ -13,6 +13,7 @@ from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
 from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.messages import decode_cdr, store
 from cartwheel.messages.fields import FILLER
+from cartwheel.messages.learnt import learnt, recorded, register
 from cartwheel.messages.ros1 import decode_ros1, ros1_type
 from cartwheel.messages.ros1_types import ros1_store
 from cartwheel.messages.ros2_types import twin_name
@@ -92,14 +93,33 @@ def _learn(topic: RecordedTopic) -> None:
         for name, (_, fields) in types.items():
             if twin_name(name) in ours.fielddefs:
                 continue
-            if name in ours.fielddefs and _plain(ours.fielddefs[name][1]) != _plain(fields):
+            if name in ours.fielddefs and _plain(_known_fields(name)) != _plain(fields):
                 raise _other_fields(topic, name)
     new = {name: fields for name, fields in types.items() if name not in ours.fielddefs}
-    if new:
-        ours.register(new)
     if topic.encoding == "ros1":
         known = ros1_store().fielddefs
         known.update({name: fields for name, fields in types.items() if name not in known})
+    register(recorded(name, new[name]) for name in _nested_first(new))
+
+
+def _known_fields(name: str) -> Any:
+    """The fields of a known type, with the types as in its definition."""
+    known = learnt(name)
+    return store().fielddefs[name][1] if known is None else known.fielddefs(hashed=True)[1]
+
+
+def _nested_first(types: dict[str, Any]) -> Iterator[str]:
+    """The names of types in an order in which nested types come first."""
+    left = dict(types)
+    while left:
+        flat = [
+            name
+            for name, (_, fields) in left.items()
+            if not any(used in left for _, used in _elements(fields))
+        ]
+        yield from flat
+        for name in flat:
+            del left[name]
 
 
 def _in_graph(kind: str, topic: RecordedTopic) -> str:

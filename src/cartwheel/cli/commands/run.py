@@ -23,6 +23,7 @@ from cartwheel.control import running
 from cartwheel.description.reach import run_folders
 from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
+from cartwheel.messages.store import finding_with
 
 if TYPE_CHECKING:
     from cartwheel.assembly.viewer import AnnouncedViewer
@@ -103,6 +104,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         bridge=options.bridge,
         plugins=options.plugins,
         allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
+        package_path=options.package_path,
     )
     session.simulation.tolerant = not options.strict
     name = None
@@ -221,7 +223,8 @@ def _run(assembly: Assembly, viewer: AnnouncedViewer | None, report: Report) -> 
     began = time.perf_counter()
     if viewer is not None:
         viewer.start(pacer)
-    pacer.run()
+    with finding_with(session.types):
+        pacer.run()
     report.ended(session, time.perf_counter() - began)
     if viewer is not None:
         viewer.raise_failure()

@@ -26,8 +26,10 @@ def call(sim: int | None, service: str, words: Sequence[str]) -> None:
     request = parse_yaml(words)
     with connect(sim) as client:
         answer = client.request("call", service=service, request=request)
+    from cartwheel.control.types import register_types
     from cartwheel.messages import from_dict, to_yaml
 
+    register_types(answer["types"])
     text = to_yaml(from_dict(answer["type"], answer["response"]), full=True)
     if text:
         say(text.rstrip("\n"))
