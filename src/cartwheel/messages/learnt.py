@@ -44,7 +44,7 @@ def register(definitions: Iterable[Definition]) -> None:
         made = loaded()
         for each in new:
             constants, fields = each.fielddefs()
-            odd = [one for one in constants if one[2] != one[2] or one[2] in (math.inf, -math.inf)]
+            odd = [one for one in constants if _is_odd(one)]
             # rosbags writes constants into Python code, where infinity and NaN have no literal.
             made.register({each.name: ([one for one in constants if one not in odd], fields)})
             made.fielddefs[each.name] = (constants, made.fielddefs[each.name][1])
@@ -52,6 +52,12 @@ def register(definitions: Iterable[Definition]) -> None:
                 setattr(made.types[each.name], name, value)
             _accept_keywords(made.types[each.name], [field.name for field in each.fields])
             _by_name[each.name] = each
+
+
+def _is_odd(constant: tuple[str, str, Any]) -> bool:
+    """Whether a constant is a floating-point number without a literal in Python."""
+    _, kind, value = constant
+    return kind.startswith("float") and not math.isfinite(value)
 
 
 def _is_known(one: Definition) -> bool:
