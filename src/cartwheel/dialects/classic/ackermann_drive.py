@@ -130,7 +130,7 @@ class ClassicAckermannDrive(Plugin[AckermannParameters]):
     """Drives the rear wheels and steers the front wheels of a car from Twist commands.
 
     Commands are received on ``cmd_vel``. ``linear.x`` is the speed in m/s at the middle of the rear
-    axle. ``angular.z`` is the steering angle in rad. Its sign is inverted while ``linear.x`` is
+    axle. ``angular.z`` is the steering angle in rad, with the opposite sign while ``linear.x`` is
     negative. The odometry is the ground-truth pose in the world. Wheel radius, wheel base and track
     are read from the robot description. Original plugin: ``gazebo_ros_ackermann_drive`` in the
     package ``gazebo_plugins``.

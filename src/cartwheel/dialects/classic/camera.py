@@ -302,7 +302,7 @@ class Camera(RosCamera[DepthByTypeParameters]):
     plugin also publishes depth images and points.
 
     ``image_raw/compressed`` contains JPEG or PNG images. The service ``set_camera_info`` replaces
-    the published CameraInfo and does not change the image. If the plugin tag is written for ROS 1,
+    the published CameraInfo but does not change the image. If the plugin tag is written for ROS 1,
     ``imager_rate`` and the compression parameters can be changed with dynamic_reconfigure.
 
     The image is distorted with the sensor's ``<distortion>``, or else with the plugin's
@@ -360,7 +360,7 @@ class Prosilica(RosCamera[ProsilicaParameters]):
     """Publishes the images of a Prosilica camera in streaming mode.
 
     Topics are the same as for ``libgazebo_ros_camera.so``. Setting the parameter ``trigger_mode``
-    to ``polled`` has no effect and causes a warning. Original plugin: ``gazebo_ros_prosilica`` in
+    to ``polled`` has no effect, with a warning. Original plugin: ``gazebo_ros_prosilica`` in
     the package ``gazebo_plugins``.
     """
 

@@ -157,9 +157,9 @@ class DiffDrive(Plugin[DiffDriveParameters]):
     A velocity servo with the maximum torque ``<wheelTorque>`` turns each wheel. A command stays in
     effect until the next command.
 
-    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` counts as written
-    for ROS 2, any other as written for ROS 1. For ROS 1, the model's name is the namespace of the
-    topics if the model is part of a world file and ``<robotNamespace>`` is missing. Original
+    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` is treated as a tag
+    for ROS 2. Any other plugin tag is treated as a tag for ROS 1: if it is part of a world file and
+    has no ``<robotNamespace>``, the topics are in a namespace with the model's name. Original
     plugin: ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
     """
 

@@ -29,7 +29,7 @@ class VacuumGripperParameters:
 
 
 class VacuumGripper(Plugin[VacuumGripperParameters]):
-    """While switched on, holds the nearest link of a different model that is within reach.
+    """While switched on, holds the nearest link of another model that is within reach.
 
     The held link keeps its pose relative to the cup, as with a fixed joint. In Gazebo, the link is
     pulled toward the cup. The services `on` and `off` switch the gripper. If the plugin tag

@@ -28,7 +28,7 @@ class Altimeter(Plugin[AltimeterParameters]):
     """Publishes the height of a sensor above its initial height, and its vertical velocity.
 
     Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the initial
-    height, measured in the world. The noise in ``<vertical_position>`` and ``<vertical_velocity>``
+    height in the world frame. The noise in ``<vertical_position>`` and ``<vertical_velocity>``
     is applied. Original sensor: ``AltimeterSensor`` in gz-sensors. The message type is the same as
     in ros_gz_bridge.
     """

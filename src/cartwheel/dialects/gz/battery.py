@@ -108,7 +108,7 @@ class Battery(Plugin[BatteryParameters]):
 
     Recharging stops at 90 % of the capacity. BatteryState is published at 50 Hz on
     ``/model/<model>/battery/<battery_name>/state``. The message field ``percentage`` is from 0 to
-    1, as in ROS. An empty battery causes a warning and does not stop the robot. Original plugin:
+    1, as in ROS. An empty battery is reported but does not stop the robot. Original plugin:
     ``LinearBatteryPlugin`` in gz-sim.
     """
 

@@ -46,7 +46,7 @@ class DetachableJointParameters:
 
 
 class DetachableJoint(Plugin[DetachableJointParameters]):
-    """Attaches a link of a different model to a link of this model until a message detaches it.
+    """Attaches a link of another model to a link of this model until a message detaches it.
 
     The links are attached when the simulation starts, in their current relative pose. A child model
     that is spawned later is attached as soon as it exists. Original plugin: ``DetachableJoint`` in

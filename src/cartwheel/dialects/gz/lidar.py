@@ -46,7 +46,7 @@ class GzLidar(Plugin[GzLidarParameters]):
     """Publishes the middle row of a lidar as a LaserScan, and all rows as a PointCloud2.
 
     The cloud is organised: it has one row of points for each row of rays, starting with the lowest.
-    A ray that hits nothing has a point with infinite coordinates.
+    A ray that hits nothing results in a point with infinite coordinates.
 
     ``gpu_lidar`` and ``gpu_ray`` sensors measure the visual geometry; ``lidar`` and ``ray`` sensors
     measure the collision geometry.

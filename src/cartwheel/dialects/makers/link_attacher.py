@@ -35,8 +35,8 @@ class LinkAttacher(_LinkAttacher):
     """Attaches and detaches any two links in the world through ROS 1 services.
 
     Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
-    attached at the same time. Failed requests return ``ok: false``. Unknown models and links also
-    cause a warning. Original plugin: ``gazebo_ros_link_attacher`` by PAL Robotics.
+    attached at the same time. Failed requests return ``ok: false``. Unknown models and links are
+    also reported as warnings. Original plugin: ``gazebo_ros_link_attacher`` by PAL Robotics.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_link_attacher.so",)

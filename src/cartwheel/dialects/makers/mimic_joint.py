@@ -49,7 +49,7 @@ class MimicJointParameters:
 
 
 class MimicJoint(Plugin[MimicJointParameters]):
-    """Makes a joint mimic the position of a different joint.
+    """Makes a joint mimic the position of another joint.
 
     ``<mimic>`` in a URDF has the same effect without a plugin. Original plugin:
     ``MimicJointPlugin`` in the package ``roboticsgroup_upatras_gazebo_plugins``.

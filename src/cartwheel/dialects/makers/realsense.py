@@ -122,9 +122,9 @@ class RealSense(Plugin[RealSenseParameters]):
     """Publishes the colour, infrared and depth images of an Intel RealSense.
 
     The images come from the model's sensors ``<prefix>color``, ``<prefix>ired1``, ``<prefix>ired2``
-    and ``<prefix>depth``. A missing sensor causes a warning. The plugin's name is the namespace of
+    and ``<prefix>depth``. Missing sensors are reported. The plugin's name is the namespace of
     the topics. Each image topic has a ``camera_info`` topic in the same namespace. Depth images
-    have the encoding 16UC1, in mm. A depth of 0 means that none was measured. Original plugin:
+    have the encoding 16UC1, in mm. A depth of 0 means that no depth was measured. Original plugin:
     ``realsense_gazebo_plugin`` by PAL Robotics.
     """
 
