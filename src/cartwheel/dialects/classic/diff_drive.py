@@ -158,9 +158,9 @@ class DiffDrive(Plugin[DiffDriveParameters]):
     effect until the next command.
 
     A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` is treated as a tag
-    for ROS 2. Any other plugin tag is treated as a tag for ROS 1: if it is part of a world file and
-    has no ``<robotNamespace>``, the topics are in a namespace with the model's name. Original
-    plugin: ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
+    for ROS 2, any other plugin tag as a tag for ROS 1. For ROS 1, if the model is part of a world
+    file and the plugin tag has no ``<robotNamespace>``, the topics are in a namespace with the
+    model's name. Original plugin: ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
