@@ -171,7 +171,8 @@ class ClassicTricycleDrive(Plugin[TricycleParameters]):
     A plugin tag that contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``, is
     treated as a tag for ROS 2, any other plugin tag as a tag for ROS 1. For ROS 1, if the model is
     part of a world file and the plugin tag has no ``<robotNamespace>``, the topics are in a
-    namespace with the model's name. Original plugin: ``gazebo_ros_tricycle_drive`` in the package ``gazebo_plugins``.
+    namespace with the model's name. Original plugin: ``gazebo_ros_tricycle_drive`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)
