@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-import numpy as np
-
-from cartwheel.dialects.makers.motor_model import ACTUATORS, SLOWDOWN
+from cartwheel.devices.air.propeller_states import (
+    PropellerStates,
+    PropellerStatesConfig,
+    SpeedRelay,
+    SpeedRelayConfig,
+)
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.propeller_tags import SLOWDOWN
 from cartwheel.dialects.tags import tag
-from cartwheel.messages import header, message_class
 
 _ROTOR = "rotor_"
 
@@ -54,14 +57,10 @@ class RotorsController(Plugin[RotorsControllerParameters]):
     parameters: ClassVar[type] = RotorsControllerParameters
 
     def configure(self) -> None:
-        self._Actuators = message_class(ACTUATORS)
-        self._motors = self.advertise(self.config.motor_topic, ACTUATORS)
-        self.subscribe(self.config.command_topic, ACTUATORS, self._on_command)
-
-    def _on_command(self, message: Any) -> None:
-        none = np.zeros(0)
-        moment = header(self.part.time_ns, "")
-        self._motors.publish(self._Actuators(moment, none, message.angular_velocities, none))
+        config = SpeedRelayConfig(
+            command_topic=self.config.command_topic, output_topic=self.config.motor_topic
+        )
+        self.add(SpeedRelay(self.scope, config))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,30 +90,19 @@ class RotorsBase(Plugin[RotorsBaseParameters]):
     parameters: ClassVar[type] = RotorsBaseParameters
 
     def configure(self) -> None:
-        config, part, origin = self.config, self.part, self.tag.origin
+        config, part = self.config, self.part
         self.check_above_zero(rotorVelocitySlowdownSim=config.slowdown)
-        part.link(config.link, origin=origin)
+        part.link(config.link, origin=self.origin)
         joints = {}
         for joint in part.description.joints:
             _, mark, number = joint.child.partition(_ROTOR)
             if mark and number.isdigit() and joint.parent == config.link and joint.drivable:
-                joints[int(number)] = part.joint(joint.name, origin=origin)
-        self._joints = [joints[number] for number in sorted(joints)]
-        self._frame = self.frame(config.link)
-        self._Actuators = message_class(ACTUATORS)
-        self._JointState = message_class("sensor_msgs/msg/JointState")
-        self._speeds = self.advertise(config.topic, ACTUATORS)
-        self._states = self.advertise(config.joint_topic, "sensor_msgs/msg/JointState")
-        part.schedule(
-            0, after=self._publish, active=lambda: self._speeds.wanted or self._states.wanted
+                joints[int(number)] = joint.name
+        device = PropellerStatesConfig(
+            joints=[joints[number] for number in sorted(joints)],
+            speed_topic=config.topic,
+            joint_topic=config.joint_topic,
+            frame=config.link,
+            slowdown=config.slowdown,
         )
-
-    def _publish(self) -> None:
-        moment, none = header(self.part.time_ns, self._frame), np.zeros(0)
-        if self._speeds.wanted:
-            speeds = np.array([joint.velocity * self.config.slowdown for joint in self._joints])
-            self._speeds.publish(self._Actuators(moment, none, speeds, none))
-        if self._states.wanted:
-            names = [joint.name for joint in self._joints]
-            angles = np.array([joint.position for joint in self._joints])
-            self._states.publish(self._JointState(moment, names, angles, none, none))
+        self.add(PropellerStates(self.scope, device))

@@ -1,0 +1,1 @@
+"""Multicopters: propellers and their states."""

@@ -1,0 +1,46 @@
+"""``gz-sim-multicopter-motor-model-system``: a propeller."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.air.propeller import GZ_ACTUATORS
+from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
+from cartwheel.dialects.tags import tag
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GzMotorParameters(PropellerTags):
+    number: int = tag(
+        "actuator_number",
+        "motorNumber",
+        doc="Index of the motor's speed in the commands, from 0.",
+    )
+    topic: str = tag(
+        "commandSubTopic",
+        default="",
+        doc="Topic of the Actuators commands, with speeds in rad/s. Its namespace is "
+        "`<robotNamespace>`, or else the model's name.",
+    )
+    fastest: float = tag(
+        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+    )
+
+
+class GzMotorModel(Plugin[GzMotorParameters]):
+    """Simulates the thrust, drag and rolling moment of a propeller.
+
+    The thrust is proportional to the square of the propeller's speed. Original plugin:
+    ``MulticopterMotorModel`` in gz-sim.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-multicopter-motor-model-system",)
+    parameters: ClassVar[type] = GzMotorParameters
+
+    def configure(self) -> None:
+        namespace = self.namespace or self.part.name
+        topic = f"{namespace}/{self.config.topic.strip()}".rstrip("/")
+        add_propeller(self, topic=gz_name(self, topic, ""), message=GZ_ACTUATORS)
