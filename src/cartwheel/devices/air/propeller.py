@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from cartwheel.component import Component, Scope
 from cartwheel.devices.elementwise import Number, clamp, copysign, where
 from cartwheel.geometry import Array, rotate
 
-ACTUATORS = "mav_msgs/msg/Actuators"
-GZ_ACTUATORS = "actuator_msgs/msg/Actuators"
+ACTUATORS: Final = "mav_msgs/msg/Actuators"
+GZ_ACTUATORS: Final = "actuator_msgs/msg/Actuators"
 _SPEEDS = {ACTUATORS: "angular_velocities", GZ_ACTUATORS: "velocity"}
 """Field with the speeds of all propellers, by message type."""
 _ZERO = (0.0, 0.0, 0.0)
