@@ -102,7 +102,7 @@ class Session:
         for diagnostic in early:
             self.simulation.report(diagnostic)
         self.graph.on_error = self._subscriber_failed
-        self.simulation.strict = strict
+        self.simulation.faults.strict = strict
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE
         )
@@ -207,7 +207,7 @@ class Session:
 
     def _subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
         what = f'the subscriber "{subscription.node}" of {subscription.topic}'
-        self.simulation.fail(what, error)
+        self.simulation.faults.fail(what, error)
 
     def close(self) -> None:
         """Stops the simulation; see `Simulation.close`."""

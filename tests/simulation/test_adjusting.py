@@ -46,7 +46,7 @@ def test_in_place_as_compiled(simulation):
     assert simulation.scene.version == version + 1
     assert simulation.scene.world is world
     changed = arrays(model)
-    simulation._compile(simulation._residents)
+    simulation._population.compile()
     assert simulation.model is not model
     compiled = arrays(simulation.model)
     assert changed.keys() == compiled.keys()

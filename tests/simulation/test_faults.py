@@ -256,7 +256,7 @@ def test_what_was_posted_and_fails_comes_out_of_run(make):
 
 def test_a_tolerant_run_reports_subscribers_and_commands_once():
     session = Session(WorldDescription(name="test"))
-    session.simulation.tolerant = True
+    session.simulation.faults.tolerant = True
     session.graph.subscribe("/clock", lambda _: 1 / 0, node="somebody")
     for _ in range(3):
         session.simulation.post(lambda: {}[1])

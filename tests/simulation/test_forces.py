@@ -27,7 +27,7 @@ def speed(simulation, model="cube"):
 
 def test_beside_a_plugins_push_on_the_same_link(simulation):
     """1 N of a plugin's for two seconds, 0.3 N of ours for one: (2 + 0.3) / m."""
-    handle = simulation._residents["cube"].part.wrench("link")
+    handle = simulation._population.residents["cube"].part.wrench("link")
     handle.bind(simulation.model, simulation.data)
     handle.apply((1.0, 0, 0), (0, 0, 0))
     simulation.forces.wrench(

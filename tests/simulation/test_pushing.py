@@ -18,15 +18,15 @@ def spawn(make, model, take, pose=None, ground=100.0):
     world = make.world(ground=ground)
     simulation: Simulation = world.session.simulation
     taken = []
-    attach = simulation._attach
+    attach = simulation._population.attach
 
     def noting(part):
         taken.append(take(part))
         return attach(part)
 
-    simulation._attach = noting
+    simulation._population.attach = noting
     world.session.spawn(model, pose=pose)
-    simulation._attach = attach
+    simulation._population.attach = attach
     return world, taken[0]
 
 

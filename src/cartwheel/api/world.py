@@ -232,7 +232,7 @@ class World(RunningWorld):
             try:
                 callback(message)
             except BaseException as error:  # noqa: BLE001 - raised by `run`
-                simulation.defer(error)
+                simulation.faults.defer(error)
 
         full = type_name(type) if type else None
         if full is not None:

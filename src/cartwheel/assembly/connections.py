@@ -130,7 +130,7 @@ class Connections:
         simulation = session.simulation
         self._observer.session = session
         # Errors in the messages of other programs do not end the run.
-        simulation.tolerant = not session.strict
+        simulation.faults.tolerant = not session.strict
         session.allow_path += tuple(run_folders(_files(session)))
         self._turns = turns
         self._attendant = Attendant(simulation, turns)

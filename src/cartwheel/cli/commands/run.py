@@ -106,7 +106,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
         package_path=options.package_path,
     )
-    session.simulation.tolerant = not options.strict
+    session.simulation.faults.tolerant = not options.strict
     name = None
     if robot is None and options.controllers:
         raise CartwheelError(
