@@ -89,8 +89,15 @@ def power(value: Number, exponent: float) -> Number:
     return _POW(value, exponent) if isinstance(value, _Array) else math.pow(value, exponent)
 
 
+def remainder(value: Number, divisor: float) -> Number:
+    """Returns the remainder that is nearest to 0, as `math.remainder` does."""
+    if isinstance(value, _Array):
+        return _REMAINDER(value, divisor)
+    return math.remainder(value, divisor)
+
+
 # NumPy's own sine and its relatives round differently from those in `math`.
-_SIN, _COS, _TAN, _ATAN, _ATAN2, _POW = (
+_SIN, _COS, _TAN, _ATAN, _ATAN2, _POW, _REMAINDER = (
     np.vectorize(function, otypes=[float])
-    for function in (math.sin, math.cos, math.tan, math.atan, math.atan2, math.pow)
+    for function in (math.sin, math.cos, math.tan, math.atan, math.atan2, math.pow, math.remainder)
 )

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from cartwheel.devices.joints.pid import Pid
+from cartwheel.devices.joints.pid import DampedEffort, Pid
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.action import ActionServer
@@ -79,12 +79,14 @@ class GripperActionController(Controller):
             joint.command = self._place
             joint.strength = self._limit if self._limit > 0 else math.inf
         else:
-            law = self._pid.position(error, seconds, target=self._target, lightness=joint.lightness)
-            effort = law.at(joint.velocity)
+            command = self._pid.position(
+                error, seconds, target=self._target, lightness=joint.lightness
+            )
+            effort = command.at(joint.velocity)
             if 0 < self._limit < abs(effort):
-                joint.set_effort(math.copysign(self._limit, effort))
+                joint.set_effort(DampedEffort(math.copysign(self._limit, effort)))
             else:
-                joint.set_effort(law.effort, damping=law.damping)
+                joint.set_effort(command)
         self._action.tick(time_ns)
         if self._active is not None:
             self._watch(time_ns, error)

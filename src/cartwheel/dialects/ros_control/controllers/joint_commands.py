@@ -1,4 +1,4 @@
-"""Controllers that forward commands to joints, directly or through a PID."""
+"""Controllers that forward commands to joints, directly or through a PID controller."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import running
+from cartwheel.devices.elementwise import clamp
 from cartwheel.devices.joints.pid import Pid
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.gains import read_gains
@@ -86,18 +87,16 @@ class JointPid(Controller):
         joint = self._joint
         if self._follows == "velocity":
             error = self._command - joint.velocity
-            law = self._pid.velocity(self._command, joint.velocity, seconds)
+            command = self._pid.velocity(self._command, joint.velocity, seconds)
         else:
             target = self._command
             if joint.type != "continuous":
-                target = min(max(target, joint.lower), joint.upper)
-                error = target - joint.position
-            else:
-                error = math.remainder(target - joint.position, 2 * math.pi)
-            law = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
-        output = law.at(joint.velocity)
+                target = clamp(target, joint.limits.lower, joint.limits.upper)
+            error = joint.error(target)
+            command = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
+        output = command.at(joint.velocity)
         if self._interface == "effort":
-            joint.set_effort(law.effort, damping=law.damping)
+            joint.set_effort(command)
         else:
             joint.command = output
         self._count += 1
@@ -188,14 +187,12 @@ class JointGroup(Controller):
             if not self._pids:
                 joint.command = command
                 continue
-            target = min(max(command, joint.lower), joint.upper)
-            error = target - joint.position
-            if joint.type == "continuous":
-                error = math.remainder(error, 2 * math.pi)
-            law = self._pids[index].position(
-                error, seconds, target=target, lightness=joint.lightness
+            target = clamp(command, joint.limits.lower, joint.limits.upper)
+            joint.set_effort(
+                self._pids[index].position(
+                    joint.error(target), seconds, target=target, lightness=joint.lightness
+                )
             )
-            joint.set_effort(law.effort, damping=law.damping)
 
     def _put(self, topic: str, wanted: Mapping[str, float]) -> None:
         values = np.array([wanted[joint.joint] for joint in self._joints])

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cartwheel.codes import devices, running
-from cartwheel.devices.joints.pid import Pid, PidGains
+from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 from cartwheel.devices.joints.trajectory import State, Trajectory
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
@@ -182,10 +182,7 @@ class JointTrajectoryController(Controller):
 
     def _error(self, index: int, wanted: State) -> tuple[float, float]:
         joint = self._joints[index]
-        position = wanted.position[index] - joint.position
-        if joint.type == "continuous":
-            position = math.remainder(position, 2 * math.pi)
-        return position, wanted.velocity[index] - joint.velocity
+        return joint.error(wanted.position[index]), wanted.velocity[index] - joint.velocity
 
     def _command(self, wanted: State, errors: list[tuple[float, float]], seconds: float) -> None:
         for index, joint in enumerate(self._joints):
@@ -203,7 +200,7 @@ class JointTrajectoryController(Controller):
             law = self._pids[index].limited(law, joint.velocity)
             forward = self._forward[index] * velocity
             if self._interface == "effort":
-                joint.set_effort(law.effort + forward, damping=law.damping)
+                joint.set_effort(DampedEffort(law.effort + forward, law.damping))
             else:
                 joint.command = law.at(joint.velocity) + forward
 

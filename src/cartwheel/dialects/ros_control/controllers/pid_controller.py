@@ -180,7 +180,7 @@ class _Loop:
         if not math.isfinite(error):
             return
         if self.references[0].interface == "position":
-            law = self.pid.position(
+            command = self.pid.position(
                 error,
                 seconds,
                 target=wanted,
@@ -188,16 +188,16 @@ class _Loop:
                 lightness=self.joint.lightness if self.damps else 0.0,
             )
         else:
-            law, speed = self.pid.velocity(wanted, measured, seconds), measured
+            command, speed = self.pid.velocity(wanted, measured, seconds), measured
         speed = speed if math.isfinite(speed) else 0.0
-        law = self.pid.limited(law, speed)
+        command = self.pid.limited(command, speed)
         fed = rate if len(self.references) > 1 else wanted
         if ahead and math.isfinite(fed):
-            law = DampedEffort(law.effort + self.forward * fed, law.damping)
+            command = DampedEffort(command.effort + self.forward * fed, command.damping)
         if self.damps:
-            self.joint.set_effort(law.effort, damping=law.damping)
+            self.joint.set_effort(command)
         else:
-            self.joint.command = law.at(speed)
+            self.joint.command = command.at(speed)
 
     def state_message(self, name: str, seconds: float) -> Any:
         """Returns the state as a message."""

@@ -112,7 +112,7 @@ class TrajectoryReader:
     def _shortest(self, point: Waypoint) -> float:
         """Returns the shortest time in s in which the joints can reach a point."""
         ways = zip(point.position, self._joints, strict=True)
-        return max(abs(place - joint.position) / joint.velocity_limit for place, joint in ways)
+        return max(abs(place - joint.position) / joint.limits.velocity for place, joint in ways)
 
     def _order(self, names: list[str]) -> list[int]:
         """Returns the index of each of our joints in a message; -1 if missing."""

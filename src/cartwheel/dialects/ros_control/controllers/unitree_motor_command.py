@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from cartwheel.devices.joints.pid import Pid, PidGains
+from cartwheel.devices.elementwise import clamp
+from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import zero
@@ -41,14 +42,14 @@ class UnitreeJointController(Controller):
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
         joint = self._joint
-        law = self._pid.position(
+        command = self._pid.position(
             self._position - joint.position,
             seconds,
             target=self._position,
             rate=self._velocity,
             lightness=joint.lightness,
         )
-        joint.set_effort(law.effort + self._torque, damping=law.damping)
+        joint.set_effort(DampedEffort(command.effort + self._torque, command.damping))
         if self._publisher.wanted:
             message = zero("unitree_legged_msgs/msg/MotorState")
             message.q, message.dq, message.tauEst = joint.position, joint.velocity, joint.effort
@@ -68,13 +69,13 @@ class UnitreeJointController(Controller):
             self._command(PidGains(p=0.0, d=_BRAKING))
         elif message.mode == _SERVO:
             position, velocity, torque, p, d = (float(each) for each in numbers)
-            joint = self._joint
+            limits = self._joint.limits
             self._command(
                 PidGains(p=0.0 if _is(position, _NO_POSITION) else p,
                       d=0.0 if _is(velocity, _NO_VELOCITY) else d),
-                position=min(max(position, joint.lower), joint.upper),
-                velocity=min(max(velocity, -joint.velocity_limit), joint.velocity_limit),
-                torque=min(max(torque, -joint.effort_limit), joint.effort_limit),
+                position=clamp(position, limits.lower, limits.upper),
+                velocity=clamp(velocity, -limits.velocity, limits.velocity),
+                torque=clamp(torque, -limits.effort, limits.effort),
             )  # fmt: skip
 
 

@@ -21,7 +21,7 @@ _POSES = 500
 _TURNS = ("revolute", "continuous")
 
 
-def burdens(description: RobotDescription) -> dict[str, float]:
+def gravity_efforts(description: RobotDescription) -> dict[str, float]:
     """Returns the largest effort that gravity demands of each movable joint, N m or N.
 
     The robot stands upright. The maximum is taken over its zero pose and random poses within the

@@ -1,0 +1,218 @@
+"""A joint that follows position, velocity or effort commands within its limits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from cartwheel.devices.elementwise import Number, remainder
+from cartwheel.devices.joints.limits import (
+    JointLimits,
+    limited_effort,
+    limited_position,
+    velocity_bounds,
+)
+from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
+from cartwheel.errors import Origin
+from cartwheel.simulation import Part
+from cartwheel.simulation.handles import JointHandle, MotorHandle
+from cartwheel.simulation.servo import ServoHandle
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointActuatorConfig:
+    joint: str
+    """Name of the joint."""
+    commands: tuple[str, ...]
+    """Possible commands: ``position``, ``velocity`` and ``effort``."""
+    limits: JointLimits = field(default_factory=JointLimits)
+    """Limits of the commands."""
+    strength: float
+    """Maximum effort of position and velocity commands, N m or N."""
+    exceeds_limit: bool = False
+    """Whether `strength` is larger than the effort limit in the description."""
+    pid: tuple[str, PidGains] | None = None
+    """A command, ``position`` or ``velocity``, that a PID controller converts to efforts. None: the
+    joint follows it regardless of its load, up to `strength`."""
+    led: bool = False
+    """Whether the joint follows another joint. It is then not held while it has no command."""
+    origin: Origin | None = None
+    """File and line for errors."""
+
+
+def position_error(target: Number, position: Number, *, continuous: bool) -> Number:
+    """Returns target minus position in rad or m; in a continuous joint, by the shorter way."""
+    error = target - position
+    return remainder(error, 2 * math.pi) if continuous else error
+
+
+class JointActuator:
+    """A joint with a motor that follows the active command.
+
+    Args:
+        part: The model's part of the simulation.
+        config: Commands and limits.
+
+    Raises:
+        UnknownNameError: The joint does not exist.
+    """
+
+    def __init__(self, part: Part, config: JointActuatorConfig) -> None:
+        name, origin = config.joint, config.origin
+        joint = part.description.joint(name)
+        self.joint = name
+        """Name in the description."""
+        self.type = joint.type if joint is not None else ""
+        self.limits = config.limits
+        self.state: JointHandle = part.joint(name, origin=origin)
+        self.pids = {config.pid[0]: Pid(config.pid[1])} if config.pid is not None else {}
+        self._commands = config.commands
+        self._motor: MotorHandle | None = None
+        self._servo: ServoHandle | None = None
+        if config.commands == ("velocity",) and not self.pids:
+            self._motor = part.velocity_motor(name, max_effort=config.strength, origin=origin)
+        elif config.commands:
+            self._servo = part.servo(
+                name, max_effort=config.strength, beyond=config.exceeds_limit, origin=origin
+            )
+        self._active = ""
+        self.command = 0.0
+        """The active command: rad or m, rad/s or m/s, or N m or N."""
+        self.rate = 0.0
+        """Rate of change of a commanded position, rad/s or m/s; 0 if unknown."""
+        self.strength = math.inf
+        """Maximum effort of a position command, N m or N. A gripper controller can lower it."""
+        self._damping = 0.0
+        self._led = config.led
+
+    @property
+    def position(self) -> float:
+        """rad or m."""
+        return self.state.position
+
+    @property
+    def velocity(self) -> float:
+        """rad/s or m/s."""
+        return self.state.velocity
+
+    @property
+    def lightness(self) -> float:
+        """Acceleration per effort: rad/s² for 1 N m, or m/s² for 1 N."""
+        return self.state.lightness
+
+    @property
+    def effort(self) -> float:
+        """Effort of the last step, N m or N."""
+        return self.state.effort
+
+    def error(self, target: float) -> float:
+        """Returns the position error for a target in rad or m; see `position_error`."""
+        error: float = position_error(target, self.position, continuous=self.type == "continuous")
+        return error
+
+    def activate(self, command: str) -> None:
+        """Selects the active command. The joint stays at its position."""
+        self._active = command
+        self._damping = 0.0
+        self.strength = math.inf
+        self.command = self.position if command == "position" else 0.0
+        self.rate = 0.0
+        for pid in self.pids.values():
+            pid.reset()
+
+    def release(self) -> None:
+        """Called when no controller commands the joint any more.
+
+        A position command is kept; velocity and effort commands become 0.
+        """
+        self.rate = self._damping = 0.0
+        if self._active in ("velocity", "effort"):
+            self.command = 0.0
+
+    def rest(self, *, holds: bool) -> None:
+        """Called before any controller commands the joint.
+
+        Args:
+            holds: Hold joints with effort commands as well.
+        """
+        if not self._commands:
+            return
+        if self._led and self._servo is not None:
+            self._active = ""
+            self._servo.release()
+            return
+        self.activate(self._commands[0])
+        if holds and self._servo is not None:
+            self._active = "held"
+            self.command = self.position
+
+    def set_effort(self, command: DampedEffort) -> None:
+        """Commands an effort that decreases with velocity, for controllers with their own PID."""
+        self.command, self._damping = command.effort, command.damping
+
+    def write(self, seconds: float, *, lead: float = 0.0) -> None:
+        """Applies the command to the joint.
+
+        Args:
+            seconds: Time since the last call, s.
+            lead: Time since the command was set, s. A position command is extrapolated by it.
+        """
+        match self._active:
+            case "position":
+                self._write_position(seconds, lead)
+            case "velocity":
+                self._write_velocity(seconds)
+            case "effort":
+                self._write_effort()
+            case "held":
+                assert self._servo is not None
+                self._servo.command_position(self.command)
+
+    def halt(self) -> None:
+        """Sets efforts to 0, and brakes joints with velocity or position commands."""
+        if self._motor is not None:
+            self._motor.command(0.0)
+        elif self._servo is not None and self._active == "effort":
+            self._servo.release()
+        elif self._servo is not None:
+            self._servo.command_velocity(0.0)
+
+    def _write_position(self, seconds: float, lead: float) -> None:
+        target, fastest = limited_position(
+            self.limits, self.command + lead * self.rate, self.position
+        )
+        assert self._servo is not None
+        pid = self.pids.get("position")
+        if pid is None:
+            self._servo.command_position(
+                target, velocity=self.rate, max_velocity=fastest, max_effort=self.strength
+            )
+            return
+        command = pid.position(
+            self.error(target),
+            seconds,
+            target=target,
+            rate=self.rate or None,
+            lightness=self.lightness,
+        )
+        self._servo.command_effort(command.effort, damping=command.damping)
+
+    def _write_velocity(self, seconds: float) -> None:
+        low, high = velocity_bounds(self.limits, self.position)
+        target = min(max(self.command, low), high)
+        if self._motor is not None:
+            self._motor.command(target)
+            return
+        assert self._servo is not None
+        pid = self.pids.get("velocity")
+        if pid is None:
+            self._servo.command_velocity(target)
+        else:
+            command = pid.velocity(target, self.velocity, seconds)
+            self._servo.command_effort(command.effort, damping=command.damping)
+
+    def _write_effort(self) -> None:
+        command = DampedEffort(self.command, self._damping)
+        command = limited_effort(self.limits, command, self.position, self.velocity)
+        assert self._servo is not None
+        self._servo.command_effort(command.effort, damping=command.damping)

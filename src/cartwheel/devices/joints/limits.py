@@ -1,0 +1,86 @@
+"""Limits of joints: functions of limits, state and command, for floats or arrays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from cartwheel.description.model import SoftLimits
+from cartwheel.devices.elementwise import Number, clamp, maximum, minimum, where
+from cartwheel.devices.joints.pid import DampedEffort
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointLimits:
+    """Limits of a joint. Source: joint_limits_interface."""
+
+    lower: float = -math.inf
+    """Minimum position, rad or m."""
+    upper: float = math.inf
+    """Maximum position, rad or m."""
+    velocity: float = math.inf
+    """Maximum speed, rad/s or m/s."""
+    effort: float = math.inf
+    """Maximum effort, N m or N."""
+    soft: SoftLimits | None = None
+    """Limits at which the joint slows down; None: not applied."""
+
+
+def velocity_bounds(limits: JointLimits, position: Number) -> tuple[Number, Number]:
+    """Returns the lowest and highest velocity in rad/s or m/s at a position in rad or m.
+
+    Near a soft limit, the speed toward it decreases. Source: PR2.
+    """
+    most, soft = limits.velocity, limits.soft
+    if soft is None or math.inf in (-limits.lower, limits.upper):
+        return -most, most
+    low = clamp(-soft.k_position * (position - soft.lower), -most, most)
+    high = clamp(-soft.k_position * (position - soft.upper), -most, most)
+    return low, high
+
+
+def limited_position(
+    limits: JointLimits, target: Number, position: Number
+) -> tuple[Number, Number]:
+    """Returns a target position within the limits, and the maximum speed toward it.
+
+    Args:
+        limits: The limits.
+        target: Target position, rad or m.
+        position: Position of the joint, rad or m.
+    """
+    lower, upper, fastest = limits.lower, limits.upper, limits.velocity
+    soft = limits.soft
+    if soft is not None and math.inf not in (-lower, upper):
+        lower, upper = max(lower, soft.lower), min(upper, soft.upper)
+        low, high = velocity_bounds(limits, position)
+        fastest = maximum(where(target > position, high, -low), 0.0)
+    return clamp(target, lower, upper), fastest
+
+
+def limited_effort(
+    limits: JointLimits, command: DampedEffort, position: Number, velocity: Number
+) -> DampedEffort:
+    """Returns an effort within the limits.
+
+    Args:
+        limits: The limits.
+        command: The commanded effort.
+        position: Position of the joint, rad or m.
+        velocity: Velocity of the joint, rad/s or m/s.
+    """
+    damping = command.damping
+    effort = clamp(command.effort, -limits.effort, limits.effort)
+    if limits.soft is not None:
+        # Acts as a damper toward the bound, which the physics integrates implicitly.
+        gain, output = limits.soft.k_velocity, effort - damping * velocity
+        slowest, fastest = velocity_bounds(limits, position)
+        slow = output < gain * (slowest - velocity)
+        fast = output > gain * (fastest - velocity)
+        effort = where(slow, gain * slowest, where(fast, gain * fastest, effort))
+        damping = where(slow | fast, gain, damping)
+    # Beyond a limit, only efforts that move the joint back are applied.
+    below = (position < limits.lower) | (velocity < -limits.velocity)
+    above = (position > limits.upper) | (velocity > limits.velocity)
+    back = where(above, minimum(effort, 0.0), effort)
+    return DampedEffort(where(below, maximum(effort, 0.0), back), damping)

@@ -1,0 +1,43 @@
+"""Effort limits of joints with position commands."""
+
+import pytest
+from tests.dialects.ros_control.arms import ARM, GRAVITY, MASS, ROS1, beam, robot, transmission
+
+from cartwheel.codes import devices
+
+WEIGHT = MASS * GRAVITY * ARM
+"""N m, of one horizontal beam."""
+
+
+@pytest.fixture
+def held(bench):
+    """Positions of a beam with an effort limit, every 50 ms for 2 s, and the warnings."""
+
+    def make(effort):
+        limit = f'lower="-3" upper="3" effort="{effort}" velocity="10"'
+        body = beam("beam", "world", limit=limit) + transmission("beam_joint", "Position")
+        group = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
+        made = bench(robot(body, ROS1), {"c": group})
+        made.publish("/c/command", "std_msgs/msg/Float64", data=-0.2)
+        places = []
+        for _ in range(40):
+            made.world.run(0.05)
+            places.append(made.position("beam_joint"))
+        return places, made.warnings
+
+    return make
+
+
+def test_an_effort_limit_below_the_weight_is_reported_and_exceeded(held):
+    places, warnings = held(1)
+    assert places[-1] == pytest.approx(-0.2, abs=1e-3)
+    (warning,) = warnings
+    assert warning.code is devices.EFFORT_LIMIT_TOO_LOW
+    assert warning.values["stated"] == 1
+    assert warning.values["needed"] == pytest.approx(9.8, rel=0.01)
+
+
+def test_an_effort_limit_above_the_weight_holds_the_arm(held):
+    places, warnings = held(1.02 * WEIGHT)
+    assert warnings == []
+    assert places[-1] == pytest.approx(-0.2, abs=1e-3)
