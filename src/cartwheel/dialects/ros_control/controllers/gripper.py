@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from cartwheel.devices.action_server import ActionServer
 from cartwheel.devices.joints.pid import DampedEffort, Pid
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.controllers.action import ActionServer
 from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.graph import Goal

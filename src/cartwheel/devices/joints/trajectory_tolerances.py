@@ -1,4 +1,4 @@
-"""Tolerances of trajectories, from a controller's parameters and from goals."""
+"""Tolerances of trajectories: defaults, and those of goals."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from cartwheel.dialects.ros_control.controllers.trajectory_reading import (
+from cartwheel.devices.joints.trajectory_reading import (
     INVALID_JOINTS,
     InvalidTrajectoryError,
 )
-from cartwheel.dialects.ros_control.settings import Settings
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,37 +30,24 @@ class Tolerance:
         return f"a velocity error of {abs(velocity):.4g} (tolerance {self.velocity:g})"
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Tolerances:
-    """Tolerances of a controller. Source: joint_trajectory_controller.
+    """Tolerances of a trajectory follower, for each joint."""
 
-    Args:
-        constraints: The controller's parameters ``constraints``.
-        names: Names of the joints.
-
-    Raises:
-        PluginError: A value is not a number.
-    """
-
-    def __init__(self, constraints: Settings, names: Sequence[str]) -> None:
-        self._names = list(names)
-        stopped = constraints.number("stopped_velocity_tolerance", 0.01)
-        self.goal_time = constraints.number("goal_time", 0.0)
-        """Time in s by which a goal can be late."""
-        self.path = [
-            Tolerance(position=constraints.number(f"{name}/trajectory", 0.0)) for name in names
-        ]
-        """Tolerance on the path, for each joint."""
-        self.goal = [
-            Tolerance(position=constraints.number(f"{name}/goal", 0.0), velocity=stopped)
-            for name in names
-        ]
-        """Tolerance at the goal, for each joint."""
+    names: tuple[str, ...]
+    """Names of the joints."""
+    path: tuple[Tolerance, ...]
+    """Tolerances on the path."""
+    goal: tuple[Tolerance, ...]
+    """Tolerances at the goal."""
+    goal_time: float = 0.0
+    """Time in s by which a goal can be late."""
 
     def of(self, goal: Any) -> tuple[list[Tolerance], list[Tolerance]]:
-        """Returns path and goal tolerances of a goal. Its own tolerances override the controller's.
+        """Returns path and goal tolerances of a goal. The goal's own tolerances override these.
 
         Raises:
-            InvalidTrajectoryError: A tolerance is for a joint that the controller does not have.
+            InvalidTrajectoryError: A tolerance is for a joint that the follower does not have.
         """
         for each in (*goal.component_path_tolerance, *goal.component_goal_tolerance):
             raise InvalidTrajectoryError(
@@ -72,16 +58,16 @@ class Tolerances:
             self.goal, goal.goal_tolerance
         )
 
-    def _merged(self, defaults: list[Tolerance], stated: Any) -> list[Tolerance]:
+    def _merged(self, defaults: Sequence[Tolerance], stated: Any) -> list[Tolerance]:
         tolerances = list(defaults)
         for each in stated:
-            if each.name not in self._names:
+            if each.name not in self.names:
                 raise InvalidTrajectoryError(
                     INVALID_JOINTS,
                     f'a tolerance refers to joint "{each.name}", which does not belong to this '
                     "controller",
                 )
-            index = self._names.index(each.name)
+            index = self.names.index(each.name)
             # 0 keeps the default; a negative value disables the check.
             tolerances[index] = Tolerance(
                 position=max(each.position or tolerances[index].position, 0.0),

@@ -1,12 +1,12 @@
-"""Action servers of controllers."""
+"""Action servers of devices and controllers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
+from cartwheel.component import Component
 from cartwheel.devices.periodic import Periodic
-from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.graph import Action, ActionTopics, Goal
 from cartwheel.graph.actionlib import STATUS_RATE
 from cartwheel.messages import store, zero
@@ -15,11 +15,11 @@ from cartwheel.simulation.limits import STRONGEST
 
 
 class ActionServer:
-    """An action below a controller's name, also offered as ROS 1 topics if ROS 1 defines its type.
+    """An action of a component, also offered as ROS 1 topics if ROS 1 defines its type.
 
     Args:
-        controller: The controller. The action closes with it.
-        name: Name of the action.
+        component: The component. The action closes with it.
+        name: Name of the action, resolved in the component's scope.
         kind: Type in control_msgs, such as ``FollowJointTrajectory``.
         on_goal: Accepts, rejects or finishes a new goal.
         on_cancel: Finishes a goal that a client cancels.
@@ -27,14 +27,14 @@ class ActionServer:
 
     def __init__(
         self,
-        controller: Controller,
+        component: Component,
         name: str,
         kind: str,
         *,
         on_goal: Callable[[Goal], None],
         on_cancel: Callable[[Goal], None],
     ) -> None:
-        part = controller.part
+        part = component.part
         self._periodic = Periodic(STATUS_RATE)
 
         def take(goal: Goal) -> None:
@@ -46,19 +46,19 @@ class ActionServer:
                 on_goal(goal)
 
         self._action = Action(
-            controller.graph,
-            controller.resolve(name),
+            component.graph,
+            component.resolve(name),
             f"control_msgs_ros2/action/{kind}",
-            node=controller.node,
+            node=component.node,
             time_ns=lambda: part.time_ns,
             on_goal=take,
             on_cancel=on_cancel,
         )
-        controller.keep(self._action)
+        component.keep(self._action)
         self._topics: ActionTopics | None = None
         if f"control_msgs/msg/{kind}Goal" in store().types:
-            self._topics = ActionTopics(controller.graph, self._action)
-            controller.keep(self._topics)
+            self._topics = ActionTopics(component.graph, self._action)
+            component.keep(self._topics)
 
     def message(self, part: str, **fields: Any) -> Any:
         """Returns a ``Result`` or ``Feedback`` message."""

@@ -1,22 +1,22 @@
-"""Conversion of trajectory messages to polynomials, with checks."""
+"""Conversion of trajectory messages to trajectories, with checks."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from cartwheel.codes import running
+from cartwheel.devices.joints.actuator import JointActuator
 from cartwheel.devices.joints.trajectory import State, Trajectory, Waypoint
-from cartwheel.dialects.ros_control.hardware import JointHardware
-from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError
+from cartwheel.messages import nanoseconds
 
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, OLD_HEADER, PATH, GOAL = 0, -1, -2, -3, -4, -5
 """Error codes of FollowJointTrajectory."""
 _STILL = 1e-5
-"""Maximum velocity at the last point in ROS 2, rad/s or m/s, if joints must stop there."""
+"""Maximum velocity at the last point, rad/s or m/s, if joints must stop there."""
 
 
 class InvalidTrajectoryError(PluginError):
@@ -29,6 +29,18 @@ class InvalidTrajectoryError(PluginError):
         self.result = result
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrajectoryRules:
+    """What a trajectory may omit or contain."""
+
+    partial: bool = False
+    """Accept trajectories for some of the joints; the others stay at their desired positions."""
+    integrates: bool = False
+    """Compute missing positions from velocities."""
+    must_stop: bool = False
+    """Reject trajectories whose last point has a velocity."""
+
+
 class TrajectoryReader:
     """Reads ``trajectory_msgs/JointTrajectory`` messages for some joints.
 
@@ -37,24 +49,15 @@ class TrajectoryReader:
     Args:
         names: Names of the joints in the messages.
         joints: The joints, in the same order.
-        settings: Parameters of the controller, which define what messages can omit.
-        ros2: Apply the rules of ROS 2.
+        rules: What the messages may omit or contain.
     """
 
     def __init__(
-        self,
-        names: Sequence[str],
-        joints: Sequence[JointHardware],
-        settings: Settings,
-        *,
-        ros2: bool,
+        self, names: Sequence[str], joints: Sequence[JointActuator], rules: TrajectoryRules
     ) -> None:
         self._names = list(names)
         self._joints = list(joints)
-        self._partial = settings.boolean("allow_partial_joints_goal", False)
-        self._integrates = settings.boolean("allow_integration_in_goal_trajectories", False)
-        may_go_on = settings.boolean("allow_nonzero_velocity_at_trajectory_end", False)
-        self._must_stop = ros2 and not may_go_on
+        self._rules = rules
 
     def read(self, message: Any, time_ns: int, following: Trajectory) -> Trajectory:
         """Reads a message as a trajectory that begins at the desired state of its start time.
@@ -69,8 +72,7 @@ class TrajectoryReader:
         """
         names = list(message.joint_names)
         order = self._order(names)
-        moment = message.header.stamp
-        stamp_ns = moment.sec * 1_000_000_000 + moment.nanosec
+        stamp_ns = nanoseconds(message.header.stamp)
         start_ns = stamp_ns or time_ns
         begin_ns = max(start_ns, time_ns)
         begin = following.at(begin_ns)
@@ -98,7 +100,7 @@ class TrajectoryReader:
                 return Trajectory(time_ns, [replace(waypoint, time=self._shortest(waypoint))])
         if not points:
             raise InvalidTrajectoryError(OLD_HEADER, "all points are in the past")
-        if self._must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
+        if self._rules.must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
             raise InvalidTrajectoryError(INVALID_GOAL, "the last point has a nonzero velocity")
         self._unwind(points, begin)
         first = Waypoint(
@@ -122,7 +124,7 @@ class TrajectoryReader:
                 INVALID_JOINTS, f'joint "{unknown[0]}" does not belong to this controller'
             )
         missing = [name for name in self._names if name not in names]
-        if missing and not self._partial:
+        if missing and not self._rules.partial:
             raise InvalidTrajectoryError(INVALID_JOINTS, f'joint "{missing[0]}" is missing')
         return [names.index(name) if name in names else -1 for name in self._names]
 
@@ -158,7 +160,7 @@ class TrajectoryReader:
 
     def _integrated(self, before: Waypoint, point: Waypoint, number: int) -> Waypoint:
         """Computes the positions of a point from velocities, by the trapezoidal rule."""
-        if not self._integrates or not point.velocity:
+        if not self._rules.integrates or not point.velocity:
             raise InvalidTrajectoryError(INVALID_GOAL, f"point {number} has no positions")
         span = max(point.time - before.time, 0.0)
         rates = zip(before.velocity or point.velocity, point.velocity, strict=True)
@@ -171,9 +173,9 @@ class TrajectoryReader:
         )
 
     def _unwind(self, points: list[Waypoint], begin: State) -> None:
-        """Lets continuous joints take the shorter direction, by subtracting full turns."""
-        for joint, hardware in enumerate(self._joints):
-            if hardware.type != "continuous":
+        """Subtracts full turns, so that continuous joints take the shorter direction."""
+        for joint, actuator in enumerate(self._joints):
+            if actuator.type != "continuous":
                 continue
             way = points[0].position[joint] - begin.position[joint]
             turns = way - math.remainder(way, 2 * math.pi)
