@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Generic, TypeVar
 
@@ -10,6 +11,8 @@ from cartwheel.component import Component, Scope, Shared
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.dialects.tags import SMALLEST, invalid, read
 from cartwheel.errors import Origin
+from cartwheel.graph import Action, ActionTopics, Goal
+from cartwheel.graph.actionlib import STATUS_RATE
 from cartwheel.simulation import Part
 from cartwheel.simulation.limits import FARTHEST
 
@@ -118,6 +121,42 @@ class Plugin(Component, Generic[C]):
             UnknownNameError: A link or joint does not exist.
         """
         raise NotImplementedError
+
+    def offer_action(
+        self,
+        name: str,
+        type_name: str,
+        *,
+        on_goal: Callable[[Goal], None],
+        on_cancel: Callable[[Goal], None],
+    ) -> Action:
+        """Offers an action, which is withdrawn with the plugin.
+
+        Args:
+            name: Name, resolved in the plugin's namespace.
+            type_name: Action type, ``pkg/action/Name``.
+            on_goal: Accepts, rejects or ends a new goal.
+            on_cancel: Ends a goal whose cancellation was requested.
+
+        Raises:
+            GraphError: The name is already in use, or the type is invalid.
+        """
+        part = self.part
+        self.graph.types.named(type_name)
+        action = Action(
+            self.graph,
+            self.resolve(name),
+            type_name,
+            node=self.node,
+            time_ns=lambda: part.time_ns,
+            on_goal=on_goal,
+            on_cancel=on_cancel,
+        )
+        self.keep(action)
+        # ROS 1 clients find the server by its status.
+        topics = self.keep(ActionTopics(self.graph, action))
+        part.schedule(STATUS_RATE, after=topics.tell)
+        return action
 
     def under_model(self) -> None:
         """Uses the model's name as the namespace if neither the tag nor the spawner specifies one.

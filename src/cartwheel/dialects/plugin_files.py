@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.codes import devices
+from cartwheel.codes.graph import MESSAGE_DEFINITION_INVALID
 from cartwheel.dialects.catalogue import checked_plugin
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.errors import CartwheelError, Origin
+from cartwheel.errors import CartwheelError, GraphError, Origin
 
 
 class PluginFiles:
@@ -57,14 +58,14 @@ def _plugins_in(path: Path) -> list[type[Plugin[Any]]]:
             for each in vars(module).values()
             if isinstance(each, type) and issubclass(each, Plugin) and each.__module__ == name
         ]
+    except GraphError as error:
+        del sys.modules[name]
+        if error.code is MESSAGE_DEFINITION_INVALID:
+            raise  # The fault is in the file of a message type.
+        raise _unloadable(path, error) from error
     except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise CartwheelError(
-            f"the plugin file cannot be loaded: {type(error).__name__}: {error}",
-            code=devices.PLUGIN_FILE_INVALID,
-            origin=Origin(file=str(path), line=_line(error, path)),
-            values=values,
-        ) from error
+        raise _unloadable(path, error) from error
     if not defined:
         raise CartwheelError(
             "the file defines no plugin",
@@ -74,6 +75,15 @@ def _plugins_in(path: Path) -> list[type[Plugin[Any]]]:
             values=values,
         )
     return defined
+
+
+def _unloadable(path: Path, error: BaseException) -> CartwheelError:
+    return CartwheelError(
+        f"the plugin file cannot be loaded: {type(error).__name__}: {error}",
+        code=devices.PLUGIN_FILE_INVALID,
+        origin=Origin(file=str(path), line=_line(error, path)),
+        values={"path": str(path)},
+    )
 
 
 def _line(error: BaseException, path: Path) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import keyword
 import math
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -97,7 +98,9 @@ def needed(name: str) -> Iterator[Definition]:
 
 
 def parts_of(name: str) -> list[str]:
-    """The message types of a message, service or action type."""
+    """The message types of a message, service or action type, or of a part of one."""
+    if _PART.search(name):
+        return [name]
     if "/srv/" in name:
         return [f"{name}_Request", f"{name}_Response"]
     if "/action/" in name:
@@ -119,6 +122,7 @@ ACTION_PARTS = (
     "GetResult_Response",
     "FeedbackMessage",
 )
+_PART = re.compile(rf"/srv/\w+_(Request|Response)\Z|/action/\w+_({'|'.join(ACTION_PARTS)})\Z")
 ROS1_ACTION_PARTS = (
     "Goal",
     "Result",
