@@ -359,7 +359,7 @@ def test_joint_types(make, gazebo, rosbots):
     [
         ("hing", {}, 'Did you mean "hinge"?'),
         ("arm", {}, "is a model, not a joint"),
-        ("hinge", {"damping": [-1.0]}, "damping must be from 0"),
+        ("hinge", {"damping": [-1.0]}, "damping must be between 0"),
         (
             "hinge",
             {"damping": [math.nan]},

@@ -396,7 +396,7 @@ def test_refusals(space):
     message = space.refused("set_model_state", **state(twist={"angular": {"z": -math.inf}}))
     assert "twist.angular.z must be a finite number (got -inf)" in message
     message = space.refused("set_model_state", **state(pose={"position": {"x": 1e300}}))
-    assert "must be from -1e+06 to 1e+06" in message
+    assert "must be between -1e+06 and 1e+06" in message
     message = space.refused("set_model_state", **state(reference_frame="nowhere"))
     assert 'reference frame "nowhere" does not exist' in message
     message = space.refused("set_link_state", link_state={"link_name": "cube::lik"})

@@ -130,7 +130,7 @@ def node_parameters(session: Session) -> list[Parameter]:
     def set_rate(hertz: float) -> None:
         if not 0 <= hertz <= _FASTEST:
             raise CartwheelError(
-                f"publish_rate must be from 0 to {_FASTEST:g} (got {hertz:g})",
+                f"publish_rate must be between 0 and {_FASTEST:g} (got {hertz:g})",
                 code=PARAMETER_REFUSED,
                 values={"parameter": "publish_rate", "value": hertz},
             )

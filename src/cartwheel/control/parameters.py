@@ -90,7 +90,7 @@ class Parameters:
         value = self.number(name, default)
         if value != int(value) or not low <= value <= high:
             raise ControlError(
-                f'the request\'s "{name}" must be a whole number from {low} to {high} (got '
+                f'the request\'s "{name}" must be a whole number between {low} and {high} (got '
                 f"{value:g})",
                 code=CONTROL_REQUEST_INVALID,
                 values={"parameter": name, "value": value},

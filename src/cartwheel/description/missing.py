@@ -81,4 +81,4 @@ def advice(
         debian = " ".join(f"ros-{distribution}-{name.replace('_', '-')}" for name in names)
         return f"{text}Try: sudo apt install {debian}; or clone their sources into the workspace."
     which = "it" if not rest else "them"
-    return f"{text}Get {which} with apt as ros-<distribution>-<name>, or clone the sources."
+    return f"{text}Install {which} with apt as ros-<distribution>-<name>, or clone the sources."

@@ -104,7 +104,7 @@ def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...
         )
     if max(map(abs, values), default=0.0) > LARGEST:
         raise _InvalidError(
-            label, f"{_quoted(text.strip())} has a number above {LARGEST:g}", text, origin
+            label, f"{_quoted(text.strip())} contains a number above {LARGEST:g}", text, origin
         )
     return values
 
@@ -134,7 +134,7 @@ def within(value: float, most: float, label: str, origin: Origin) -> float:
     """
     if abs(value) > most:
         raise _InvalidError(
-            label, f"must be from {-most:g} to {most:g} (got {value:g})", value, origin
+            label, f"must be between {-most:g} and {most:g} (got {value:g})", value, origin
         )
     return value
 

@@ -294,7 +294,7 @@ def _number(
     if endless and abs(number) > LARGEST:
         return math.copysign(math.inf, number)
     if not least <= number <= most:
-        wanted = f"a number from {least:g} to {most:g}"
+        wanted = f"a number between {least:g} and {most:g}"
         raise invalid(element.tag, text, wanted, element.origin)
     return number
 

@@ -40,7 +40,7 @@ def wheel_pairs(
         for value, what in ((separation, "separation"), (diameter, "diameter or radius")):
             if not SMALLEST <= value <= FARTHEST:
                 raise PluginError(
-                    f"the {what} of the wheels must be from {SMALLEST:g} to {FARTHEST:g} m "
+                    f"the {what} of the wheels must be between {SMALLEST:g} and {FARTHEST:g} m "
                     f"(got {value:g} m)",
                     code=devices.PLUGIN_PARAMETER_INVALID,
                     origin=plugin.origin,

@@ -149,7 +149,7 @@ class Frames:
         self._is_control = kind >= _CONTROL
         if self._is_control:
             if length > _LARGEST_CONTROL:
-                raise FrameError(f"a control frame has more than {_LARGEST_CONTROL} bytes")
+                raise FrameError(f"a control frame is larger than {_LARGEST_CONTROL} bytes")
         elif self._is_open == bool(kind):
             raise FrameError("a frame starts or continues a message out of sequence")
         elif kind:
@@ -158,7 +158,7 @@ class Frames:
         self._size += length + len(head)
         most = _LARGEST_TEXT if self._is_text else _LARGEST
         if self._size > most:
-            raise FrameError(f"a message has more than {most} bytes")
+            raise FrameError(f"a message is larger than {most} bytes")
         self._left = length
         self._is_held = self._is_text and not self._is_control
         self._is_last = bool(head[0] & 128)

@@ -320,7 +320,7 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
             damping = given["damping"][index]
             if damping < 0 or damping > _HEAVIEST:
                 raise GraphError(
-                    f"damping must be from 0 to {_HEAVIEST:g} (got {damping:g})",
+                    f"damping must be between 0 and {_HEAVIEST:g} (got {damping:g})",
                     code=PROPERTY_INVALID,
                     values={"property": "damping", "value": damping},
                 )

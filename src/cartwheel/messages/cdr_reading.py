@@ -88,7 +88,9 @@ class _Source:
         count = self._number("I") if field.length is None else field.length
         if field.kind in ("message", "string"):
             if count > self._elements:
-                raise ValueError(f"a list has {count} elements, but few bytes remain")
+                raise ValueError(
+                    f"a list has {count} elements, but the message is too short for them"
+                )
             self._elements -= count
             return [self._one(field) for _ in range(count)]
         if not count:

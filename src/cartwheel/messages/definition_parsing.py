@@ -219,7 +219,7 @@ class _Parser:
         value = int(size) if size else 0
         if not 1 <= value <= most:
             self._fail(
-                f'the length of "{name}" must be from 1 to {most} (got {value})', {"name": name}
+                f'the length of "{name}" must be between 1 and {most} (got {value})', {"name": name}
             )
         return value
 

@@ -70,8 +70,8 @@ def _is_known(one: Definition) -> bool:
     if known.same_as(one):
         return True
     raise GraphError(
-        f"{one.name} has different fields than in {known.origin.file}, which this process already "
-        "uses",
+        f"{one.name} differs from its definition in {known.origin.file}, which this process "
+        "already uses",
         code=MESSAGE_TYPE_IN_USE,
         origin=one.origin,
         hint="Start a new process after a message type has changed, and for each workspace.",

@@ -378,8 +378,8 @@ def _split(name: str, text: str, origin: Origin) -> Iterator[tuple[str, str, int
     parts = _SEPARATOR.split(text)
     if len(parts) != len(titles):
         raise GraphError(
-            f'{"a service" if is_service else "an action"} has {len(titles) - 1} lines with "---" '
-            f"(got {len(parts) - 1})",
+            f'{"a service" if is_service else "an action"} definition must contain "---" '
+            f"{len(titles) - 1} times (got {len(parts) - 1})",
             code=MESSAGE_DEFINITION_INVALID,
             origin=origin,
             values={"type": name, "count": len(parts) - 1},
@@ -467,7 +467,7 @@ def _sorted(read: dict[str, Definition]) -> list[Definition]:
         used = next(used for used in one.uses if used.type in left)
         _fail(
             one,
-            f'the type contains itself: in the field "{used.name}"'
+            f'the type contains itself in the field "{used.name}"'
             if not flat
             else f"messages are nested more than {MOST_LEVELS} times",
             used.line,
@@ -496,8 +496,8 @@ def _check_sizes(ordered: list[Definition]) -> None:
             if elements > MOST_ELEMENTS or size > MOST_BYTES:
                 _fail(
                     each,
-                    f"a message has more than {MOST_ELEMENTS} fields with all nested messages, or "
-                    f"arrays of more than {MOST_BYTES} bytes",
+                    f"a message has more than {MOST_ELEMENTS} fields (including nested messages), "
+                    f"or arrays of more than {MOST_BYTES} bytes",
                     field.line,
                     field=field.name,
                 )

@@ -29,7 +29,7 @@ def number(value: float, name: str, *, most: float = FARTHEST) -> float:
     if not math.isfinite(value):
         raise _out_of_range(name, "a finite number", value)
     if abs(value) > most:
-        raise _out_of_range(name, f"from {-most:g} to {most:g}", value)
+        raise _out_of_range(name, f"between {-most:g} and {most:g}", value)
     return value
 
 
@@ -81,7 +81,7 @@ def check_speed(speed: float | None) -> None:
     """
     if speed is not None and not SLOWEST <= speed <= FASTEST:
         raise CartwheelError(
-            f"the real-time factor must be from {SLOWEST:g} to {FASTEST:g} (got {speed:g})",
+            f"the real-time factor must be between {SLOWEST:g} and {FASTEST:g} (got {speed:g})",
             code=world_codes.REAL_TIME_FACTOR_INVALID,
             hint="To stop simulation time, pause the simulation.",
             values={"value": speed},
@@ -96,7 +96,7 @@ def check_steps(count: int) -> None:
     """
     if not 1 <= count <= MOST_STEPS:
         raise CartwheelError(
-            f"the number of steps must be from 1 to {MOST_STEPS} (got {count})",
+            f"the number of steps must be between 1 and {MOST_STEPS} (got {count})",
             code=world_codes.STEP_COUNT_INVALID,
             values={"value": count},
         )

@@ -198,7 +198,8 @@ def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
         most = _MOST_NUMBERS if is_plain else _LONGEST_ARRAY
         if not 0 <= size <= most:
             raise RecordingError(
-                f"{topic.name}: the length of {name}.{field} must be from 0 to {most} (got {size})",
+                f"{topic.name}: the length of {name}.{field} must be between 0 and {most} "
+                f"(got {size})",
                 code=RECORDED_TYPE_UNUSABLE,
                 values={"topic": topic.name, "type": name, "field": field, "why": "size"},
             )

@@ -60,7 +60,7 @@ def domain_id(environment: Mapping[str, str] = os.environ) -> int:
         raise CartwheelError(
             f'ROS_DOMAIN_ID has the invalid value "{given}"',
             code=ROS_VARIABLE_INVALID,
-            hint=f"Set it to a number from 0 to {LAST_DOMAIN}.",
+            hint=f"Set it to a number between 0 and {LAST_DOMAIN}.",
             values={"variable": "ROS_DOMAIN_ID", "value": given},
         )
     return int(given)

@@ -79,7 +79,7 @@ def limit_zero(subject: Subject) -> Iterator[Diagnostic]:
                 values={"joint": nodes.name_of(joint), "lower": lower, "upper": upper},
                 origin=limit.origin,
                 instead='type="continuous"' if not stated and _turns(joint) else "",
-                hint='If it should not move, write type="fixed" in its <joint>.'
+                hint='If the joint must not move, use type="fixed".'
                 if stated
                 else "Set lower and upper to the joint's range.",
                 mark="lower" if stated else "",
@@ -254,7 +254,7 @@ def _zero_in_sdf(subject: Subject, wheels: set[str]) -> Iterator[Diagnostic]:
                 message=f'joint "{joint}" cannot move: both limits are {lower:g}',
                 values={"joint": joint, "lower": lower, "upper": upper},
                 origin=axis.origin,
-                hint='If it should not move, write type="fixed" in its <joint>.',
+                hint='If the joint must not move, use type="fixed".',
             )
 
 

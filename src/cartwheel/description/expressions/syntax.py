@@ -169,7 +169,7 @@ def _kept(text: str) -> _Code:
 def _compiled(text: str) -> _Code:
     if len(text) > MAX_LENGTH:
         raise ExpressionError(
-            f"the expression has more than {MAX_LENGTH} characters",
+            f"the expression is longer than {MAX_LENGTH} characters",
             values={"kind": "expression", "most": MAX_LENGTH},
         )
     try:

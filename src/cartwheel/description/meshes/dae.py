@@ -106,7 +106,7 @@ class _Scene:
     def _node(self, node: ET.Element, outer: Array, depth: int) -> Iterator[Submesh]:
         self.instances += 1
         if depth > MAX_DEPTH or self.instances > MAX_INSTANCES:
-            raise ValueError("the nodes contain each other in a cycle")
+            raise ValueError("the nodes refer to each other in a cycle")
         transform = outer @ self._transform(node)
         name = node.get("name") or node.get("id") or ""
         for child in node:
@@ -130,7 +130,7 @@ class _Scene:
     def _require(self, url: str) -> ET.Element:
         found = self.library.get(url)
         if found is None:
-            raise ValueError(f'the file refers to "{url}", which it does not contain')
+            raise ValueError(f'the file refers to "{url}", which is not in the file')
         return found
 
     def _transform(self, node: ET.Element) -> Array:
@@ -307,7 +307,7 @@ def _bindings(instance: ET.Element) -> dict[str, str]:
 def _floats(element: ET.Element, count: int) -> Array:
     values = np.array((element.text or "").split(), dtype=np.float64)
     if len(values) != count or not np.isfinite(values).all():
-        raise ValueError(f"a <{element.tag}> does not have {count} numbers")
+        raise ValueError(f"a <{element.tag}> must contain {count} numbers")
     return values
 
 

@@ -97,7 +97,7 @@ def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
             return np.array(words, dtype="S").astype(np.float64).reshape(-1, width)
         return np.array([[float(w) for w in row.split()[:width]] for row in rows], dtype=np.float64)
     except ValueError:
-        raise ValueError(f'a "{key}" statement does not have {width} numbers') from None
+        raise ValueError(f'a "{key}" statement must contain {width} numbers') from None
 
 
 def _absolute(face: bytes, tables: dict[bytes, list[bytes]]) -> bytes:

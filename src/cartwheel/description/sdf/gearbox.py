@@ -49,8 +49,8 @@ def mesh_gears(
         if ends[0] is None or ends[1] is None:
             ctx.report(
                 ELEMENT_LEFT_OUT.diagnostic(
-                    f'the gearbox joint "{name}" has no effect: a revolute joint must connect '
-                    f'each of its links to the gearbox_reference_body "{reference}"',
+                    f'the gearbox joint "{name}" has no effect: revolute joints must connect its '
+                    f'parent and child to the gearbox_reference_body "{reference}"',
                     origin=node.origin,
                     values={"tag": "joint", "name": name},
                 )
@@ -61,7 +61,7 @@ def mesh_gears(
             ctx.report(
                 ELEMENT_LEFT_OUT.diagnostic(
                     f'the gearbox joint "{name}" has no effect: joint "{second[0].name}" already '
-                    "follows another one",
+                    "mimics another joint",
                     origin=node.origin,
                     values={"tag": "joint", "name": name},
                 )

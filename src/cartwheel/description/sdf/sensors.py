@@ -103,7 +103,7 @@ def read_camera(node: Node) -> CameraIntrinsics:
         raise (wrong or node).fail(f"clip near {near:g} must be below far {far:g}")
     if not NARROWEST <= fov < 2 * math.pi:
         raise (node.child("horizontal_fov") or node).fail(
-            f"horizontal_fov {fov:g} must be from {NARROWEST:g} to {2 * math.pi:.4g} rad",
+            f"horizontal_fov {fov:g} must be between {NARROWEST:g} and {2 * math.pi:.4g} rad",
             f"If {fov:g} is in degrees, use {math.radians(fov):.4g}." if fov > 0 else None,
         )
     centre = node.find("distortion/center")

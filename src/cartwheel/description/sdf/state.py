@@ -120,7 +120,7 @@ def _angle(joint: Node) -> float | None:
     value = axes[0].number()
     if abs(value) > FARTHEST_JOINT:
         raise axes[0].fail(
-            f"angle must be from {-FARTHEST_JOINT:g} to {FARTHEST_JOINT:g} rad or m "
+            f"angle must be between {-FARTHEST_JOINT:g} and {FARTHEST_JOINT:g} rad or m "
             f"(got {axes[0].text})"
         )
     return value

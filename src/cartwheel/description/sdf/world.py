@@ -239,7 +239,7 @@ def _physics(node: Node, ctx: Context) -> Physics:
             )
     if step is not None and not SHORTEST_STEP <= step.number() <= LONGEST_STEP:
         raise step.fail(
-            f"the step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s (got {step.text})"
+            f"the step must be between {SHORTEST_STEP:g} and {LONGEST_STEP:g} s (got {step.text})"
         )
     rate = node.child("real_time_update_rate") or node.child("update_rate")
     return Physics(

@@ -239,7 +239,7 @@ def _read_joint_tags(
     if joint.type != "fixed" and fields.get("preserve_fixed"):
         ctx.report(
             codes.NOT_SIMULATED.diagnostic(
-                f'joint "{joint.name}" is not fixed, so there is nothing to preserve',
+                f'joint "{joint.name}" is not fixed, so <preserveFixedJoint> has no effect',
                 origin=node.origin,
                 values={"joint": joint.name},
             )

@@ -147,7 +147,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
     def parse_macro_arg(text: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
         if len(text) > MAX_PARAMETERS:
             raise ExpressionError(
-                f"a macro's parameters have more than {MAX_PARAMETERS} characters",
+                f"a macro's parameters are longer than {MAX_PARAMETERS} characters",
                 values={"kind": "parameters", "most": MAX_PARAMETERS},
             )
         found = _PARAMETER.match(text)

@@ -106,8 +106,8 @@ class Propeller(Component):
         if config.number >= len(speeds):
             self.warn(
                 running.COMMAND_IGNORED,
-                f"a command is ignored: it has only {len(speeds)} speeds, so none for motor "
-                f"{config.number}",
+                f"a command is ignored: it has only {len(speeds)} speeds, so the speed of motor "
+                f"{config.number} is missing",
                 values={"speeds": len(speeds), "motor": config.number},
             )
             return

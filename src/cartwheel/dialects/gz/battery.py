@@ -128,7 +128,7 @@ class Battery(Plugin[BatteryParameters]):
         if not 0 <= charge <= full:
             self.warn(
                 devices.PLUGIN_PARAMETER_INVALID,
-                f"<initial_charge> must be from 0 to the capacity {full:g} (got {charge:g})",
+                f"<initial_charge> must be between 0 and the capacity {full:g} (got {charge:g})",
                 values={"parameter": "initial_charge", "value": charge, "most": full},
             )
         rechargeable = config.rechargeable and config.charging_time > 0

@@ -29,7 +29,7 @@ class GraspFixParameters:
         default=120.0,
         unit="°",
         doc="Two fingers grip an object if the angle between their forces exceeds this "
-        "value, which must be from 90 to 180.",
+        "value, which must be between 90 and 180.",
     )
     rate: float = tag(
         "update_rate", default=5.0, unit="Hz", doc="Rate at which contacts are checked."
@@ -81,7 +81,7 @@ class GraspFix(Plugin[GraspFixParameters]):
         config = self.config
         if config.angle < 90 or config.angle > 180:
             place = self.place_of("forces_angle_tolerance")
-            raise invalid("forces_angle_tolerance", config.angle, "from 90 to 180", place)
+            raise invalid("forces_angle_tolerance", config.angle, "between 90 and 180", place)
         self.check_above_zero(update_rate=config.rate)
         self.check_not_negative("tolerance")
         hands = tuple(_hand(element) for element in self.tag.element.find_all("arm"))

@@ -53,7 +53,7 @@ class Ros2ControlParameters:
     gain: float = tag(
         "position_proportional_gain",
         default=0.1,
-        doc="No effect: positions are held as firmly as the joint's effort limit allows.",
+        doc="No effect: position commands are limited only by the joint's effort limit.",
     )
     description: str = tag(
         "robot_param",

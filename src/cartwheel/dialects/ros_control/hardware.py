@@ -120,8 +120,8 @@ def _strength(
     owner.warn(
         devices.EFFORT_LIMIT_TOO_LOW,
         f'the effort limit of joint "{joint.name}", {limit:g} {unit}, is below the '
-        f"{need:.3g} {unit} that gravity requires; as in Gazebo, position commands are "
-        f"still followed, with up to {held:.3g} {unit}",
+        f"{need:.3g} {unit} required to hold the joint against gravity; as in Gazebo, the "
+        f"joint still follows position commands, with up to {held:.3g} {unit}",
         at=interfaces.origin,
         values={"joint": joint.name, "stated": limit, "needed": need, "used": held},
     )

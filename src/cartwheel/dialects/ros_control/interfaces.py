@@ -261,7 +261,7 @@ def _number(
         return None
     if abs(number) > most or LARGEST < abs(number) < math.inf:
         most = min(most, LARGEST)
-        wanted = f"a number from {-most:g} to {most:g}"
+        wanted = f"a number between {-most:g} and {most:g}"
         raise invalid(f'param name="{name}"', text, wanted, element.origin)
     return number
 

@@ -85,7 +85,7 @@ class Settings:
         value = self.number(name, default)
         if abs(value) > _MOST_COUNT or value != int(value):
             raise self.invalid(
-                name, value, f"a whole number from {-_MOST_COUNT:,} to {_MOST_COUNT:,}"
+                name, value, f"a whole number between {-_MOST_COUNT:,} and {_MOST_COUNT:,}"
             )
         return int(value)
 
@@ -191,7 +191,7 @@ class Settings:
         # A YAML integer can be too long for a float.
         unset = isinstance(value, float) and math.isnan(value)
         if unset or LARGEST < abs(value) < math.inf:
-            wanted = "a number" if unset else f"from {-LARGEST:g} to {LARGEST:g}"
+            wanted = "a number" if unset else f"between {-LARGEST:g} and {LARGEST:g}"
             raise self.invalid(name, value, wanted)
         return float(value)
 

@@ -94,7 +94,7 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
     first, last = _number(element, "min_angle", 0.0), _number(element, "max_angle", 0.0)
     if not 1 <= asked <= _MOST_RAYS:
         raise PluginError(
-            f"<samples> must be from 1 to {_MOST_RAYS:,} (got {asked:g})",
+            f"<samples> must be between 1 and {_MOST_RAYS:,} (got {asked:g})",
             code=devices.SCAN_SAMPLES_INVALID,
             origin=_place(element, "samples"),
             values={"parameter": "samples", "value": asked},

@@ -42,7 +42,7 @@ def wheel_odometry(
         raise settings.invalid("publish_rate", rate, "positive")
     size = settings.integer("velocity_rolling_window_size", 10)
     if not 1 <= size <= _MOST_AVERAGED:
-        wanted = f"from 1 to {_MOST_AVERAGED:,}"
+        wanted = f"between 1 and {_MOST_AVERAGED:,}"
         raise settings.invalid("velocity_rolling_window_size", size, wanted)
     config = OdometryConfig(
         topic=topic,
