@@ -1,4 +1,4 @@
-"""The joints of a robot for controllers: states, commands, limits and PIDs."""
+"""The joints that a robot offers to controllers, with their interfaces and limits."""
 
 from __future__ import annotations
 

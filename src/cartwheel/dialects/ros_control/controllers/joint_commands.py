@@ -38,7 +38,7 @@ class JointCommand(Controller):
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
         if interface == "position":
-            self.accept_positions(lambda wanted, _: _put(self, wanted))
+            self.accept_positions(lambda wanted, _: _publish_target(self, wanted))
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._command = self._joint.command
@@ -66,26 +66,26 @@ class JointPid(Controller):
 
     def configure(self, settings: Settings) -> None:
         self._interface = self.type.partition("_")[0]
-        self._follows = "position" if self.type.endswith("JointPositionController") else "velocity"
+        self._quantity = "position" if self.type.endswith("JointPositionController") else "velocity"
         self._joint = self.claim(settings.text("joint"), self._interface)
         self._gains = read_gains(settings.section("pid"))
         settings.ignore("pid")
         self._pid = Pid(self._gains)
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
-        if self._follows == "position":
-            self.accept_positions(lambda wanted, _: _put(self, wanted))
+        if self._quantity == "position":
+            self.accept_positions(lambda wanted, _: _publish_target(self, wanted))
         self._publisher = self.advertise("state", "control_msgs/msg/JointControllerState")
         self._count = 0
         self._State = message_class("control_msgs/msg/JointControllerState")
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
-        self._command = self._joint.position if self._follows == "position" else 0.0
+        self._command = self._joint.position if self._quantity == "position" else 0.0
         self._pid.reset()
 
     def update(self, time_ns: int, seconds: float) -> None:
         joint = self._joint
-        if self._follows == "velocity":
+        if self._quantity == "velocity":
             error = self._command - joint.velocity
             command = self._pid.velocity(self._command, joint.velocity, seconds)
         else:
@@ -107,8 +107,10 @@ class JointPid(Controller):
                 self._State(
                     header=header(time_ns, ""),
                     set_point=self._command,
-                    process_value=joint.position if self._follows == "position" else joint.velocity,
-                    process_value_dot=joint.velocity if self._follows == "position" else 0.0,
+                    process_value=joint.position
+                    if self._quantity == "position"
+                    else joint.velocity,
+                    process_value_dot=joint.velocity if self._quantity == "position" else 0.0,
                     error=error,
                     time_step=seconds,
                     command=output,
@@ -164,8 +166,8 @@ class JointGroup(Controller):
         self._pids: list[Pid] = []
         if self.type == "effort_controllers/JointGroupPositionController":
             # ROS 2 files have the gains under the same key as for trajectory controllers.
-            form = "gains/{}" if self.robot.ros2 and settings.raw("gains") else "{}/pid"
-            gains = [read_gains(settings.section(form.format(name))) for name in names]
+            path = "gains/{}" if self.robot.ros2 and settings.raw("gains") else "{}/pid"
+            gains = [read_gains(settings.section(path.format(name))) for name in names]
             self._pids = [Pid(each) for each in gains]
             for name in ("gains", *names):
                 settings.ignore(name)
@@ -173,7 +175,7 @@ class JointGroup(Controller):
         topic = "commands" if self.robot.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
         if interface == "position" or self._pids:
-            self.accept_positions(lambda wanted, _: self._put(topic, wanted))
+            self.accept_positions(lambda wanted, _: self._publish_targets(topic, wanted))
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._commands = [joint.position for joint in self._joints] if self._pids else None
@@ -194,7 +196,7 @@ class JointGroup(Controller):
                 )
             )
 
-    def _put(self, topic: str, wanted: Mapping[str, float]) -> None:
+    def _publish_targets(self, topic: str, wanted: Mapping[str, float]) -> None:
         values = np.array([wanted[joint.joint] for joint in self._joints])
         layout = zero("std_msgs/msg/MultiArrayLayout")
         self.publish_command(topic, "std_msgs/msg/Float64MultiArray", layout=layout, data=values)
@@ -212,7 +214,7 @@ class JointGroup(Controller):
             self._commands = values
 
 
-def _put(controller: Controller, wanted: Mapping[str, float]) -> None:
+def _publish_target(controller: Controller, wanted: Mapping[str, float]) -> None:
     """Commands the controller's only joint on its topic."""
     (value,) = wanted.values()
     controller.publish_command("command", _FLOAT, data=float(value))

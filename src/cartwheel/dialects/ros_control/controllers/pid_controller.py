@@ -1,4 +1,4 @@
-"""``pid_controller``: joints that follow references, which other controllers can set, by a PID."""
+"""``pid_controller``: PID controllers of joints, with references from a topic or a controller."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cartwheel.messages.store import TWIN
 _COMMAND = f"control_msgs{TWIN}/msg/MultiDOFCommand"
 _STATE = f"control_msgs{TWIN}/msg/MultiDOFStateStamped"
 _ONE_STATE = f"control_msgs{TWIN}/msg/SingleDOFState"
-_NOTHING = (math.nan, math.nan)
+_UNKNOWN = (math.nan, math.nan)
 
 
 class PidController(Controller):
@@ -46,8 +46,8 @@ class PidController(Controller):
             raise settings.invalid("reference_and_state_interfaces", kinds, wanted)
         interface = settings.text("command_interface")
         self._external = settings.boolean("use_external_measured_states", False)
-        self._feeds_forward = settings.boolean("enable_feedforward", True)
-        self._begins_here = settings.boolean("set_current_state_as_first_setpoint", True)
+        self._feedforward = settings.boolean("enable_feedforward", True)
+        self._starts_at_state = settings.boolean("set_current_state_as_first_setpoint", True)
         self._loops = []
         for name, state_name in zip(names, self._names, strict=True):
             joint = self.claim(name, interface)
@@ -59,9 +59,9 @@ class PidController(Controller):
                     joint=joint,
                     state=state,
                     references=tuple(self.export(state, kind) for kind in kinds),
-                    damps=interface == "effort" and state is joint and not self._external,
-                    forward=section.number("feedforward_gain", 0.0),
-                    wraps=section.boolean("angle_wraparound", False),
+                    damped=interface == "effort" and state is joint and not self._external,
+                    feedforward_gain=section.number("feedforward_gain", 0.0),
+                    wraparound=section.boolean("angle_wraparound", False),
                     pid=Pid(read_ros2_gains(section)),
                 )
             )
@@ -73,19 +73,19 @@ class PidController(Controller):
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         for loop in self._loops:
-            loop.measured = _NOTHING
+            loop.measured = _UNKNOWN
             loop.pid.reset()
             if not self.chained:
-                here = self._begins_here and not self._external
-                state = loop.sensed() if here else _NOTHING
+                here = self._starts_at_state and not self._external
+                state = loop.measure() if here else _UNKNOWN
                 for reference, value in zip(loop.references, state, strict=False):
                     reference.command = value
 
     def update(self, time_ns: int, seconds: float) -> None:
         for loop in self._loops:
             if not self._external:
-                loop.measured = loop.sensed()
-            loop.command(seconds, ahead=self._feeds_forward)
+                loop.measured = loop.measure()
+            loop.command(seconds, feedforward=self._feedforward)
         if self._state_publisher.wanted:
             message = zero(_STATE)
             message.header = header(time_ns, "")
@@ -110,11 +110,11 @@ class PidController(Controller):
             loop.measured = state
 
     def _on_feedforward(self, request: Any) -> Any:
-        self._feeds_forward = bool(request.data)
+        self._feedforward = bool(request.data)
         return message_class("std_srvs/srv/SetBool_Response")(success=True, message="")
 
     def _ordered(self, message: Any, what: str) -> list[tuple[float, float]]:
-        """Returns values and their rates of change in the order of our joints; empty if invalid."""
+        """Returns values and their rates of change in the order of the joints; empty if invalid."""
         names = list(message.dof_names) or self._names
         values = [float(each) for each in message.values]
         rates = [float(each) for each in message.values_dot] or [math.nan] * len(names)
@@ -132,7 +132,7 @@ class PidController(Controller):
 
 @dataclass(kw_only=True, slots=True)
 class _Loop:
-    """A joint with its PID."""
+    """A joint with its references and its PID controller."""
 
     joint: JointHardware
     """The commanded joint."""
@@ -140,15 +140,17 @@ class _Loop:
     """The measured joint."""
     references: tuple[Reference, ...]
     """References of the value and, optionally, of its rate of change."""
-    damps: bool
-    """Whether the derivative damps the joint itself, which the physics integrates implicitly."""
-    forward: float
-    wraps: bool
+    damped: bool
+    """Whether the derivative gain damps the joint itself, which the physics integrates implicitly."""
+    feedforward_gain: float
+    """Output per reference, or per rate of change of a reference with a rate."""
+    wraparound: bool
+    """Whether errors take the shorter way around a full turn."""
     pid: Pid
-    measured: tuple[float, float] = _NOTHING
+    measured: tuple[float, float] = _UNKNOWN
     """Measured value and its rate of change; NaN if unknown."""
 
-    def sensed(self) -> tuple[float, float]:
+    def measure(self) -> tuple[float, float]:
         """Returns the joint's own state: a value and its rate of change."""
         match self.references[0].interface:
             case "position":
@@ -158,7 +160,7 @@ class _Loop:
         return self.state.effort, math.nan
 
     @property
-    def wanted(self) -> tuple[float, float]:
+    def reference(self) -> tuple[float, float]:
         """The reference and its rate of change; NaN if not set."""
         value, *rate = (each.command for each in self.references)
         return value, rate[0] if rate else math.nan
@@ -166,35 +168,41 @@ class _Loop:
     @property
     def error(self) -> float:
         """Reference minus measured value."""
-        off = self.wanted[0] - self.measured[0]
-        return math.remainder(off, 2 * math.pi) if self.wraps and math.isfinite(off) else off
+        error = self.reference[0] - self.measured[0]
+        return (
+            math.remainder(error, 2 * math.pi)
+            if self.wraparound and math.isfinite(error)
+            else error
+        )
 
-    def command(self, seconds: float, *, ahead: bool) -> None:
+    def command(self, seconds: float, *, feedforward: bool) -> None:
         """Commands the joint if it has a reference.
 
         Args:
             seconds: Time since the last call, s.
-            ahead: Add the feedforward term.
+            feedforward: Add the feedforward term.
         """
-        (wanted, rate), (measured, speed), error = self.wanted, self.measured, self.error
+        (reference, rate), (measured, speed), error = self.reference, self.measured, self.error
         if not math.isfinite(error):
             return
         if self.references[0].interface == "position":
             command = self.pid.position(
                 error,
                 seconds,
-                target=wanted,
+                target=reference,
                 rate=rate if math.isfinite(rate) else None,
-                lightness=self.joint.lightness if self.damps else 0.0,
+                lightness=self.joint.lightness if self.damped else 0.0,
             )
         else:
-            command, speed = self.pid.velocity(wanted, measured, seconds), measured
+            command, speed = self.pid.velocity(reference, measured, seconds), measured
         speed = speed if math.isfinite(speed) else 0.0
         command = self.pid.limited(command, speed)
-        fed = rate if len(self.references) > 1 else wanted
-        if ahead and math.isfinite(fed):
-            command = DampedEffort(command.effort + self.forward * fed, command.damping)
-        if self.damps:
+        input_value = rate if len(self.references) > 1 else reference
+        if feedforward and math.isfinite(input_value):
+            command = DampedEffort(
+                command.effort + self.feedforward_gain * input_value, command.damping
+            )
+        if self.damped:
             self.joint.set_effort(command)
         else:
             self.joint.command = command.at(speed)
@@ -203,11 +211,11 @@ class _Loop:
         """Returns the state as a message."""
         return message_class(_ONE_STATE)(
             name=name,
-            reference=self.wanted[0],
+            reference=self.reference[0],
             feedback=self.measured[0],
             feedback_dot=self.measured[1],
             error=self.error,
-            error_dot=self.wanted[1] - self.measured[1],
+            error_dot=self.reference[1] - self.measured[1],
             time_step=seconds,
             output=self.joint.command,
         )

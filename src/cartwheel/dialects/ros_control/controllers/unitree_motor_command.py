@@ -33,12 +33,12 @@ class UnitreeJointController(Controller):
         self._joint = self.claim(settings.text("joint"), "effort")
         # The original reads these gains only in a tuning build.
         settings.ignore("pid")
-        self._command(PidGains(p=0.0, d=_BRAKING))
+        self._set_target(PidGains(p=0.0, d=_BRAKING))
         self.subscribe("command", "unitree_legged_msgs/msg/MotorCmd", self._on_command)
         self._publisher = self.advertise("state", "unitree_legged_msgs/msg/MotorState")
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
-        self._command(PidGains(p=0.0, d=_BRAKING))
+        self._set_target(PidGains(p=0.0, d=_BRAKING))
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
         joint = self._joint
@@ -55,9 +55,10 @@ class UnitreeJointController(Controller):
             message.q, message.dq, message.tauEst = joint.position, joint.velocity, joint.effort
             self._publisher.publish(message)
 
-    def _command(
+    def _set_target(
         self, gains: PidGains, *, position: float = 0.0, velocity: float = 0.0, torque: float = 0.0
     ) -> None:
+        """Sets the gains, and the targets in rad, rad/s and N m."""
         self._pid = Pid(gains)
         self._position, self._velocity, self._torque = position, velocity, torque
 
@@ -66,19 +67,19 @@ class UnitreeJointController(Controller):
         if not all(math.isfinite(each) for each in numbers):
             return
         if message.mode == _BRAKE:
-            self._command(PidGains(p=0.0, d=_BRAKING))
+            self._set_target(PidGains(p=0.0, d=_BRAKING))
         elif message.mode == _SERVO:
             position, velocity, torque, p, d = (float(each) for each in numbers)
             limits = self._joint.limits
-            self._command(
-                PidGains(p=0.0 if _is(position, _NO_POSITION) else p,
-                      d=0.0 if _is(velocity, _NO_VELOCITY) else d),
+            self._set_target(
+                PidGains(p=0.0 if _matches(position, _NO_POSITION) else p,
+                      d=0.0 if _matches(velocity, _NO_VELOCITY) else d),
                 position=clamp(position, limits.lower, limits.upper),
                 velocity=clamp(velocity, -limits.velocity, limits.velocity),
                 torque=clamp(torque, -limits.effort, limits.effort),
             )  # fmt: skip
 
 
-def _is(value: float, mark: float) -> bool:
+def _matches(value: float, mark: float) -> bool:
     """Whether a 32-bit value is the given marker."""
     return math.isclose(value, mark, rel_tol=1e-6)
