@@ -141,7 +141,7 @@ class _Loop:
     references: tuple[Reference, ...]
     """References of the value and, optionally, of its rate of change."""
     damped: bool
-    """Whether the derivative gain damps the joint itself, which the physics integrates implicitly."""
+    """Whether the derivative gain damps the joint, which the physics integrates implicitly."""
     feedforward_gain: float
     """Output per reference, or per rate of change of a reference with a rate."""
     wraparound: bool
