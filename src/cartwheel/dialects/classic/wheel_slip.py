@@ -2,36 +2,21 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Cylinder, Element, Sphere
+from cartwheel.devices.mechanisms.wheel_slip import (
+    SlippingWheelConfig,
+    WheelSlip,
+    WheelSlipConfig,
+)
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import number, tag
 from cartwheel.errors import PluginError
-from cartwheel.graph import ReconfigureParameter
-from cartwheel.messages import message_class
-from cartwheel.simulation.handles import JointHandle
-from cartwheel.simulation.slipping import SlipHandle
 
-_SENSES = ("lateral", "longitudinal")
-_PARAMETERS = tuple(
-    ReconfigureParameter(
-        name=f"slip_compliance_unitless_{sense}",
-        type="double",
-        default=-1.0,
-        minimum=-1.0,
-        maximum=20.0,
-        level=0,
-        description=f"Slip ratio at a friction force equal to the normal force, {sense}",
-    )
-    for sense in _SENSES
-)
+_DIRECTIONS = ("lateral", "longitudinal")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -59,18 +44,7 @@ class WheelSlipParameters:
     )
 
 
-@dataclass(kw_only=True, slots=True)
-class _Wheel:
-    link: str
-    joint: JointHandle
-    slip: SlipHandle
-    normal: float
-    """Normal force, N."""
-    compliance: dict[str, float]
-    """Slip ratio at a friction force equal to the normal force, lateral and longitudinal."""
-
-
-class WheelSlip(Plugin[WheelSlipParameters]):
+class WheelSlipPlugin(Plugin[WheelSlipParameters]):
     """Makes wheels slip in proportion to the friction force.
 
     The slip speed is ``rim speed * slip compliance * friction force / normal force``. A wheel that
@@ -95,26 +69,28 @@ class WheelSlip(Plugin[WheelSlipParameters]):
     def configure(self) -> None:
         config, element = self.config, self.tag.element
         self.check_not_negative("rate")
-        self._wheels = [self._wheel(each) for each in element.find_all("wheel")]
-        if not self._wheels:
+        wheels = tuple(self._wheel(each) for each in element.find_all("wheel"))
+        if not wheels:
             self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so no wheel slips")
             return
-        self.part.schedule(0, before=self._apply)
-        if "gazebo_ros_wheel_slip" not in self.tag.filename:
-            return
-        if element.find("ros") is not None:
-            self._WheelSlip = message_class("gazebo_msgs/msg/WheelSlip")
-            rate = config.rate or None
-            self._publisher = self.advertise("wheel_slip", "gazebo_msgs/msg/WheelSlip", rate=rate)
-            self.part.schedule(
-                config.rate, after=self._publish, active=lambda: self._publisher.wanted
-            )
-        else:
-            plain = element.find("robotNamespace")
-            name = (plain.text.strip().strip("/") if plain is not None else "") or "wheel_slip"
-            self.reconfigure(f"/{self.part.name}/{name}", _PARAMETERS, self._on_change)
+        topic = parameters = None
+        if "gazebo_ros_wheel_slip" in self.tag.filename:
+            if element.find("ros") is not None:
+                topic = "wheel_slip"
+            else:
+                plain = element.find("robotNamespace")
+                name = (plain.text.strip().strip("/") if plain is not None else "") or "wheel_slip"
+                parameters = f"/{self.part.name}/{name}"
+        device = WheelSlipConfig(
+            wheels=wheels,
+            topic=topic,
+            rate=config.rate,
+            tolerance=config.tolerance,
+            reconfigured_as=parameters,
+        )
+        self.add(WheelSlip(self.scope, device))
 
-    def _wheel(self, element: Element) -> _Wheel:
+    def _wheel(self, element: Element) -> SlippingWheelConfig:
         origin = element.origin
         name = element.attribute("link_name")
         if not name:
@@ -133,25 +109,20 @@ class WheelSlip(Plugin[WheelSlipParameters]):
                 origin=origin,
                 values={"link": name, "wheel_radius": radius, "wheel_normal_force": normal},
             )
-        slip = self.part.slip(name, radius=radius, origin=origin)
-        joint = next(each for each in self.part.description.joints if each.child == name)
         compliance = {}
-        for sense in _SENSES:
-            value = _number(element, f"slip_compliance_{sense}")
+        for direction in _DIRECTIONS:
+            parameter = f"slip_compliance_{direction}"
+            value = _number(element, parameter)
             if value < 0:
                 self.warn(
                     devices.PLUGIN_PARAMETER_INVALID,
-                    f"<slip_compliance_{sense}> must not be negative (got {value:g}), so 0 is used",
+                    f"<{parameter}> must not be negative (got {value:g}), so 0 is used",
                     at=origin,
-                    values={"parameter": f"slip_compliance_{sense}", "value": value},
+                    values={"parameter": parameter, "value": value},
                 )
-            compliance[sense] = max(value, 0.0)
-        return _Wheel(
-            link=name,
-            joint=self.part.joint(joint.name, origin=origin),
-            slip=slip,
-            normal=normal,
-            compliance=compliance,
+            compliance[direction] = max(value, 0.0)
+        return SlippingWheelConfig(
+            link=name, radius=radius, normal_force=normal, origin=origin, **compliance
         )
 
     def _radius(self, name: str) -> float:
@@ -160,29 +131,6 @@ class WheelSlip(Plugin[WheelSlipParameters]):
         shapes = [each.shape for each in link.collisions] if link is not None else []
         round_ones = [shape for shape in shapes if isinstance(shape, Cylinder | Sphere)]
         return round_ones[0].radius if round_ones else 0.0
-
-    def _on_change(self, values: Mapping[str, Any]) -> None:
-        for sense in _SENSES:
-            value = float(values[f"slip_compliance_unitless_{sense}"])
-            if value >= 0:
-                for wheel in self._wheels:
-                    wheel.compliance[sense] = value
-
-    def _apply(self) -> None:
-        for wheel in self._wheels:
-            speed = abs(wheel.joint.velocity) * wheel.slip.radius / wheel.normal
-            wheel.slip.give(*(speed * wheel.compliance[sense] for sense in _SENSES))
-
-    def _publish(self) -> None:
-        names, lateral, longitudinal = [], [], []
-        for wheel in self._wheels:
-            rim = wheel.joint.velocity * wheel.slip.radius
-            aside, ahead = wheel.slip.speeds
-            still = abs(rim) < self.config.tolerance
-            names.append(wheel.link)
-            longitudinal.append(0.0 if still else ahead / rim)
-            lateral.append(0.0 if still else math.atan2(aside, rim - ahead))
-        self._publisher.publish(self._WheelSlip(names, np.array(lateral), np.array(longitudinal)))
 
 
 def _number(element: Element, name: str) -> float:

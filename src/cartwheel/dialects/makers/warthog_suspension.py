@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.devices.mechanisms.suspension import Suspension, SuspensionConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
@@ -36,15 +37,11 @@ class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
     parameters: ClassVar[type] = WarthogSuspensionParameters
 
     def configure(self) -> None:
-        config, part, origin = self.config, self.part, self.tag.origin
+        config = self.config
         self.check_not_negative("stiffness", "damping")
-        self._sides = [
-            (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
-            for name in (config.left, config.right)
-        ]
-        part.schedule(0, before=self._bear)
-
-    def _bear(self) -> None:
-        for joint, servo in self._sides:
-            effort = -self.config.stiffness * joint.position
-            servo.command_effort(effort, damping=self.config.damping)
+        device = SuspensionConfig(
+            joints=(config.left, config.right),
+            stiffness=config.stiffness,
+            damping=config.damping,
+        )
+        self.add(Suspension(self.scope, device))

@@ -31,7 +31,7 @@ def force_of(world):
     """What the rope exerts on the robot."""
     simulation = world.session.simulation
     simulation.refresh()
-    return simulation._population.residents["biped"].behaviours[0]._winch.joint.force()
+    return simulation._population.residents["biped"].behaviours[0].device.wound.joint.force()
 
 
 def height(world):

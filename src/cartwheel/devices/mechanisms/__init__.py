@@ -1,0 +1,1 @@
+"""Mechanisms: elevators, winches, suspensions and wheels that slip."""
