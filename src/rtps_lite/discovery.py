@@ -7,6 +7,7 @@ import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from rtps_lite import wire
 from rtps_lite.wire import VENDOR, VERSION, Guid, MalformedError, Prefix
 
 PARTICIPANT = b"\x00\x00\x01\xc1"
@@ -332,3 +333,27 @@ def _locators(values: Iterable[bytes], order: str) -> tuple[Address, ...]:
         if kind == _UDP4 and 0 < port < 65536:
             found.append((".".join(map(str, value[20:24])), port))
     return tuple(found[:8])
+
+
+def announcement(data: ParticipantData, *, domain: int) -> bytes:
+    """The message that announces a participant."""
+    payload = encode_participant(data, domain=domain)
+    head = wire.data_head(
+        reader=wire.UNKNOWN, writer=SPDP_WRITER, number=1, inline=b"", size=len(payload)
+    )
+    return wire.message(data.prefix, head, payload)
+
+
+def farewell(prefix: Prefix) -> bytes:
+    """The message that announces the end of a participant."""
+    payload = encode_key(prefix + PARTICIPANT, participant=True)
+    head = wire.data_head(
+        reader=SPDP_READER,
+        writer=SPDP_WRITER,
+        # Announcements repeat number 1.
+        number=2,
+        inline=disposed(prefix + PARTICIPANT),
+        size=len(payload),
+        keyed=True,
+    )
+    return wire.message(prefix, head, payload)

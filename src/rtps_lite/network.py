@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import socket
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -95,6 +96,24 @@ class Network:
     def hears(self, host: str) -> bool:
         """Whether datagrams from a host are accepted."""
         return self.reach.range == "SUBNET" or host in self._heard
+
+    def nearest(self, addresses: Sequence[Address], host: str) -> Address:
+        """The participant's address that matches the source of its datagrams.
+
+        No other address is used, so that a fake participant cannot redirect traffic to a victim.
+
+        Args:
+            addresses: The addresses in the participant's announcement.
+            host: IPv4 address of the source.
+        """
+        for address in addresses:
+            if address[0] == host:
+                return address
+        if self.is_own(host):
+            for address in addresses:
+                if self.is_own(address[0]):
+                    return address
+        return host, addresses[0][1]
 
     def is_own(self, host: str) -> bool:
         """Whether an address belongs to this computer."""

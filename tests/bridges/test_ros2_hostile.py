@@ -32,7 +32,7 @@ from cartwheel.codes.wires import (
 from cartwheel.graph import Graph
 from cartwheel.messages.ros2_types import ros2_type
 from rtps_lite import discovery, wire
-from rtps_lite import participant as participant_module
+from rtps_lite import remotes as remotes_module
 from rtps_lite.discovery import ParticipantData, encode_participant
 from rtps_lite.interface import UnknownHostError
 from rtps_lite.network import Network, Reach
@@ -163,7 +163,7 @@ def lose_all(bridged: Ros2Bridged) -> None:
     participant = dds_of(bridged).participant
 
     def lose() -> None:
-        for prefix in list(participant._remotes):
+        for prefix in list(participant._remotes.by_prefix):
             participant._lose(prefix)
 
     bridged.bridge._loop.call(lose).result(120)
@@ -179,7 +179,7 @@ def test_participants_without_number_are_bounded(
             settle(bridged)
     settle(bridged)
     # As many as there are ports for on this computer.
-    assert len(participant._remotes) == 120
+    assert len(participant._remotes.by_prefix) == 120
     wait_for(
         lambda: coded(bridged.reports, PEER_LIMIT),
         "the warning",
@@ -205,7 +205,7 @@ def test_a_real_one_gets_in_beside_any_number_that_are_made_up(
     thread.start()
     peer = None
     try:
-        wait_for(lambda: len(dds_of(bridged).participant._remotes) == 120, "the flood")
+        wait_for(lambda: len(dds_of(bridged).participant._remotes.by_prefix) == 120, "the flood")
         peer = Peer(DOMAIN + 3)
         peer.subscribe("/odom", "nav_msgs/msg/Odometry")
         wait_for(lambda: len(peer.received("/odom")) > 100, "odometry")
@@ -241,13 +241,13 @@ def test_who_never_answers_gets_no_samples_and_is_forgotten(
     sender.send(announcement(prefix, sender.getsockname()[1]))
     sender.send(wire.message(prefix, head, payload))
     settle(bridged)
-    remote = participant._remotes[prefix]
+    remote = participant._remotes.by_prefix[prefix]
     assert remote.readers.keys() == {endpoint.guid}
     kinds = [type(each) for each in contents(sender, 1.5)]
     assert kinds.count(wire.Data) <= 8, "announcements alone"
     assert not bridged.wanted("/odom")
-    monkeypatch.setattr(participant_module, "_UNANSWERED", 0.0)
-    wait_for(lambda: prefix not in participant._remotes, "it to be forgotten")
+    monkeypatch.setattr(remotes_module, "_UNANSWERED", 0.0)
+    wait_for(lambda: prefix not in participant._remotes.by_prefix, "it to be forgotten")
 
 
 def contents(sock: socket.socket, seconds: float) -> list[object]:
@@ -273,7 +273,7 @@ def test_nobody_has_us_send_to_somebody_else(bridged: Ros2Bridged, sender: socke
         )
         sender.send(wire.message(prefix, head, told))
         settle(bridged)
-        assert participant._remotes[prefix].address == ("127.0.0.1", 4711)
+        assert participant._remotes.by_prefix[prefix].address == ("127.0.0.1", 4711)
         # Nor does anybody say farewell for another.
         key = discovery.encode_key(prefix + discovery.PARTICIPANT, participant=True)
         inline = discovery.disposed(prefix + discovery.PARTICIPANT)
@@ -288,7 +288,7 @@ def test_nobody_has_us_send_to_somebody_else(bridged: Ros2Bridged, sender: socke
         elsewhere.connect(participant._network.locators[0])
         elsewhere.send(wire.message(b"\x01\x09" + bytes(10), head, key))
         settle(bridged)
-        assert prefix in participant._remotes
+        assert prefix in participant._remotes.by_prefix
     lose_all(bridged)
 
 

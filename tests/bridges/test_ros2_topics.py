@@ -246,10 +246,10 @@ def test_who_leaves_is_forgotten(bridged: Ros2Bridged, peer: Peer) -> None:
     peer.subscribe("/odom", ODOMETRY)
     wait_for(lambda: peer.received("/odom"), "odometry")
     dds = bridged.bridge.middleware
-    assert isinstance(dds.participant._remotes, dict)  # type: ignore[attr-defined]
+    assert isinstance(dds.participant._remotes.by_prefix, dict)  # type: ignore[attr-defined]
     peer.kill()
     # It was killed, so its silence alone tells.
-    wait_for(lambda: not dds.participant._remotes, "its end", 40.0)  # type: ignore[attr-defined]
+    wait_for(lambda: not dds.participant._remotes.by_prefix, "its end", 40.0)  # type: ignore[attr-defined]
     wait_for(lambda: not bridged.wanted("/odom"), "that nothing is published for nobody")
 
 
