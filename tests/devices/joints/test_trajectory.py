@@ -1,8 +1,9 @@
 """Trajectories at times at which the polynomial is known."""
 
+import numpy as np
 import pytest
 
-from cartwheel.devices.joints.trajectory import Trajectory, Waypoint, next_point
+from cartwheel.devices.joints.trajectory import Trajectory, Waypoint, next_point, polynomial
 
 SECOND = 1_000_000_000
 
@@ -88,3 +89,17 @@ def test_the_next_point_is_the_first_whose_time_has_not_passed():
     assert next_point(times, 2, 0) == 2
     assert next_point(times, 3, 301) == 4
     assert next_point([], 0, 5) == 0
+
+
+def test_a_polynomial_and_its_derivatives():
+    assert polynomial((1.0, 2.0, 3.0, 4.0, 5.0, 6.0), 2.0) == (
+        1 + 4 + 12 + 32 + 80 + 192,
+        2 + 12 + 48 + 160 + 480,
+        6 + 48 + 240 + 960,
+    )
+    generator = np.random.default_rng(1)
+    coefficients, times = generator.normal(size=(6, 20)), generator.uniform(0.0, 3.0, size=20)
+    together = polynomial(coefficients, times)
+    for index in range(20):
+        alone = polynomial([float(each[index]) for each in coefficients], float(times[index]))
+        assert [float(each[index]) for each in together] == list(alone)

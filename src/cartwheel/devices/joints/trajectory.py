@@ -7,6 +7,8 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from cartwheel.devices.elementwise import Number
+
 Vector = tuple[float, ...]
 
 
@@ -73,13 +75,27 @@ class Trajectory:
             return _rest(self._points[-1].position)
         time -= self._times[index]
         position, velocity, acceleration = [], [], []
-        for c0, c1, c2, c3, c4, c5 in self._segments[index]:
-            position.append(c0 + time * (c1 + time * (c2 + time * (c3 + time * (c4 + time * c5)))))
-            velocity.append(
-                c1 + time * (2 * c2 + time * (3 * c3 + time * (4 * c4 + time * 5 * c5)))
-            )
-            acceleration.append(2 * c2 + time * (6 * c3 + time * (12 * c4 + time * 20 * c5)))
+        for coefficients in self._segments[index]:
+            value, rate, change = polynomial(coefficients, time)
+            position.append(value)
+            velocity.append(rate)
+            acceleration.append(change)
         return State(tuple(position), tuple(velocity), tuple(acceleration))
+
+
+def polynomial(coefficients: Sequence[Number], time: Number) -> tuple[Number, Number, Number]:
+    """Returns position, velocity and acceleration of a joint in a segment.
+
+    Args:
+        coefficients: Six coefficients of a polynomial in time, the constant first.
+        time: Time since the start of the segment, s.
+    """
+    c0, c1, c2, c3, c4, c5 = coefficients
+    return (
+        c0 + time * (c1 + time * (c2 + time * (c3 + time * (c4 + time * c5)))),
+        c1 + time * (2 * c2 + time * (3 * c3 + time * (4 * c4 + time * 5 * c5))),
+        2 * c2 + time * (6 * c3 + time * (12 * c4 + time * 20 * c5)),
+    )
 
 
 def next_point(times_ns: Sequence[int], index: int, time_ns: int) -> int:
