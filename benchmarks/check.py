@@ -18,7 +18,7 @@ from cartwheel.checks.project.run import check
 from cartwheel.codes import code_named
 from cartwheel.corpus.finding import robots_in
 from cartwheel.description.convert import to_urdf
-from cartwheel.description.packages import share
+from cartwheel.description.package_folders import share
 from cartwheel.description.shipped import shipped_descriptions
 from cartwheel.errors import Code, DescriptionError, Diagnostic
 

@@ -10,7 +10,7 @@ from cartwheel.description import load_text
 from cartwheel.description.convert import to_urdf
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
-from cartwheel.description.packages import share
+from cartwheel.description.package_folders import share
 from cartwheel.errors import CartwheelError
 
 CART = share() / "robots" / "rosbots_description" / "urdf" / "rosbots.xacro"

@@ -10,7 +10,7 @@ from tests.coded import named, placed, raises
 from cartwheel.codes import files
 from cartwheel.description import load, load_robot, load_text, load_world
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.packages import share
+from cartwheel.description.package_folders import share
 from cartwheel.description.shipped import find_description, shipped_descriptions
 from cartwheel.errors import DescriptionError
 

@@ -6,8 +6,9 @@ import pytest
 from tests.coded import named, raises
 
 from cartwheel.codes import files
-from cartwheel.description import packages as packages_module
-from cartwheel.description.packages import Packages, share
+from cartwheel.description import package_folders
+from cartwheel.description.package_folders import share
+from cartwheel.description.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
 
 HERE = Origin(file="robot.urdf", line=3)
@@ -227,14 +228,14 @@ def test_large_trees_are_not_walked(tmp_path, monkeypatch):
     for number in range(700):
         (tmp_path / "ws" / f"f{number:03}").mkdir()
     looked = set()
-    name_of = packages_module._package_name
+    name_of = package_folders.package_name
 
     def counted(folder):
         looked.add(folder)
         return name_of(folder)
 
-    monkeypatch.setattr(packages_module, "_package_name", counted)
+    monkeypatch.setattr(package_folders, "package_name", counted)
     with raises(files.FILE_MISSING):
         packages(robot(own)).find("nowhere")
     walked = [each for each in looked if each.parent == tmp_path / "ws"]
-    assert 0 < len(walked) <= packages_module.MAX_ENTRIES
+    assert 0 < len(walked) <= package_folders.MAX_ENTRIES

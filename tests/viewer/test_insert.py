@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cartwheel.description.model import WorldDescription
-from cartwheel.description.packages import share
+from cartwheel.description.package_folders import share
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.session import Session
 from cartwheel.simulation.naming import free_name

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from cartwheel.description.packages import Packages, belongs_to
+from cartwheel.description.package_folders import belongs_to
+from cartwheel.description.packages import Packages
 
 
 class SimulationPackages:

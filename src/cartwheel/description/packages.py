@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, lru_cache
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
 from urllib.parse import unquote
@@ -18,45 +18,28 @@ from cartwheel.codes import files as codes
 from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.description import fuel, numbers
 from cartwheel.description.installed import source_of
-from cartwheel.description.missing import Advice, advice, also_missing
+from cartwheel.description.missing import Advice
+from cartwheel.description.package_folders import (
+    around,
+    is_dir,
+    is_file,
+    package_above,
+    package_name,
+    share,
+)
+from cartwheel.description.package_search import PackageSearch, listed
 from cartwheel.description.reach import (
     NAME_IT,
     Reach,
     is_below,
-    is_common,
     is_inside,
     is_named,
     real,
 )
 from cartwheel.errors import DescriptionError, Origin
 
-MAX_ENTRIES = 500
-"""A folder with more entries is not a workspace; only these are examined."""
-MAX_CRAWLED = 20_000
-"""Maximum number of folders to search below one root."""
-MAX_LEVELS_UP = 5
-"""How far above the file or its package a workspace may begin."""
-
-_ROS1 = "ROS_PACKAGE_PATH"
-_PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
-_MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
 _RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
-IGNORE_MARKERS = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
-"""Files that exclude a folder from the search for packages."""
-_SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
-_NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
-_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
-
-
-def share() -> Path:
-    """The folder with the built-in ``robots``, ``worlds`` and ``models``.
-
-    The repository's root in a checkout, ``cartwheel/share`` in an installed package.
-    """
-    package = Path(__file__).resolve().parent.parent
-    installed = package / "share"
-    return installed if installed.is_dir() else package.parent.parent
 
 
 class Packages:
@@ -87,16 +70,12 @@ class Packages:
         self.file = file.absolute() if file is not None else None
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
-        self._found: dict[str, Path | None] = {}
-        self._lacking: dict[str, Advice] = {}
-        """By model: a world may refer to one many times."""
-        self._hints: dict[str, Advice] = {}
-        """The same for packages."""
+        self._search = PackageSearch(self.file, self.package_path, self._environment)
 
     @property
     def folder(self) -> Path:
         """The description's folder, to which relative paths refer."""
-        return self.file.parent if self.file is not None else Path.cwd()
+        return self._search.folder
 
     def find(self, name: str, origin: Origin | None = None) -> Path:
         """The folder of a package: its source, or its ``share`` if it is installed.
@@ -104,23 +83,15 @@ class Packages:
         Raises:
             DescriptionError: The package was not found; the hint lists the searched folders.
         """
-        found = self._known(name)
+        found = self._search.package(name)
         if found is None:
-            raise _missing(
-                "package", name, f'the package "{name}" was not found', origin, self._missing(name)
-            )
+            message = f'the package "{name}" was not found'
+            raise _missing("package", name, message, origin, self._search.package_advice(name))
         return found
 
     def all_named(self, name: str) -> list[Path]:
         """The folders of all packages with a name, in search order."""
-        first = self._known(name)
-        if first is None:
-            return []
-        found = [first]
-        for roots in (self.package_path, self._ancestors(), self._environment_roots()):
-            for root in roots:
-                found += [each for each in (root, *_nested(root)) if _package_name(each) == name]
-        return list(dict.fromkeys(found))
+        return self._search.all_named(name)
 
     def find_model(self, name: str, origin: Origin | None = None) -> Path:
         """The folder of a Gazebo model, or of a package with this name.
@@ -128,17 +99,11 @@ class Packages:
         Raises:
             DescriptionError: Neither was found; the hint lists the searched folders.
         """
-        if _is_plain(name):
-            for folder in self.model_folders():
-                if _is_dir(folder / name):
-                    return folder / name
-            if (found := self._known(name)) is not None:
-                return found
-        if name not in self._lacking:
-            self._lacking[name] = self._without_model(name)
-        raise _missing(
-            "model", name, f'the model "{name}" was not found', origin, self._lacking[name]
-        )
+        found = self._search.model(name)
+        if found is None:
+            message = f'the model "{name}" was not found'
+            raise _missing("model", name, message, origin, self._search.model_advice(name))
+        return found
 
     def resolve(
         self, uri: str, origin: Origin | None = None, *, what: str = "file", folder: bool = False
@@ -161,7 +126,7 @@ class Packages:
                 # Without permission to read a file, its existence is not revealed.
                 if self.reach is not None and not self.may_read(each):
                     continue
-                if _is_file(each) or (folder and each == path and _is_dir(each)):
+                if is_file(each) or (folder and each == path and is_dir(each)):
                     return each
         if self.reach is not None and not any(map(self.may_read, candidates)):
             self._refuse(f'the {what} "{uri}"', origin)
@@ -177,13 +142,7 @@ class Packages:
 
     def model_folders(self) -> list[Path]:
         """The folders that are searched for Gazebo models, in order."""
-        folders = list(self.package_path)
-        for folder in self._ancestors():
-            folders += [folder, folder / "models"]
-        for variable in _MODELS:
-            folders += self._paths(variable)
-        folders += [Path("~/.gazebo/models").expanduser(), share() / "models", share() / "robots"]
-        return list(dict.fromkeys(folder for folder in folders if _is_dir(folder)))
+        return self._search.model_folders()
 
     def may_read(self, path: Path) -> bool:
         """Whether the description may read a file: one in its workspace or in a package.
@@ -227,9 +186,9 @@ class Packages:
     def _trusted(self) -> Iterator[Path]:
         """Folders that the user specified in options and variables."""
         yield from self.package_path
-        yield from self._environment_roots()
+        yield from self._search.environment_roots()
         for variable in _RESOURCES:
-            yield from self._paths(variable)
+            yield from self._search.paths(variable)
         yield from (Path("~/.gazebo/models").expanduser(), *fuel.caches(self._environment))
         yield from (share() / each for each in ("models", "robots", "worlds"))
 
@@ -237,7 +196,7 @@ class Packages:
         """The folders around a file that it may read."""
         return [
             each
-            for each in self._around(folder)
+            for each in around(folder)
             if each == folder
             or each.parent != Path(each.anchor)
             or any((each / name).exists() for name in ("src", "package.xml"))
@@ -249,9 +208,9 @@ class Packages:
         if file is None:
             return False
         for folder in file.parents:
-            name = _package_name(folder)
+            name = package_name(folder)
             if name is not None:
-                known = self._known(name)
+                known = self._search.package(name)
                 return known is not None and real(known) == folder and is_below(path, folder)
         return False
 
@@ -308,245 +267,11 @@ class Packages:
         if origin is not None and not origin.file.startswith("<"):
             folders.insert(0, Path(origin.file).absolute().parent)
         # A package with gazebo_media_path exports is itself in GAZEBO_RESOURCE_PATH.
-        above = [root for root in map(_package_above, folders) if root is not None]
+        above = [root for root in map(package_above, folders) if root is not None]
         for variable in _RESOURCES:
-            folders += self._paths(variable)
+            folders += self._search.paths(variable)
         folders += above
         yield from dict.fromkeys(folder / given for folder in (*folders, *self.package_path))
-
-    def _search(self, name: str) -> Path | None:
-        if not _is_plain(name):
-            return None
-        searches: tuple[Callable[[], Iterator[Path]], ...] = (
-            lambda: iter(self.package_path),
-            self._workspaces,
-            self._environment_roots,
-            lambda: iter((share() / "robots", share() / "models")),
-        )
-        for roots in searches:
-            for root in roots():
-                found = _package_in(root, name)
-                if found is not None:
-                    return found
-        for root in self._crawled():
-            found = _package_below(root, name)
-            if found is not None:
-                return found
-        # A folder with the right name but without package.xml may be a description copied out of
-        # its workspace: second choice, but better than failing.
-        for roots in searches:
-            for root in roots():
-                for bare in (root, root / name):
-                    if bare.name == name and _is_dir(bare):
-                        return bare
-        return None
-
-    def _crawled(self) -> Iterator[Path]:
-        """The folders that ROS searches recursively for packages."""
-        yield from self.package_path
-        for parent in self._ancestors():
-            if parent.name == "src" or (parent / ".git").exists():
-                yield parent
-            elif (parent / "src").is_dir():
-                yield parent / "src"
-        yield from self._paths(_ROS1)
-
-    def _environment_roots(self) -> Iterator[Path]:
-        yield from self._paths(_ROS1)
-        for variable in _PREFIXES:
-            for prefix in self._paths(variable):
-                yield prefix / "share"
-        for variable in _MODELS:
-            yield from self._paths(variable)
-
-    def _paths(self, variable: str) -> list[Path]:
-        value = self._environment.get(variable, "")
-        return [Path(part).expanduser() for part in value.split(os.pathsep) if part]
-
-    def _ancestors(self) -> list[Path]:
-        """The folders above the file, nearest first, that may be a workspace."""
-        return self._around(self.folder)
-
-    @staticmethod
-    def _around(folder: Path) -> list[Path]:
-        parents = [folder, *folder.parents]
-        levels = MAX_LEVELS_UP
-        for index, parent in enumerate(parents):
-            if (parent / "package.xml").is_file():
-                levels = max(levels, index + MAX_LEVELS_UP)
-        chosen = []
-        for parent in parents[:levels]:
-            # Shared folders are slow to read, and folders for temporary files contain anyone's
-            # files.
-            if is_common(parent):
-                break
-            chosen.append(parent)
-        return chosen or parents[:1]
-
-    def _workspaces(self) -> Iterator[Path]:
-        yield from self._ancestors()
-
-    def _missing(self, name: str) -> Advice:
-        if name not in self._hints:
-            self._hints[name] = self._hint(name)
-        return self._hints[name]
-
-    def _hint(self, name: str) -> Advice:
-        roots = [*self.package_path, *self._ancestors(), *self._environment_roots()]
-        known = {found for root in (*roots, share() / "robots") for found in _names_in(root)}
-        near = numbers.likely(name, known, 0.85)
-        hint = f'Did you mean "{near}"? ' if near else ""
-        others = () if near else also_missing([self.file] if self.file else [], name, self._known)
-        text = (
-            f"{hint}Searched: {_listed([*roots, share() / 'robots'])}. "
-            f"Source its workspace, or add its folder to the package path."
-            f" {advice(name, others, self._environment)}"
-        )
-        return Advice(near or "", text, others)
-
-    def _without_model(self, name: str) -> Advice:
-        folders = self.model_folders()
-        near = numbers.likely(name, {entry.name for each in folders for entry in _folders(each)})
-        hint = f'Did you mean "{near}"? ' if near else ""
-        hint += "Searched: " + _listed(folders)
-        hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
-        return Advice(near or "", hint)
-
-    def _known(self, name: str) -> Path | None:
-        if name not in self._found:
-            self._found[name] = self._search(name)
-        return self._found[name]
-
-
-def belongs_to(path: Path, home: Path) -> bool:
-    """Whether a file is in the folder of a package or model, after resolving links.
-
-    Links in an installed package may lead to its source, which has the same name.
-    """
-    real, home = path.resolve(), home.resolve()
-    if real.is_relative_to(home):
-        return True
-    source = next((each for each in real.parents if _is_file(each / "package.xml")), None)
-    return source is not None and _package_name(source) == _package_name(home)
-
-
-def _package_above(folder: Path) -> Path | None:
-    """The package that contains a folder."""
-    near = [folder, *folder.parents][:MAX_LEVELS_UP]
-    return next((each for each in near if _is_file(each / "package.xml")), None)
-
-
-def _package_in(root: Path, name: str) -> Path | None:
-    """The package with this name at `root`, or at most one folder below."""
-    return next((f for f in (root, *_nested(root)) if _package_name(f) == name), None)
-
-
-def _package_below(root: Path, name: str) -> Path | None:
-    """The package with this name at any depth; packages do not contain other packages."""
-    level = [root]
-    looked = 0
-    while level and looked < MAX_CRAWLED:
-        below = []
-        for folder in level:
-            for each in _folders(folder):
-                looked += 1
-                declared = _package_name(each)
-                if declared == name:
-                    return each
-                if declared is None:
-                    below.append(each)
-        level = below
-    return None
-
-
-def _nested(root: Path) -> Iterator[Path]:
-    """The folders in which a package of the workspace at `root` may be, nearest first."""
-    first = list(_folders(root))
-    yield from first
-    for folder in first:
-        if _package_name(folder) is not None:
-            continue
-        second = list(_folders(folder))
-        yield from second
-        if folder.name in ("src", "install", "share"):
-            for inner in second:
-                if _package_name(inner) is None:
-                    yield from _folders(inner)
-                    yield from _folders(inner / "share")
-
-
-def _names_in(root: Path) -> Iterator[str]:
-    for folder in (root, *_nested(root)):
-        found = _package_name(folder)
-        if found is not None:
-            yield found
-
-
-@lru_cache(maxsize=4096)
-def _listing(folder: Path, _changed: int) -> tuple[Path, ...]:
-    names = []
-    try:
-        with os.scandir(folder) as entries:
-            for count, entry in enumerate(entries):
-                if count >= MAX_ENTRIES:
-                    break
-                if entry.name in IGNORE_MARKERS:
-                    return ()
-                hidden = entry.name.startswith(".") or entry.name in _SKIPPED
-                if not hidden and entry.is_dir():
-                    names.append(entry.name)
-    except OSError:
-        return ()
-    return tuple(folder / name for name in sorted(names))
-
-
-def _folders(folder: Path) -> tuple[Path, ...]:
-    """The subfolders, except those that cannot contain packages."""
-    try:
-        changed = folder.stat().st_mtime_ns
-    except (OSError, ValueError):
-        return ()
-    return _listing(folder, changed)
-
-
-@lru_cache(maxsize=4096)
-def _declared_name(manifest: Path, _changed: int) -> str | None:
-    if not _is_file(manifest):
-        return None
-    try:
-        with manifest.open("rb") as file:
-            match = _NAME.search(_COMMENT.sub(b"", file.read(16384)))
-    except OSError:
-        return None
-    return match[1].decode("utf-8", "replace") if match else manifest.parent.name
-
-
-def _package_name(folder: Path) -> str | None:
-    """The name in the folder's package.xml; None without one."""
-    manifest = folder / "package.xml"
-    try:
-        changed = manifest.stat().st_mtime_ns
-    except (OSError, ValueError):
-        return None
-    return _declared_name(manifest, changed)
-
-
-def _is_plain(name: str) -> bool:
-    return bool(name) and name not in (".", "..") and "/" not in name and "\0" not in name
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
-
-
-def _is_dir(path: Path) -> bool:
-    try:
-        return path.is_dir()
-    except (OSError, ValueError):
-        return False
 
 
 def _is_special(path: Path) -> bool:
@@ -590,11 +315,5 @@ def _absent(candidates: Sequence[Path]) -> Advice:
             continue
         near = numbers.likely(path.name, names)
         if near:
-            return Advice(near, f'Did you mean "{near}"? Searched: {_listed(candidates)}.')
-    return Advice("", f"Searched: {_listed(candidates)}.")
-
-
-def _listed(paths: Iterable[Path]) -> str:
-    shown = list(dict.fromkeys(str(path) for path in paths))
-    more = f", and {len(shown) - 6} more" if len(shown) > 6 else ""
-    return (", ".join(shown[:6]) or "nowhere") + more
+            return Advice(near, f'Did you mean "{near}"? Searched: {listed(candidates)}.')
+    return Advice("", f"Searched: {listed(candidates)}.")

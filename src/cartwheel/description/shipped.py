@@ -8,7 +8,8 @@ from pathlib import Path
 
 from cartwheel.codes import files as codes
 from cartwheel.description import numbers, xml
-from cartwheel.description.packages import Packages, share
+from cartwheel.description.package_folders import share
+from cartwheel.description.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
 
 SUFFIXES = (".urdf.xacro", ".xacro", ".urdf", ".sdf", ".world")

@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 
 from cartwheel.description import xml
 from cartwheel.description.node import Node
-from cartwheel.description.packages import IGNORE_MARKERS
+from cartwheel.description.package_folders import IGNORE_MARKERS
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
 MOST = 5000

@@ -12,7 +12,7 @@ import numpy as np
 
 from cartwheel.codes.recording import UPLOAD_REFUSED
 from cartwheel.description.model import RobotDescription
-from cartwheel.description.packages import share
+from cartwheel.description.package_folders import share
 from cartwheel.description.reach import Reach
 from cartwheel.errors import CartwheelError, DescriptionError, Origin
 from cartwheel.geometry import Pose, quat_from_rpy
