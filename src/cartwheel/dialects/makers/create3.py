@@ -6,27 +6,24 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from cartwheel.codes import devices
+from cartwheel.devices.bases.hazards import (
+    BumperZones,
+    BumperZonesConfig,
+    CliffSensor,
+    CliffSensorConfig,
+    WheelDropSensor,
+    WheelDropSensorConfig,
+)
+from cartwheel.devices.bases.infrared import IrIntensity, IrIntensityConfig
+from cartwheel.devices.bases.mouse import Mouse, MouseConfig
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
-from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
-from cartwheel.geometry import quat_conjugate, rotate
-from cartwheel.messages import header, message_class
-
-HAZARD = "irobot_create_msgs/msg/HazardDetection"
-_ZONES = ("bump_right", "bump_front_right", "bump_front_center", "bump_front_left", "bump_left")
-"""Zones of the bumper, each a fifth of its half circle, from right to left."""
-_BRIGHTEST = 3500.0
-"""Intensity that an infrared sensor measures at distance 0."""
-_DROPPED, _LIFTED = 0.95, 0.75
-"""Fractions of the threshold above which a wheel has dropped, and below which it is back."""
 
 
 def out_topic(plugin: Plugin[Any]) -> str:
@@ -34,32 +31,12 @@ def out_topic(plugin: Plugin[Any]) -> str:
     return "out" if plugin.remaps("out") else f"{plugin.tag.name}/out"
 
 
-class _Hazard(Plugin[Any]):
-    """Publishes a HazardDetection at each update while the hazard exists."""
-
-    def _watch(self, rate: float) -> None:
-        self._HazardDetection = message_class(HAZARD)
-        self._publisher = self.advertise(out_topic(self), HAZARD, qos="sensor")
-        self.part.schedule(rate, after=self._look, active=self._looks)
-
-    def _looks(self) -> bool:
-        return self._publisher.wanted
-
-    def _look(self) -> None:
-        raise NotImplementedError
-
-    def _warn_of(self, kind: int, frame: str) -> None:
-        self._publisher.publish(
-            self._HazardDetection(header(self.part.time_ns, self.frame(frame)), kind)
-        )
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3BumperParameters:
     pass
 
 
-class Create3Bumper(_Hazard):
+class Create3Bumper(Plugin[Create3BumperParameters]):
     """Publishes the pressed zone of the bumper as a HazardDetection of type BUMP.
 
     The frame ID is the name of one of five zones, such as ``bump_front_left``. If several zones are
@@ -74,21 +51,12 @@ class Create3Bumper(_Hazard):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        self._collisions = read_collisions(self, self.sensor)
-        self._base = self.part.link(self.part.description.canonical_link)
-        self._watch(self.sensor.update_rate)
-
-    def _look(self) -> None:
-        contacts = self.part.contacts(self._collisions)
-        if not contacts:
-            return
-        place, turned = self._base.place()
-        deepest = max(contacts, key=lambda contact: contact.depth)
-        arm = [a - b for a, b in zip(deepest.position.tolist(), place, strict=True)]
-        x, y, _ = rotate(quat_conjugate(turned), arm)
-        zone = math.floor((math.atan2(y, x) / math.pi + 0.5) * len(_ZONES))
-        if 0 <= zone < len(_ZONES):
-            self._warn_of(self._HazardDetection.BUMP, _ZONES[zone])
+        device = BumperZonesConfig(
+            collisions=read_collisions(self, self.sensor),
+            topic=out_topic(self),
+            rate=self.sensor.update_rate,
+        )
+        self.add(BumperZones(self.scope, device))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -102,7 +70,7 @@ class Create3CliffParameters:
     frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
 
 
-class Create3Cliff(_Hazard):
+class Create3Cliff(Plugin[Create3CliffParameters]):
     """Publishes a HazardDetection of type CLIFF while the floor is too far from a ray sensor.
 
     The smallest range of the sensor is compared with ``<detection_threshold>``. Original plugin:
@@ -116,12 +84,14 @@ class Create3Cliff(_Hazard):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        self._scanner = Scanner(self.part, read_scanner(self.sensor, self.part.report))
-        self._watch(self.sensor.update_rate)
-
-    def _look(self) -> None:
-        if _nearest(self._scanner) >= self.config.threshold:
-            self._warn_of(self._HazardDetection.CLIFF, self.config.frame)
+        device = CliffSensorConfig(
+            scanner=read_scanner(self.sensor, self.part.report),
+            threshold=self.config.threshold,
+            topic=out_topic(self),
+            frame=self.config.frame,
+            rate=self.sensor.update_rate,
+        )
+        self.add(CliffSensor(self.scope, device))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -147,31 +117,20 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
     def configure(self) -> None:
         sensor = self.sensor
         assert sensor is not None
-        kind = "irobot_create_msgs/msg/IrIntensity"
-        self._scanner = Scanner(self.part, read_scanner(sensor, self.part.report))
-        if math.isinf(self._scanner.pattern.maximum):
+        scanner = read_scanner(sensor, self.part.report)
+        if math.isinf(scanner.pattern.maximum):
             raise PluginError(
                 "the <max> of the <range> must be finite",
                 code=devices.SENSOR_RANGE_INVALID,
                 origin=sensor.origin,
             )
-        self._frame = self.frame(self.config.frame or sensor.link)
-        self._IrIntensity = message_class(kind)
-        rate = sensor.update_rate
-        self._publisher = self.advertise(out_topic(self), kind, rate=rate or None, qos="sensor")
-        self.part.schedule(rate, after=self._publish, active=lambda: self._publisher.wanted)
-
-    def _publish(self) -> None:
-        distance = _nearest(self._scanner)
-        value = _BRIGHTEST * math.exp(-2 * math.e * distance / self._scanner.pattern.maximum)
-        moment = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._IrIntensity(moment, int(value)))
-
-
-def _nearest(scanner: Scanner) -> float:
-    """Returns the nearest range, m, within the limits of the sensor."""
-    least = float(scanner.measure().ranges.min())
-    return float(np.clip(least, scanner.pattern.minimum, scanner.pattern.maximum))
+        device = IrIntensityConfig(
+            scanner=scanner,
+            topic=out_topic(self),
+            frame=self.config.frame or sensor.link,
+            rate=sensor.update_rate,
+        )
+        self.add(IrIntensity(self.scope, device))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -224,30 +183,8 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
     def configure(self) -> None:
         config = self.config
         self.check_above_zero(update_rate=config.rate)
-        kind = "irobot_create_msgs/msg/Mouse"
-        self._link = self.part.link(config.link, origin=self.tag.origin)
-        self._Mouse = message_class(kind)
-        self._frame = self.frame(config.link)
-        self._publisher = self.advertise(out_topic(self), kind, rate=config.rate, qos="sensor")
-        self.part.schedule(config.rate, after=self._publish)
-        self.reset()
-
-    def reset(self) -> None:
-        self._last_pose: Any = None
-        self._travel = [0.0, 0.0]
-
-    def _publish(self) -> None:
-        place, turned = self._link.place()
-        if self._last_pose is not None:
-            before, axes = self._last_pose
-            way = [a - b for a, b in zip(place, before, strict=True)]
-            x, y, _ = rotate(quat_conjugate(axes), way)
-            self._travel = [self._travel[0] + x, self._travel[1] + y]
-        self._last_pose = (place, turned)
-        if self._publisher.wanted:
-            moment = header(self.part.time_ns, self._frame)
-            # The surface quality is always good, and tracking is never lost.
-            self._publisher.publish(self._Mouse(moment, *self._travel, frame_id=0, last_squal=90))
+        device = MouseConfig(link=config.link, topic=out_topic(self), rate=config.rate)
+        self.add(Mouse(self.scope, device))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -264,7 +201,7 @@ class Create3WheelDropParameters:
     rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Rate of checks and messages.")
 
 
-class Create3WheelDrop(_Hazard):
+class Create3WheelDrop(Plugin[Create3WheelDropParameters]):
     """Publishes a HazardDetection of type WHEEL_DROP while a wheel is dropped.
 
     A wheel is dropped when its suspension joint has extended, for example because the robot was
@@ -276,21 +213,13 @@ class Create3WheelDrop(_Hazard):
     parameters: ClassVar[type] = Create3WheelDropParameters
 
     def configure(self) -> None:
-        config: Create3WheelDropParameters = self.config
+        config = self.config
         self.check_above_zero(update_rate=config.rate, detection_threshold=config.threshold)
-        self._joint = self.part.joint(config.joint, origin=self.tag.origin)
-        self.reset()
-        self._watch(config.rate)
-
-    def reset(self) -> None:
-        self._dropped = False
-
-    def _looks(self) -> bool:
-        # The hysteresis must not depend on whether there are subscribers.
-        return True
-
-    def _look(self) -> None:
-        bound = _LIFTED if self._dropped else _DROPPED
-        self._dropped = self._joint.position >= bound * self.config.threshold
-        if self._dropped:
-            self._warn_of(self._HazardDetection.WHEEL_DROP, self.config.frame)
+        device = WheelDropSensorConfig(
+            joint=config.joint,
+            threshold=config.threshold,
+            topic=out_topic(self),
+            frame=config.frame,
+            rate=config.rate,
+        )
+        self.add(WheelDropSensor(self.scope, device))

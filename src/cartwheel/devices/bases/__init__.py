@@ -1,0 +1,1 @@
+"""Sensors of mobile bases: hazards, infrared light, optical mice and docks."""
