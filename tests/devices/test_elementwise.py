@@ -55,3 +55,16 @@ def test_a_choice_is_made_for_each_element():
     assert elementwise.where(True, 1.0, 2.0) == 1.0
     chosen = elementwise.where(np.array([True, False]), np.array([1.0, 2.0]), 3.0)
     assert chosen.tolist() == [1.0, 3.0]
+
+
+def test_a_condition_is_true_anywhere():
+    assert elementwise.anywhere(True) and not elementwise.anywhere(False)
+    assert elementwise.anywhere(np.array([False, True]))
+    assert not elementwise.anywhere(np.array([False, False]))
+
+
+def test_remainders_have_the_same_bits():
+    angles = [0.0, -0.0, 3.0, -3.5, 6.3, 123.4]
+    together = elementwise.remainder(np.array(angles), 2 * math.pi)
+    for angle, each in zip(angles, together, strict=True):
+        assert bits(float(each)) == bits(math.remainder(angle, 2 * math.pi))

@@ -24,6 +24,11 @@ def where(condition: Any, value: Number, other: Number) -> Number:
     return value if condition else other
 
 
+def anywhere(condition: Any) -> bool:
+    """Whether a condition is true, for an array in any element."""
+    return bool(condition.any()) if isinstance(condition, _Array) else bool(condition)
+
+
 def minimum(value: Number, other: Number) -> Number:
     """Returns the smaller number, and `value` if both are equal, as `min` does."""
     if isinstance(value, _Array) or isinstance(other, _Array):

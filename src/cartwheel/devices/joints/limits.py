@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from cartwheel.description.model import SoftLimits
-from cartwheel.devices.elementwise import Number, clamp, maximum, minimum, where
+from cartwheel.devices.elementwise import Number, anywhere, clamp, maximum, minimum, where
 from cartwheel.devices.joints.pid import DampedEffort
 
 
@@ -82,5 +82,7 @@ def limited_effort(
     # Beyond a limit, only efforts that move the joint back are applied.
     below = (position < limits.lower) | (velocity < -limits.velocity)
     above = (position > limits.upper) | (velocity > limits.velocity)
-    back = where(above, minimum(effort, 0.0), effort)
-    return DampedEffort(where(below, maximum(effort, 0.0), back), damping)
+    if anywhere(below | above):
+        back = where(above, minimum(effort, 0.0), effort)
+        effort = where(below, maximum(effort, 0.0), back)
+    return DampedEffort(effort, damping)

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
-from cartwheel.devices.elementwise import Number, clamp, where
+from cartwheel.devices.elementwise import Number, anywhere, clamp, where
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,8 +37,7 @@ class PidGains:
     """Maximum output, N m or N."""
 
 
-@dataclass(frozen=True, slots=True)
-class DampedEffort:
+class DampedEffort(NamedTuple):
     """An effort that decreases with the joint's velocity: ``effort - damping * velocity``.
 
     The physics integrates the damping implicitly, so a derivative gain is stable at any step size.
@@ -113,6 +112,8 @@ def position_effort(
     """
     effort = gains.p * error + integral_term(gains, integral) + gains.d * rate
     stiff = gains.p * seconds * seconds * lightness > _STIFF
+    if not anywhere(stiff):
+        return DampedEffort(effort, gains.d)
     return DampedEffort(
         where(stiff, effort + gains.p * seconds * rate, effort),
         where(stiff, gains.d + gains.p * seconds, gains.d),
@@ -178,9 +179,10 @@ class Pid:
             rate: Rate of change of the target, rad/s or m/s; None: computed from the last target.
             lightness: Acceleration of the joint per effort; see `position_effort`.
         """
-        change = self._change(target, seconds)
+        if rate is None:
+            rate = self._change(target, seconds)
+        self._target = target
         self._integral = integrate(self.gains, self._integral, error, seconds)
-        rate = change if rate is None else rate
         return position_effort(
             self.gains, error, self._integral, rate=rate, seconds=seconds, lightness=lightness
         )
@@ -200,7 +202,7 @@ class Pid:
     def limited(self, command: DampedEffort, velocity: float) -> DampedEffort:
         """Applies the output limits to an effort at a velocity in rad/s or m/s."""
         output = command.at(velocity)
-        clamped = clamp(output, self.gains.u_min, self.gains.u_max)
+        clamped = min(max(output, self.gains.u_min), self.gains.u_max)
         return command if clamped == output else DampedEffort(clamped)
 
     def _change(self, target: float, seconds: float) -> float:
