@@ -1,7 +1,10 @@
 """Many warnings of one kind as one line."""
 
+from dataclasses import replace
+
 import pytest
 
+from cartwheel.cli.commands.check import _alike
 from cartwheel.cli.commands.grouping import grouped
 from cartwheel.errors import Code, Diagnostic, Origin
 
@@ -18,6 +21,16 @@ def odd(link="a", line=0, *, code=MASS, file="/ws/a.urdf", severity=None, **valu
 
 def lines(*diagnostics):
     return [each.message for each in grouped(diagnostics)]
+
+
+def test_findings_that_say_the_same_are_shown_together_whatever_the_words():
+    def finding(line, **values):
+        return odd(line=line, **values)
+
+    one, other = finding(3, mass=1.0), replace(finding(5, mass=1.0), message="in other words")
+    ((first, more),) = _alike([one, other])
+    assert (first, more) == (one, [other])
+    assert len(_alike([one, finding(5, mass=2.0)])) == 2
 
 
 @pytest.mark.wording

@@ -75,8 +75,14 @@ class Node:
             code=code,
             origin=self.origin,
             hint=hint,
-            values={"tag": self.tag, **(values or {})},
+            values={"tag": self.tag, **self.named, **(values or {})},
         )
+
+    @property
+    def named(self) -> dict[str, Value]:
+        """The value ``element`` for diagnostics: the element's name, if it has one."""
+        name = self._attributes.get("name")
+        return {"element": name} if name else {}
 
     # Children.
 

@@ -109,7 +109,7 @@ def test_a_part_without_a_shape_is_left_out(geometry):
     assert found.links[0].collisions == ()
     (told,) = found.diagnostics
     assert told.severity == "warning"
-    assert told.values["left_out"] == "collision"
+    assert (told.values["left_out"], told.values["element"]) == ("collision", "c")
 
 
 def test_a_mesh_without_the_submesh_costs_the_one_shape(tmp_path):

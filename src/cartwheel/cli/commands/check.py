@@ -107,7 +107,7 @@ def _findings(count: int) -> str:
 
 
 def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagnostic]]]:
-    """Each finding with those that have the same message for other lines, which are shown together.
+    """Each finding with those that say the same of other lines, which are shown together.
 
     Only findings without replacement text are combined, because the text belongs to its line.
     """
@@ -115,7 +115,7 @@ def _alike(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, list[Diagno
     for finding in findings:
         origin = finding.origin
         place = origin and (origin.file, origin.stack)
-        same = (*finding.kind, finding.message, finding.sorted_values, place)
+        same = (*finding.kind, finding.sorted_values, place)
         key = (id(finding),) if finding.instead or finding.also else same
         if key in groups:
             groups[key][1].append(finding)

@@ -47,7 +47,10 @@ class Context:
 def not_simulated(message: str, node: Node) -> Diagnostic:
     """The warning for a valid element that is not simulated."""
     return codes.NOT_SIMULATED.diagnostic(
-        message, origin=node.origin, severity="warning", values={"tag": node.tag}
+        message,
+        origin=node.origin,
+        severity="warning",
+        values={"tag": node.tag, **node.named},
     )
 
 

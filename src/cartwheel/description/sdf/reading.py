@@ -128,7 +128,7 @@ def _distinct(diagnostics: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
     seen: set[tuple[object, ...]] = set()
     for each in diagnostics:
         origin = None if each.severity == "info" else each.origin
-        key = (each.code, each.severity, each.message, each.sorted_values, origin)
+        key = (*each.kind, each.sorted_values, origin)
         if key not in seen:
             seen.add(key)
             yield each

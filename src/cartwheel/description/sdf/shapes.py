@@ -46,7 +46,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
             tags.VALUE_IGNORED.diagnostic(
                 f"{_label(owner)} has no <geometry> and is ignored",
                 origin=owner.origin,
-                values={"left_out": owner.tag, "missing": "geometry"},
+                values={"left_out": owner.tag, "missing": "geometry", **owner.named},
             )
         )
         return None
@@ -67,7 +67,7 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
             tags.TAG_EMPTY.diagnostic(
                 f"the <geometry> of {_label(owner)} is empty",
                 origin=owner.origin,
-                values={"tag": "geometry", "left_out": owner.tag},
+                values={"tag": "geometry", "left_out": owner.tag, **owner.named},
             )
         )
         return None
@@ -83,7 +83,13 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
         except _UnusableFileError as missing:
             node.mark()
             ctx.report(
-                loss(missing, f"{_label(owner)} is ignored", of=owner.tag, origin=node.origin)
+                loss(
+                    missing,
+                    f"{_label(owner)} is ignored",
+                    of=owner.tag,
+                    origin=node.origin,
+                    values=owner.named,
+                )
             )
             return None
     if tag == "polyline":

@@ -15,7 +15,7 @@ from cartwheel.description.sdf.context import Context, read_pose, require_name
 from cartwheel.description.sdf.frames import WORLD
 from cartwheel.description.sdf.model import read_model
 from cartwheel.description.xml import Node
-from cartwheel.errors import Diagnostic, Severity
+from cartwheel.errors import Diagnostic, Severity, Value
 from cartwheel.geometry import Pose, quat_from_axis_angle
 
 _NEAR = 1e-3
@@ -93,11 +93,10 @@ def _moved(model: RobotDescription, saved: Node, ctx: Context) -> RobotDescripti
     lost += [f'link "{name}"' for name in links.keys() - {link.name for link in model.links}]
     lost += [f'joint "{name}"' for name in angles.keys() - {joint.name for joint in model.joints}]
     if lost:
-        message = (
-            f'model "{model.name}": the saved state is not restored for '
-            f"{', '.join(sorted(set(lost)))}"
-        )
-        ctx.report(_ignored(message, saved, model.name, severity="warning"))
+        parts = tuple(sorted(set(lost)))
+        message = f'model "{model.name}": the saved state is not restored for {", ".join(parts)}'
+        values = {"lost": parts}
+        ctx.report(_ignored(message, saved, model.name, severity="warning", values=values))
     return replace(model, pose=pose, links=tuple(moved), joint_positions=tuple(positions.items()))
 
 
@@ -121,7 +120,8 @@ def _angle(joint: Node) -> float | None:
     if abs(value) > FARTHEST_JOINT:
         raise axes[0].fail(
             f"angle must be between {-FARTHEST_JOINT:g} and {FARTHEST_JOINT:g} rad or m "
-            f"(got {axes[0].text})"
+            f"(got {axes[0].text})",
+            values={"stated": value},
         )
     return value
 
@@ -136,10 +136,18 @@ def _warn_motion(link: Node, ctx: Context) -> None:
 
 
 def _ignored(
-    message: str, node: Node, name: str, *, severity: Severity | None = None
+    message: str,
+    node: Node,
+    name: str,
+    *,
+    severity: Severity | None = None,
+    values: Mapping[str, Value] | None = None,
 ) -> Diagnostic:
     return NOT_SIMULATED.diagnostic(
-        message, origin=node.origin, severity=severity, values={"tag": node.tag, "name": name}
+        message,
+        origin=node.origin,
+        severity=severity,
+        values={"tag": node.tag, "name": name, **(values or {})},
     )
 
 
