@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
+from cartwheel.devices.bases.dock import (
+    DockConfig,
+    DockStatus,
+    DockStatusConfig,
+    IrReceivers,
+    IrReceiversConfig,
+)
 from cartwheel.dialects.makers.create3 import out_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.geometry import Pose
-from cartwheel.messages import header, message_class
-
-OPCODE = "irobot_create_msgs/msg/IrOpcode"
-_CHECKS = 20.0
-"""Rate of checks, Hz. The dock is visible if a code arrived within one period."""
-_NEAR, _AHEAD = 0.075, math.pi / 30
-"""Maximum distance in m and angles in rad between robot and dock when docked."""
-_HALO = 0.6096
-"""Range of the dock's halo, which surrounds it, m."""
-_BUOYS, _OPENING, _SHARE = 1.0, math.radians(50), 0.6
-"""Range in m and angle in rad of the dock's two buoys; fraction of it that each covers."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,30 +29,8 @@ class _Dock:
     emitter: str = tag("emitter_link_name", default="", doc="Link of the dock's infrared emitter.")
 
 
-class _Docking(Plugin[Any]):
-    """Relative position of receiver and emitter."""
-
-    def _find(self) -> None:
-        self._receiver = self.part.link(self.config.receiver, origin=self.tag.origin)
-        self._around = self.part.surroundings()
-
-    def _seen(self) -> tuple[tuple[float, float], float] | None:
-        """Returns the emitter in the receiver's frame, and the receiver in the emitter's frame.
-
-        Returns:
-            Distance in m and azimuth in rad of the emitter; azimuth in rad of the receiver. None if
-            the world has no such dock.
-        """
-        emitter = self._around.pose(self.config.dock, self.config.emitter)
-        if emitter is None:
-            return None
-        receiver = self._receiver.pose
-        there, here = receiver.inverse() @ emitter, emitter.inverse() @ receiver
-        return (math.hypot(there.x, there.y), _azimuth(there)), _azimuth(here)
-
-
-def _azimuth(pose: Pose) -> float:
-    return math.atan2(pose.y, pose.x)
+def _dock(config: _Dock) -> DockConfig:
+    return DockConfig(receiver=config.receiver, model=config.dock, emitter=config.emitter)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,7 +50,7 @@ class Create3OpcodeParameters(_Dock):
     )
 
 
-class Create3Opcode(_Docking):
+class Create3Opcode(Plugin[Create3OpcodeParameters]):
     """Publishes the infrared codes from the dock that the robot's two receivers detect.
 
     The dock emits three infrared signals: the halo, which surrounds it, and the red and the green
@@ -91,38 +63,18 @@ class Create3Opcode(_Docking):
     parameters: ClassVar[type] = Create3OpcodeParameters
 
     def configure(self) -> None:
-        config: Create3OpcodeParameters = self.config
+        config = self.config
         self.check_above_zero(update_rate=config.rate)
-        self._find()
-        self._IrOpcode = message_class(OPCODE)
-        self._sensors = (
-            (config.omni_opening, config.omni_range),
-            (config.front_opening, config.front_range),
+        device = IrReceiversConfig(
+            dock=_dock(config),
+            receivers=(
+                (config.omni_opening, config.omni_range),
+                (config.front_opening, config.front_range),
+            ),
+            topic=out_topic(self),
+            rate=config.rate,
         )
-        self._publisher = self.advertise(out_topic(self), OPCODE, qos="sensor")
-        self.part.schedule(config.rate, after=self._look, active=lambda: self._publisher.wanted)
-
-    def _look(self) -> None:
-        seen = self._seen()
-        if seen is None:
-            return
-        (distance, azimuth), back = seen
-        for number, (opening, reach) in enumerate(self._sensors):
-            if abs(azimuth) < opening / 2 and distance < reach + _HALO:
-                self._publish_code(number, self._IrOpcode.CODE_IR_FORCE_FIELD)
-        for number, (opening, reach) in enumerate(self._sensors):
-            if abs(azimuth) < opening / 2 and distance < reach + _BUOYS:
-                code = 0
-                if -_OPENING / 2 < back < (_SHARE - 0.5) * _OPENING:
-                    code |= self._IrOpcode.CODE_IR_BUOY_GREEN
-                if (0.5 - _SHARE) * _OPENING < back < _OPENING / 2:
-                    code |= self._IrOpcode.CODE_IR_BUOY_RED
-                if code:
-                    self._publish_code(number, code)
-
-    def _publish_code(self, sensor: int, code: int) -> None:
-        moment = header(self.part.time_ns, self.frame(self.config.receiver))
-        self._publisher.publish(self._IrOpcode(moment, code, sensor))
+        self.add(IrReceivers(self.scope, device))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -135,7 +87,7 @@ class Create3DockStatusParameters(_Dock):
     )
 
 
-class Create3DockStatus(_Docking):
+class Create3DockStatus(Plugin[Create3DockStatusParameters]):
     """Publishes whether the robot detects its dock and whether it is docked.
 
     The dock counts as visible while its codes are received on ``ir_opcode``. Nothing is published
@@ -147,35 +99,13 @@ class Create3DockStatus(_Docking):
     parameters: ClassVar[type] = Create3DockStatusParameters
 
     def configure(self) -> None:
-        config: Create3DockStatusParameters = self.config
+        config = self.config
         self.check_above_zero(update_rate=config.rate)
-        self._find()
-        kind = "irobot_create_msgs/msg/DockStatus"
-        self._DockStatus = message_class(kind)
-        self._publisher = self.advertise(out_topic(self), kind, qos="sensor")
-        self.subscribe("ir_opcode", OPCODE, self._on_opcode)
-        self.part.schedule(_CHECKS, after=self._look)
-        self.reset()
-
-    def reset(self) -> None:
-        self._opcode_ns: int | None = None
-        self._published: tuple[bool, bool] | None = None
-        self._published_ns = 0
-
-    def _on_opcode(self, message: Any) -> None:
-        known = message.opcode != message.CODE_IR_VIRTUAL_WALL
-        self._opcode_ns = self.part.time_ns if known else None
-
-    def _look(self) -> None:
-        seen = self._seen()
-        if seen is None:
-            return
-        (distance, azimuth), back = seen
-        now = self.part.time_ns
-        visible = self._opcode_ns is not None and now - self._opcode_ns <= 1e9 / _CHECKS
-        docked = distance < _NEAR and abs(azimuth) < _AHEAD and abs(back) < _AHEAD
-        due = now - self._published_ns >= 1e9 / self.config.rate
-        if due or (visible, docked) != self._published:
-            self._published, self._published_ns = (visible, docked), now
-            moment = header(now, self.frame("base_link"))
-            self._publisher.publish(self._DockStatus(moment, visible, docked))
+        device = DockStatusConfig(
+            dock=_dock(config),
+            topic=out_topic(self),
+            opcode_topic="ir_opcode",
+            frame="base_link",
+            rate=config.rate,
+        )
+        self.add(DockStatus(self.scope, device))
