@@ -14,6 +14,7 @@ MODULES: dict[str, tuple[str, ...]] = {
     "fuzz_meshes": ("stl", "obj", "dae", "glb", "ply"),
     "fuzz_pictures": ("pictures",),
     "fuzz_recordings": ("bag", "mcap", "db3", "db3-tables", "bag2-folder", "definitions"),
+    "fuzz_messages": ("msg-files", "srv-files", "action-files"),
     "fuzz_yaml": ("controllers", "gz-bridge"),
     "fuzz_live": ("live",),
     "fuzz_processes": ("kills", "worlds-in-use"),

@@ -10,6 +10,8 @@ from cartwheel.errors import Origin
 
 Dialect = Literal["ros1", "ros2", "both"]
 """The ROS version of a definition. ``both``: it has the same meaning in both versions."""
+RECORDING = "<recording>"
+"""The file name of definitions from recordings."""
 Scalar = bool | int | float | str
 
 TIMES = {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"}
@@ -140,7 +142,7 @@ class Definition:
 
         Recordings and files write the values of constants differently.
         """
-        if "<recording>" in (self.origin.file, other.origin.file):
+        if RECORDING in (self.origin.file, other.origin.file):
             return bool(self.shape[1] == other.shape[1])
         return bool(self.shape == other.shape)
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from cartwheel.codes.graph import MESSAGE_TYPE_IN_USE
 from cartwheel.errors import GraphError, Origin
-from cartwheel.messages.definition import DefinedConstant, DefinedField, Definition
+from cartwheel.messages.definition import RECORDING, DefinedConstant, DefinedField, Definition
 from cartwheel.messages.store import is_bundled, learning, loaded
 
 _by_name: dict[str, Definition] = {}
@@ -158,7 +158,7 @@ def recorded(name: str, fielddefs: Any) -> Definition:
         name=name,
         dialect="ros2",
         text="",
-        origin=Origin(file="<recording>"),
+        origin=Origin(file=RECORDING),
         constants=tuple(
             DefinedConstant(type=kind, name=constant, value=value, text=str(value))
             for constant, kind, value in constants

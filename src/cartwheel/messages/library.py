@@ -18,9 +18,10 @@ from cartwheel.codes.graph import (
     MESSAGE_DEFINITION_INVALID,
     MESSAGE_DEFINITIONS_DIFFER,
     MESSAGE_TYPE_BUILT_IN,
+    MESSAGE_TYPE_UNKNOWN,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin
-from cartwheel.messages.definition import Definition, Dialect
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, UnknownNameError
+from cartwheel.messages.definition import RECORDING, Definition, Dialect
 from cartwheel.messages.definition_parsing import (
     LARGEST,
     decode_text,
@@ -179,6 +180,12 @@ class TypeLibrary:
         """
         full = type_name(name)
         self.named(full)
+        known = learnt(full)
+        if known is not None and full not in self._found and known.origin.file != RECORDING:
+            # Another simulation of this process has found it.
+            raise UnknownNameError(
+                "message type", name, sorted(self._found), code=MESSAGE_TYPE_UNKNOWN
+            )
         return message_class(full)
 
     def find(self, name: str) -> bool:
