@@ -18,7 +18,7 @@ from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
-from cartwheel.graph.graph import Subscription
+from cartwheel.graph.topic import Subscription
 from cartwheel.messages import message_class, stamp
 from cartwheel.messages.library import TypeLibrary
 from cartwheel.messages.store import finding_with

@@ -2,23 +2,23 @@
 
 from cartwheel.graph.action import Action, ActionListener, Goal, GoalState
 from cartwheel.graph.actionlib import ActionTopics
-from cartwheel.graph.graph import (
-    TWIST,
-    TWIST_STAMPED,
-    Callback,
-    Graph,
-    Publisher,
-    Qos,
-    Service,
-    Subscription,
-    TopicInfo,
-)
+from cartwheel.graph.graph import Graph
 from cartwheel.graph.joint_inputs import JointInput, JointInputs
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_frame, resolve_name
 from cartwheel.graph.parameters import Parameters, ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
 from cartwheel.graph.renaming import TopicRenaming
+from cartwheel.graph.topic import (
+    TWIST,
+    TWIST_STAMPED,
+    Callback,
+    Publisher,
+    Qos,
+    Service,
+    Subscription,
+    TopicInfo,
+)
 from cartwheel.graph.transforms import StaticTransforms
 
 __all__ = [

@@ -6,7 +6,8 @@ from typing import Any
 
 from cartwheel.budget import Budget
 from cartwheel.graph.action import Action, Goal, GoalState
-from cartwheel.graph.graph import Graph, Publisher, Subscription
+from cartwheel.graph.graph import Graph
+from cartwheel.graph.topic import Publisher, Subscription
 from cartwheel.messages import header, message_class, recast, stamp
 from cartwheel.messages.ros2_types import ros2_name
 

@@ -10,8 +10,7 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from cartwheel.calls import Post, answered
 from cartwheel.codes.graph import (
@@ -28,160 +27,20 @@ from cartwheel.graph.joint_inputs import JointInputs
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
+from cartwheel.graph.topic import (
+    Callback,
+    Handler,
+    OnError,
+    Publisher,
+    Qos,
+    Service,
+    Subscription,
+    Topic,
+    TopicInfo,
+)
 from cartwheel.graph.transforms import StaticTransforms
 from cartwheel.messages import CdrCache
 from cartwheel.messages.library import TypeLibrary
-
-Callback = Callable[[Any], None]
-Handler = Callable[[Any], Any]
-Qos = Literal["default", "sensor", "latched"]
-TWIST = "geometry_msgs/msg/Twist"
-TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class TopicInfo:
-    """A topic's entry in a listing."""
-
-    name: str
-    type: str
-    publishers: tuple[str, ...]
-    subscribers: tuple[str, ...]
-    rate: float | None
-    """Publish rate in Hz that the publisher declares. None if it declares none."""
-    qos: Qos
-    dropped: tuple[int, ...] = ()
-    """Number of messages that each subscriber dropped, if the subscriber counts them."""
-
-    @property
-    def drives(self) -> bool:
-        """Whether the topic has subscribers for velocity commands (`Twist` or `TwistStamped`)."""
-        return self.type in (TWIST, TWIST_STAMPED) and bool(self.subscribers)
-
-    @property
-    def readers(self) -> tuple[str, ...]:
-        """Subscribers, with the number of messages that each dropped."""
-        dropped = self.dropped or (0,) * len(self.subscribers)
-        return tuple(
-            f"{name} ({count} dropped)" if count else name
-            for name, count in zip(self.subscribers, dropped, strict=True)
-        )
-
-
-class Topic:
-    """A named stream of messages of one type."""
-
-    def __init__(
-        self, name: str, type_name: str, failed: Callable[[Topic, Callback, Exception], None]
-    ) -> None:
-        self.name = name
-        self.type = type_name
-        self.failed = failed
-        """Called with the callback that raised an error, and the error."""
-        self.publishers: tuple[Publisher, ...] = ()
-        self.subscriptions: tuple[Subscription, ...] = ()
-        self.callbacks: tuple[Callback, ...] = ()
-        """Callbacks of all subscriptions."""
-        self.latched: Any = None
-
-    def deliver(self, message: Any) -> None:
-        """Delivers a message to every subscriber. Call it on the owner's thread."""
-        for callback in self.callbacks:
-            self.hand(callback, message)
-
-    def hand(self, callback: Callback, message: Any) -> None:
-        """Calls one callback. Its errors do not reach the publisher."""
-        try:
-            callback(message)
-        except Exception as error:  # noqa: BLE001 - the callback is foreign code
-            self.failed(self, callback, error)
-
-
-class Publisher:
-    """Publishes on one topic. Create messages only while `wanted` is true.
-
-    Attributes:
-        wanted: Whether the topic has subscribers.
-        sent: Number of published messages.
-    """
-
-    def __init__(
-        self, graph: Graph, topic: Topic, *, node: str, rate: float | None, qos: Qos
-    ) -> None:
-        self._graph = graph
-        self._topic = topic
-        self.node = node
-        self.rate = rate
-        self.qos = qos
-        self.wanted = False
-        self.sent = 0
-
-    @property
-    def topic(self) -> str:
-        return self._topic.name
-
-    @property
-    def type(self) -> str:
-        return self._topic.type
-
-    def publish(self, message: Any) -> None:
-        """Delivers a message to all subscribers at once. Call it on the owner's thread."""
-        self.sent += 1
-        topic = self._topic
-        if self.qos == "latched":
-            topic.latched = message
-        # This is `deliver` inlined, which saves one call per message.
-        for callback in topic.callbacks:
-            try:
-                callback(message)
-            except Exception as error:  # noqa: BLE001 - the callback is foreign code
-                topic.failed(topic, callback, error)
-
-    def close(self) -> None:
-        """Removes the publisher from the graph."""
-        self._graph._remove_publisher(self._topic, self)
-
-
-class Subscription:
-    """A callback on a topic, called on the owner's thread."""
-
-    def __init__(self, graph: Graph, topic: Topic, callback: Callback, *, node: str) -> None:
-        self._graph = graph
-        self._topic = topic
-        self.callback = callback
-        self.node = node
-        self.on_error: OnError | None = None
-        """Called with the exception of the callback. None means `Graph.on_error`."""
-        self.dropped: Callable[[], int] = lambda: 0
-        """Returns the number of messages that a slow subscriber dropped. Callable on any
-        thread."""
-
-    @property
-    def topic(self) -> str:
-        return self._topic.name
-
-    def close(self) -> None:
-        """Removes the subscription from the graph."""
-        self._graph._remove_subscription(self._topic, self)
-
-
-OnError = Callable[[Subscription, Exception], None]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Service:
-    """A service whose `handler` takes a request and returns the response.
-
-    The handler runs on the owner's thread. The handler of a `threaded` service runs on the
-    caller's thread: it does slow work, such as reading files, and passes the rest to the owner.
-    Use `Graph.call` to call a service.
-    """
-
-    name: str
-    type: str
-    handler: Handler
-    node: str
-    threaded: bool = False
 
 
 class Graph:
@@ -358,14 +217,14 @@ class Graph:
                 name=name, type=type_name, handler=handler, node=node, threaded=threaded
             )
             self._services[service.name] = service
-            self._tell_change()
+            self._notify()
             return service
 
     def withdraw(self, service: Service) -> None:
         """Removes a service from the graph."""
         with self._lock:
             self._services.pop(service.name, None)
-            self._tell_change()
+            self._notify()
 
     def offer(self, action: Action) -> None:
         """Registers an action; see `Action`.
@@ -383,14 +242,14 @@ class Graph:
                     values={"name": action.name, "node": self._actions[action.name].node},
                 )
             self._actions[action.name] = action
-            self._tell_change()
+            self._notify()
 
     def take_back(self, action: Action) -> None:
         """Removes an action from the graph."""
         with self._lock:
             if self._actions.get(action.name) is action:
                 del self._actions[action.name]
-            self._tell_change()
+            self._notify()
 
     def actions(self) -> list[Action]:
         """All actions, sorted by name."""
@@ -444,7 +303,7 @@ class Graph:
     def topics(self) -> list[TopicInfo]:
         """All topics with a publisher or a subscriber, sorted by name."""
         with self._lock:
-            return [self._info(topic) for topic in self._live()]
+            return [topic.info() for topic in self._live()]
 
     def topic(self, name: str) -> TopicInfo:
         """Topic with this name, if it has a publisher or a subscriber.
@@ -456,27 +315,17 @@ class Graph:
             live = {topic.name: topic for topic in self._live()}
             if name not in live:
                 raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
-            return self._info(live[name])
+            return live[name].info()
 
     def _live(self) -> Iterator[Topic]:
+        """The topics with a publisher or a subscriber, sorted by name."""
         for name in sorted(self._topics):
             topic = self._topics[name]
             if topic.publishers or topic.subscriptions:
                 yield topic
 
-    @staticmethod
-    def _info(topic: Topic) -> TopicInfo:
-        return TopicInfo(
-            name=topic.name,
-            type=topic.type,
-            publishers=tuple(publisher.node for publisher in topic.publishers),
-            subscribers=tuple(subscription.node for subscription in topic.subscriptions),
-            rate=next((p.rate for p in topic.publishers if p.rate), None),
-            qos=topic.publishers[0].qos if topic.publishers else "default",
-            dropped=tuple(subscription.dropped() for subscription in topic.subscriptions),
-        )
-
     def _topic(self, name: str, type_name: str) -> Topic:
+        """The topic with a name, created if it is unused; see `advertise` for the errors."""
         name = resolve_name(name)
         topic = self._topics.get(name)
         if topic is None or not (
@@ -513,9 +362,9 @@ class Graph:
 
     def _inputs_changed(self) -> None:
         with self._lock:
-            self._tell_change()
+            self._notify()
 
-    def _tell_change(self) -> None:
+    def _notify(self) -> None:
         self.changed += 1
         for callback in self.on_change:
             callback()
@@ -525,7 +374,7 @@ class Graph:
         # The publishers cache the value, because they check it several times per message.
         for publisher in topic.publishers:
             publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"
-        self._tell_change()
+        self._notify()
 
 
 def _at_once(function: Callable[[], None]) -> None:

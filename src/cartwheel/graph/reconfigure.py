@@ -10,7 +10,8 @@ from typing import Any, Literal
 
 from cartwheel.codes.graph import PARAMETER_UNKNOWN, PARAMETER_VALUE_INVALID
 from cartwheel.errors import GraphError, UnknownNameError
-from cartwheel.graph.graph import Graph, Publisher
+from cartwheel.graph.graph import Graph
+from cartwheel.graph.topic import Publisher
 from cartwheel.messages import message_class, service_classes
 
 Value = bool | int | float | str

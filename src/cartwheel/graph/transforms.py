@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from cartwheel.messages import message_class
 
 if TYPE_CHECKING:
-    from cartwheel.graph.graph import Graph, Publisher
+    from cartwheel.graph.graph import Graph
+    from cartwheel.graph.topic import Publisher
 
 TOPIC = "/tf_static"
 

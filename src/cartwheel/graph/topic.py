@@ -1,0 +1,176 @@
+"""Topics with their publishers and subscribers, and services."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from cartwheel.graph.graph import Graph
+
+Callback = Callable[[Any], None]
+Handler = Callable[[Any], Any]
+Qos = Literal["default", "sensor", "latched"]
+TWIST = "geometry_msgs/msg/Twist"
+TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TopicInfo:
+    """A topic's entry in a listing."""
+
+    name: str
+    type: str
+    publishers: tuple[str, ...]
+    subscribers: tuple[str, ...]
+    rate: float | None
+    """Publish rate in Hz that the publisher declares. None if it declares none."""
+    qos: Qos
+    dropped: tuple[int, ...] = ()
+    """Number of messages that each subscriber dropped, if the subscriber counts them."""
+
+    @property
+    def drives(self) -> bool:
+        """Whether the topic has subscribers for velocity commands (`Twist` or `TwistStamped`)."""
+        return self.type in (TWIST, TWIST_STAMPED) and bool(self.subscribers)
+
+    @property
+    def readers(self) -> tuple[str, ...]:
+        """Subscribers, with the number of messages that each dropped."""
+        dropped = self.dropped or (0,) * len(self.subscribers)
+        return tuple(
+            f"{name} ({count} dropped)" if count else name
+            for name, count in zip(self.subscribers, dropped, strict=True)
+        )
+
+
+class Topic:
+    """A named stream of messages of one type."""
+
+    def __init__(
+        self, name: str, type_name: str, failed: Callable[[Topic, Callback, Exception], None]
+    ) -> None:
+        self.name = name
+        self.type = type_name
+        self.failed = failed
+        """Called with the callback that raised an error, and the error."""
+        self.publishers: tuple[Publisher, ...] = ()
+        self.subscriptions: tuple[Subscription, ...] = ()
+        self.callbacks: tuple[Callback, ...] = ()
+        """Callbacks of all subscriptions."""
+        self.latched: Any = None
+
+    def info(self) -> TopicInfo:
+        """The topic's entry in a listing."""
+        return TopicInfo(
+            name=self.name,
+            type=self.type,
+            publishers=tuple(publisher.node for publisher in self.publishers),
+            subscribers=tuple(subscription.node for subscription in self.subscriptions),
+            rate=next((p.rate for p in self.publishers if p.rate), None),
+            qos=self.publishers[0].qos if self.publishers else "default",
+            dropped=tuple(subscription.dropped() for subscription in self.subscriptions),
+        )
+
+    def deliver(self, message: Any) -> None:
+        """Delivers a message to every subscriber. Call it on the owner's thread."""
+        for callback in self.callbacks:
+            self.hand(callback, message)
+
+    def hand(self, callback: Callback, message: Any) -> None:
+        """Calls one callback. Its errors do not reach the publisher."""
+        try:
+            callback(message)
+        except Exception as error:  # noqa: BLE001 - the callback is foreign code
+            self.failed(self, callback, error)
+
+
+class Publisher:
+    """Publishes on one topic. Create messages only while `wanted` is true.
+
+    Attributes:
+        wanted: Whether the topic has subscribers.
+        sent: Number of published messages.
+    """
+
+    def __init__(
+        self, graph: Graph, topic: Topic, *, node: str, rate: float | None, qos: Qos
+    ) -> None:
+        self._graph = graph
+        self._topic = topic
+        self.node = node
+        self.rate = rate
+        self.qos = qos
+        self.wanted = False
+        self.sent = 0
+
+    @property
+    def topic(self) -> str:
+        """Name of the topic."""
+        return self._topic.name
+
+    @property
+    def type(self) -> str:
+        """Type of the topic, ``pkg/msg/Name``."""
+        return self._topic.type
+
+    def publish(self, message: Any) -> None:
+        """Delivers a message to all subscribers at once. Call it on the owner's thread."""
+        self.sent += 1
+        topic = self._topic
+        if self.qos == "latched":
+            topic.latched = message
+        # This is `deliver` inlined, which saves one call per message.
+        for callback in topic.callbacks:
+            try:
+                callback(message)
+            except Exception as error:  # noqa: BLE001 - the callback is foreign code
+                topic.failed(topic, callback, error)
+
+    def close(self) -> None:
+        """Removes the publisher from the graph."""
+        self._graph._remove_publisher(self._topic, self)
+
+
+class Subscription:
+    """A callback on a topic, called on the owner's thread."""
+
+    def __init__(self, graph: Graph, topic: Topic, callback: Callback, *, node: str) -> None:
+        self._graph = graph
+        self._topic = topic
+        self.callback = callback
+        self.node = node
+        self.on_error: OnError | None = None
+        """Called with the exception of the callback. None means `Graph.on_error`."""
+        self.dropped: Callable[[], int] = lambda: 0
+        """Returns the number of messages that a slow subscriber dropped. Callable on any
+        thread."""
+
+    @property
+    def topic(self) -> str:
+        """Name of the topic."""
+        return self._topic.name
+
+    def close(self) -> None:
+        """Removes the subscription from the graph."""
+        self._graph._remove_subscription(self._topic, self)
+
+
+OnError = Callable[[Subscription, Exception], None]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Service:
+    """A service whose `handler` takes a request and returns the response.
+
+    The handler runs on the owner's thread. The handler of a `threaded` service runs on the
+    caller's thread: it does slow work, such as reading files, and passes the rest to the owner.
+    Use `Graph.call` to call a service.
+    """
+
+    name: str
+    type: str
+    handler: Handler
+    node: str
+    threaded: bool = False
