@@ -176,19 +176,19 @@ class Reader:
             return
         self._wait(proxy, data.number, taken)
 
-    def take_heartbeat(self, guid: Guid, told: wire.Heartbeat) -> None:
+    def take_heartbeat(self, guid: Guid, heartbeat: wire.Heartbeat) -> None:
         """Handles a writer's announcement of its samples."""
         proxy = self.proxies.get(guid)
         if proxy is None or not proxy.reliable:
             return
-        if 0 <= proxy.heartbeat_count - told.count < 1000 or told.first < 1:
+        if 0 <= proxy.heartbeat_count - heartbeat.count < 1000 or heartbeat.first < 1:
             return
-        proxy.heartbeat_count = told.count
-        self._skip_to(proxy, min(told.first, told.last + 1))
-        proxy.last = told.last
-        end = min(told.last, proxy.next + 255)
+        proxy.heartbeat_count = heartbeat.count
+        self._skip_to(proxy, min(heartbeat.first, heartbeat.last + 1))
+        proxy.last = heartbeat.last
+        end = min(heartbeat.last, proxy.next + 255)
         missing = any(number not in proxy.waiting for number in range(proxy.next, end + 1))
-        if not missing and told.final:
+        if not missing and heartbeat.final:
             return
         now = time.monotonic()
         if now - proxy.asked_at < _REPLY:
@@ -196,17 +196,17 @@ class Reader:
             return
         self._ask_up_to(proxy, end)
 
-    def take_gap(self, guid: Guid, told: wire.Gap) -> None:
+    def take_gap(self, guid: Guid, gap: wire.Gap) -> None:
         """Handles a writer's list of samples that will not arrive."""
         proxy = self.proxies.get(guid)
-        if proxy is None or not proxy.reliable or told.start < 1:
+        if proxy is None or not proxy.reliable or gap.start < 1:
             return
-        if told.start <= proxy.next:
-            self._skip_to(proxy, told.base)
+        if gap.start <= proxy.next:
+            self._skip_to(proxy, gap.base)
         else:
-            for number in range(told.start, min(told.base, told.start + _WAITING)):
+            for number in range(gap.start, min(gap.base, gap.start + _WAITING)):
                 self._wait(proxy, number, None)
-        for number in told.more:
+        for number in gap.more:
             if number >= proxy.next:
                 self._wait(proxy, number, None)
 
@@ -311,7 +311,7 @@ class Reader:
         proxy.count += 1
         proxy.must_ask = False
         proxy.asked_at = time.monotonic()
-        told = wire.acknack(
+        acknack = wire.acknack(
             reader=self.endpoint.guid[12:],
             writer=proxy.guid[12:],
             base=proxy.next,
@@ -319,5 +319,5 @@ class Reader:
             count=proxy.count,
             final=bool(missing),
         )
-        head = wire.message(self.endpoint.guid[:12], told, to=proxy.guid[:12])
+        head = wire.message(self.endpoint.guid[:12], acknack, to=proxy.guid[:12])
         self._send((head,), proxy.address)

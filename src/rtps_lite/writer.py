@@ -213,31 +213,31 @@ class Writer:
                 proxy.remind_at = now + proxy.patience
                 self._heartbeat(proxy, final=False)
 
-    def take_acknack(self, guid: Guid, told: wire.Acknack) -> None:
+    def take_acknack(self, guid: Guid, acknack: wire.Acknack) -> None:
         """Handles a reader's report of received and missing samples."""
         proxy = self.proxies.get(guid)
         if proxy is None or not proxy.reliable:
             return
-        if 0 <= proxy.last_count - told.count < 1000:
+        if 0 <= proxy.last_count - acknack.count < 1000:
             return
         if proxy.asked_at and time.monotonic() - proxy.asked_at > _SILENCE:
             self._count_gone(proxy)
         proxy.asked_at = 0.0
-        proxy.last_count = told.count
+        proxy.last_count = acknack.count
         proxy.patience = _FIRST_AGAIN
-        proxy.acked = max(proxy.acked, min(told.base - 1, self._last))
+        proxy.acked = max(proxy.acked, min(acknack.base - 1, self._last))
         if proxy.acked < self._last:
             proxy.remind_at = time.monotonic() + proxy.patience
         if not proxy.greeted:
             # The participant is real, because only it knows what to respond to.
             proxy.greeted = True
             self._greet(proxy)
-            if not told.final:
+            if not acknack.final:
                 self._reply(proxy, ())
             return
         lost: list[int] = []
         gone = self.dropped
-        for number in told.missing:
+        for number in acknack.missing:
             if number > self._last:
                 break
             sample = self._kept.get(number)
@@ -253,20 +253,20 @@ class Writer:
         if self.dropped > gone:
             self.on_drop()
         self._send_again(proxy)
-        if told.missing or not told.final:
+        if acknack.missing or not acknack.final:
             self._reply(proxy, lost)
 
-    def take_nack_frag(self, guid: Guid, told: wire.NackFrag) -> None:
+    def take_nack_frag(self, guid: Guid, nack: wire.NackFrag) -> None:
         """Handles a reader's report of missing fragments."""
         proxy = self.proxies.get(guid)
-        sample = self._kept.get(told.number)
+        sample = self._kept.get(nack.number)
         if proxy is None or sample is None or not proxy.reliable or not proxy.greeted:
             return
-        if sample.to not in (None, guid[:12]) or told.number < proxy.start:
+        if sample.to not in (None, guid[:12]) or nack.number < proxy.start:
             return
         last = -(-len(sample.payload) // wire.LARGEST)
-        wanted = {number for number in told.missing if 1 <= number <= last}
-        known = proxy.wanted.setdefault(told.number, set()) if wanted else None
+        wanted = {number for number in nack.missing if 1 <= number <= last}
+        known = proxy.wanted.setdefault(nack.number, set()) if wanted else None
         if known is not None:
             known |= wanted
             self._send_again(proxy)

@@ -87,14 +87,14 @@ class ActionTopics:
         if not self._status.wanted:
             return
         now = self._action.time_ns()
-        told = [
+        statuses = [
             self._state(goal)
             for goal in self._action.goals
             if not goal.done or now - goal.done_ns < _TOLD_NS
         ]
         self._status.publish(
             message_class("actionlib_msgs/msg/GoalStatusArray")(
-                header=header(now, ""), status_list=told
+                header=header(now, ""), status_list=statuses
             )
         )
 

@@ -55,7 +55,7 @@ def wait_for_simulation(master: str | None) -> Running:
         ControlError: There is no such simulation (without waiting), or several; or the parent
             process has ended.
     """
-    began, parent, told = time.monotonic(), os.getppid(), False
+    began, parent, reported = time.monotonic(), os.getppid(), False
     while True:
         known = running()
         ours = [entry for entry in known if is_same(entry.ros_master, master or MASTER_URI)]
@@ -65,8 +65,8 @@ def wait_for_simulation(master: str | None) -> Running:
             return _without_ros(known)
         if os.getppid() != parent:
             raise ControlError("the parent process has exited", code=SIMULATION_ENDED)
-        if time.monotonic() - began > _TELL and not told:
-            told = True
+        if time.monotonic() - began > _TELL and not reported:
+            reported = True
             note(f"waiting for a simulation that uses the ROS master {master or MASTER_URI}")
             if known:
                 hint = f"set {VARIABLE}=PID to show one of them"

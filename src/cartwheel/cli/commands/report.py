@@ -82,8 +82,8 @@ class Report(Observer):
             self._line("control", ", ".join(each.name for each in started))
         elif name is not None and not ros:
             self._controllers(session, name)
-        told = session.diagnostics if self._verbose else grouped(session.diagnostics)
-        for diagnostic in told:
+        shown = session.diagnostics if self._verbose else grouped(session.diagnostics)
+        for diagnostic in shown:
             self.diagnostic(diagnostic)
         simulation.engine.on_diagnostic.append(self.diagnostic)
         self._topics(session)
