@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -10,13 +9,11 @@ import numpy as np
 
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
+from cartwheel.devices.bases.kobuki import KobukiSensors, KobukiSensorsConfig
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
-from cartwheel.devices.inertial.messages import imu_message
-from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.joints.states import JointStatesConfig
-from cartwheel.devices.rays.scan import Scanner
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
@@ -24,18 +21,10 @@ from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import UnknownNameError
-from cartwheel.geometry import Array, yaw_of
-from cartwheel.messages import header, message_class
 
 _BASE = "mobile_base/"
 """Namespace of the topics that kobuki_node defines."""
-_SIDES = ("left", "center", "right")
-_LOWEST, _HIGHEST = 0.01, 0.13
-"""m above the root link: contacts between these heights press the bumper."""
 _POSE_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel()
-_IMU_COVARIANCES = (*[np.diag([1e6, 1e6, 0.05]).ravel()] * 2, np.zeros(9))
-_MOST = 4095
-"""Largest reading of a cliff sensor's A/D converter."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -113,14 +102,13 @@ class Kobuki(Plugin[KobukiParameters]):
         joints = config.left_joint, config.right_joint
         pairs = wheel_pairs(self, [joints], [config.separation], [config.diameter])
         self.check_not_negative("rate")
-        self._take_sensors(config)
+        sensors = self.add(KobukiSensors(self.scope, self._sensors_config(config)))
         self.subscribe(_BASE + "commands/motor_power", "kobuki_msgs/msg/MotorPower", self._on_power)
         self.subscribe(
             _BASE + "commands/reset_odometry",
             "std_msgs/msg/Empty",
             lambda _: self._drive.reckoning.restart(),
         )
-        self.part.schedule(config.rate, after=self._sense, active=self._sensed)
         self._drive = self.add(
             DifferentialDrive(
                 self.scope,
@@ -149,48 +137,29 @@ class Kobuki(Plugin[KobukiParameters]):
                         ),
                     ),
                 ),
-                yaw_rate=lambda: self._unit.rates()[2],
+                yaw_rate=lambda: sensors.unit.rates()[2],
             )
         )
         report_swapped_wheels(self, pairs)
-        self.reset()
 
-    def reset(self) -> None:
-        super().reset()
-        self._cliff = dict.fromkeys(_SIDES, False)
-        self._pressed = dict.fromkeys(_SIDES, False)
-        self._dropped = dict.fromkeys(("left", "right"), False)
-
-    def _take_sensors(self, config: KobukiParameters) -> None:
-        rays = (config.cliff_left, config.cliff_center, config.cliff_right)
-        self._floors = {
-            side: Scanner(self.part, read_scanner(self._sensor(name), self.part.report))
-            for side, name in zip(_SIDES, rays, strict=True)
-        }
-        self._bumper = read_collisions(self, self._sensor(config.bumper))
-        self._wheels = {
-            "left": read_collisions(self, self._sensor(config.drop_left)),
-            "right": read_collisions(self, self._sensor(config.drop_right)),
-        }
-        imu = self._sensor(config.imu)
-        self._unit = InertialUnit(self.part, read_inertial_unit(self.part, imu))
-        self._root = self.part.link(self.part.description.canonical_link)
-        self._frame = self.frame("base_link")
-        kinds = {
-            "cliff": "CliffEvent",
-            "bumper": "BumperEvent",
-            "wheel_drop": "WheelDropEvent",
-        }
-        types = {name: f"kobuki_msgs/msg/{kind}" for name, kind in kinds.items()}
-        self._Events = {name: message_class(kind) for name, kind in types.items()}
-        self._events = {
-            name: self.advertise(f"{_BASE}events/{name}", kind) for name, kind in types.items()
-        }
-        rate = config.rate or None
-        self._imu = self.advertise(_BASE + "sensors/imu_data", "sensor_msgs/msg/Imu", rate=rate)
-        self._Core = message_class("kobuki_msgs/msg/SensorState")
-        self._core = self.advertise(
-            _BASE + "sensors/core", "kobuki_msgs/msg/SensorState", rate=rate
+    def _sensors_config(self, config: KobukiParameters) -> KobukiSensorsConfig:
+        left, center, right = (
+            read_scanner(self._sensor(name), self.part.report)
+            for name in (config.cliff_left, config.cliff_center, config.cliff_right)
+        )
+        bumper, drop_left, drop_right = (
+            read_collisions(self, self._sensor(name))
+            for name in (config.bumper, config.drop_left, config.drop_right)
+        )
+        return KobukiSensorsConfig(
+            floors=(left, center, right),
+            cliff_threshold=config.cliff_threshold,
+            bumper=bumper,
+            wheels=(drop_left, drop_right),
+            unit=read_inertial_unit(self.part, self._sensor(config.imu)),
+            namespace=_BASE,
+            frame="base_link",
+            rate=config.rate,
         )
 
     def _sensor(self, name: str) -> Sensor:
@@ -206,86 +175,3 @@ class Kobuki(Plugin[KobukiParameters]):
 
     def _on_power(self, message: Any) -> None:
         self._drive.enabled = message.state == message.ON
-
-    def _sensed(self) -> bool:
-        return any(each.wanted for each in (self._imu, self._core, *self._events.values()))
-
-    def _sense(self) -> None:
-        if self._imu.wanted:
-            moment = header(self.part.time_ns, self._frame)
-            self._imu.publish(imu_message(moment, *self._unit.measure(), _IMU_COVARIANCES))
-        self._check_cliffs()
-        self._check_contacts()
-        if self._core.wanted:
-            self._core.publish(
-                self._Core(
-                    header=header(self.part.time_ns, self._frame),
-                    time_stamp=self.part.time_ns // 1_000_000 % 65536,
-                    bumper=_bits(self._pressed, left=4, center=2, right=1),
-                    wheel_drop=_bits(self._dropped, left=2, right=1),
-                    cliff=_bits(self._cliff, left=4, center=2, right=1),
-                    left_encoder=0,
-                    right_encoder=0,
-                    left_pwm=0,
-                    right_pwm=0,
-                    buttons=0,
-                    charger=0,
-                    battery=0,
-                    bottom=np.zeros(0, np.uint16),
-                    current=np.zeros(0, np.uint8),
-                    over_current=0,
-                    digital_input=0,
-                    analog_input=np.zeros(0, np.uint16),
-                )
-            )
-
-    def _check_cliffs(self) -> None:
-        for index, side in enumerate(_SIDES):
-            scanner = self._floors[side]
-            # Only the first ray is used. If it is out of range, the floor is at the maximum range.
-            floor = min(float(scanner.measure().ranges[0, 0]), scanner.pattern.maximum)
-            cliff = floor >= self.config.cliff_threshold
-            if cliff != self._cliff[side]:
-                self._cliff[side] = cliff
-                # Reading of the A/D converter for a distance in mm.
-                reading = 76123.0 * math.atan2(0.995, max(floor, 0.0) * 1000)
-                self._publish_event("cliff", index, int(cliff), min(int(reading), _MOST))
-
-    def _check_contacts(self) -> None:
-        place, turned = self._root.place()
-        pressed = dict.fromkeys(_SIDES, False)
-        for contact in self.part.contacts(self._bumper):
-            if _LOWEST <= contact.position[2] - place[2] <= _HIGHEST:
-                side = _bumper_of(contact.normal, yaw_of(turned))
-                if side:
-                    pressed[side] = True
-        self._publish_changes("bumper", self._pressed, pressed)
-        dropped = {
-            side: not self.part.contacts(collisions) for side, collisions in self._wheels.items()
-        }
-        self._publish_changes("wheel_drop", self._dropped, dropped)
-
-    def _publish_changes(self, name: str, before: dict[str, bool], now: dict[str, bool]) -> None:
-        for index, (side, state) in enumerate(now.items()):
-            if before[side] != state:
-                before[side] = state
-                self._publish_event(name, index, int(state))
-
-    def _publish_event(self, name: str, *values: int) -> None:
-        if self._events[name].wanted:
-            self._events[name].publish(self._Events[name](*values))
-
-
-def _bumper_of(normal: Array, heading: float) -> str:
-    """Returns the pressed bumper; empty behind the robot. The normal points into the robot."""
-    x, y, _ = (-normal).tolist()
-    angle = math.remainder(math.atan2(y, x) - heading, 2 * math.pi)
-    if abs(angle) > math.pi / 2:
-        return ""
-    if abs(angle) <= math.pi / 6:
-        return "center"
-    return "left" if angle > 0 else "right"
-
-
-def _bits(states: dict[str, bool], **values: int) -> int:
-    return sum(values[side] for side, state in states.items() if state)
