@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.odometry import Odometry, OdometryConfig
+from cartwheel.devices.air.pose_sensor import PoseSensor, PoseSensorConfig
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
-from cartwheel.geometry import Array, Quat, quat_multiply, quat_normalize
-from cartwheel.messages import header, message_class
 
 _NONE = (0.0, 0.0, 0.0)
 
@@ -110,7 +108,7 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
     parameters: ClassVar[type] = RotorsOdometryParameters
 
     def configure(self) -> None:
-        config, part, origin = self.config, self.part, self.tag.origin
+        config = self.config
         if config.parent != "world":
             raise PluginError(
                 f'<parentFrameId> "{config.parent}" is not supported: only "world" is',
@@ -123,7 +121,6 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
                   config.normal_angular]  # fmt: skip
         uniform = [config.uniform_position, config.uniform_turn, config.uniform_linear,
                    config.uniform_angular]  # fmt: skip
-        self._normal, self._uniform = np.array(normal).ravel(), np.array(uniform).ravel()
         self.check_not_negative(
             "normal_position", "normal_turn", "normal_linear", "normal_angular",
             "uniform_position", "uniform_turn", "uniform_linear", "uniform_angular",
@@ -134,95 +131,19 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
                 "<measurementDelay> has no effect: measurements are published immediately",
                 values={"parameter": "measurementDelay"},
             )
-        self._link = part.link(config.link, origin=origin)
-        self._frames = self.frame(config.parent), self.frame(config.child)
-        variance = self._normal**2
-        self._covariance = np.diag(variance[:6]).ravel()
-        self._odometry = self.add(
-            Odometry(
-                self.scope,
-                OdometryConfig(
-                    topic=config.odometry_topic,
-                    frame=config.parent,
-                    base=config.child,
-                    transform=True,
-                    pose_covariance=self._covariance,
-                    twist_covariance=np.diag(variance[6:]).ravel(),
-                ),
-            )
+        device = PoseSensorConfig(
+            link=config.link,
+            pose_topic=config.pose_topic,
+            pose_with_covariance_topic=config.with_topic,
+            position_topic=config.position_topic,
+            transform_topic=config.transform_topic,
+            odometry_topic=config.odometry_topic,
+            frame=config.parent,
+            child_frame=config.child,
+            divisor=config.divisor,
+            stamp_delay=config.unknown_delay,
+            normal=np.array(normal).ravel(),
+            uniform=np.array(uniform).ravel(),
+            noise_name=f"odometry {self.tag.name}",
         )
-        self._classes = {
-            name: message_class(f"geometry_msgs/msg/{name}")
-            for name in ("Pose", "Point", "Quaternion", "PoseWithCovariance", "Vector3",
-                         "PoseWithCovarianceStamped", "PointStamped", "Transform",
-                         "TransformStamped")
-        }  # fmt: skip
-        self._others = {
-            kind: self.advertise(topic, f"geometry_msgs/msg/{kind}")
-            for topic, kind in (
-                (config.pose_topic, "Pose"),
-                (config.with_topic, "PoseWithCovarianceStamped"),
-                (config.position_topic, "PointStamped"),
-                (config.transform_topic, "TransformStamped"),
-            )
-        }
-        self._steps = 0
-        part.schedule(0, after=self._count)
-
-    def reset(self) -> None:
-        self._steps = 0
-
-    def _count(self) -> None:
-        if self._steps % self.config.divisor == 0:
-            self._publish()
-        self._steps += 1
-
-    def _publish(self) -> None:
-        wanted = {kind for kind, publisher in self._others.items() if publisher.wanted}
-        if not wanted and not self._odometry.wanted():
-            return
-        place, turn = self._link.place()
-        linear, angular = self._link.motion(local=True)
-        error = self._error()
-        x, y, z = np.add(place, error[:3]).tolist()
-        turn = _tilted(turn, error[3:6])
-        wx, wy, wz = np.add(angular, error[9:]).tolist()
-        now = self.part.time_ns + round(self.config.unknown_delay * 1e9)
-        self._odometry.publish(
-            now, (x, y, z), turn, np.add(linear, error[6:9]).tolist(), (wx, wy, wz)
-        )
-        if not wanted:
-            return
-        classes = self._classes
-        head = header(now, self._frames[0])
-        pose = classes["Pose"](classes["Point"](x, y, z), classes["Quaternion"](*turn))
-        messages: dict[str, Any] = {
-            "Pose": pose,
-            "PoseWithCovarianceStamped": classes["PoseWithCovarianceStamped"](
-                head, classes["PoseWithCovariance"](pose, self._covariance)
-            ),
-            "PointStamped": classes["PointStamped"](head, pose.position),
-            "TransformStamped": classes["TransformStamped"](
-                head,
-                self._frames[1],
-                classes["Transform"](classes["Vector3"](x, y, z), pose.orientation),
-            ),
-        }
-        for kind in wanted:
-            self._others[kind].publish(messages[kind])
-
-    def _error(self) -> Array:
-        """Returns noise on position, orientation, linear and angular velocity, shape (12,)."""
-        if not (self._normal.any() or self._uniform.any()):
-            return np.zeros(12)
-        random = self.part.random(f"odometry {self.tag.name}")
-        drawn: Array = random.normal(0.0, self._normal) + random.uniform(-1, 1, 12) * self._uniform
-        return drawn
-
-
-def _tilted(turn: Quat, angles: Array) -> Quat:
-    """Rotates an orientation by small angles about its own axes."""
-    if not angles.any():
-        return turn
-    x, y, z = (angles / 2).tolist()
-    return quat_normalize(quat_multiply(turn, (x, y, z, 1.0)))
+        self.add(PoseSensor(self.scope, device))
