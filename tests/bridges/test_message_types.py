@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 from collections.abc import Callable, Iterator
@@ -425,3 +426,27 @@ def test_the_dock_action_has_three_parts(known: TypeLibrary) -> None:
     del known
     assert DOCK.count("---") == 2
     assert from_dict(f"{DOCK_TYPE}_Goal", {"target": {"side": 1}}).target.side == 1
+
+
+def test_a_played_recording_is_read_without_the_workspace(
+    start: Start, workspace: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "a.mcap"
+    process = start("--record", str(file), "--for", "0.5", "--speed", "max")
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 0, output
+    shutil.rmtree(workspace)
+    player = subprocess.Popen(
+        [PROGRAM, "play", file, "--headless", "--loop"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
+    )
+    try:
+        echo = command(tmp_path, "topic", "echo", "/loads", "-n", "1")
+        assert "wheels: \n  - \n    side: 1\n    load: 9.5\n" in echo
+    finally:
+        player.send_signal(signal.SIGINT)
+        output, _ = player.communicate(timeout=120)
+    assert "Traceback" not in output, output
