@@ -69,6 +69,43 @@ def test_the_last_file_takes_precedence(tmp_path: Path, robot: Path) -> None:
         assert "/goodbye" in {topic.name for topic in world.graph.topics()}
 
 
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('tag("word", default="hello", doc="The greeting.")', '"hello"'),
+        ("def configure", "def configured"),
+        (
+            "class Greeter(Plugin",
+            "class Other(Plugin[Parameters]):\n"
+            "    filenames = ('greeter.so',)\n"
+            "    parameters = Parameters\n"
+            "    def configure(self) -> None: ...\n\n"
+            "class Greeter(Plugin",
+        ),
+    ],
+    ids=["field without tag", "no configure", "one name twice"],
+)
+def test_an_incomplete_plugin_is_an_error(tmp_path: Path, old: str, new: str) -> None:
+    path = greeter(tmp_path, "hello")
+    text = path.read_text()
+    assert old in text
+    with cw.World(plugins=[path]):
+        pass
+    path.write_text(text.replace(old, new))
+    with raises(devices.PLUGIN_FILE_INVALID, path=str(path)):
+        cw.World(plugins=[path])
+
+
+def test_an_import_that_fails_names_the_way_out(tmp_path: Path) -> None:
+    path = tmp_path / "one.py"
+    path.write_text("import a_neighbour_that_does_not_exist\n")
+    with raises(devices.PLUGIN_FILE_INVALID, path=str(path)) as caught:
+        cw.World(plugins=[path])
+    assert caught.value.hint
+    assert caught.value.origin is not None
+    assert caught.value.origin.line == 1
+
+
 def test_a_file_replaces_a_plugin_of_cartwheel(tmp_path: Path) -> None:
     robot = tmp_path / "r.urdf"
     robot.write_text(ROBOT.replace("libgreeter.so", "libgazebo_ros_p3d.so"))

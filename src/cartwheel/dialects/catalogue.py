@@ -116,6 +116,11 @@ def checked_plugin(plugin: object, name: str) -> type[Plugin[object]]:
         raise TypeError(f"{name}.filenames and {name}.serves must contain only strings")
     if not dataclasses.is_dataclass(getattr(plugin, "parameters", None)):
         raise TypeError(f"{name}.parameters must be a dataclass")
+    for item in dataclasses.fields(plugin.parameters):
+        if "tags" not in item.metadata:
+            raise TypeError(f"{name}.parameters.{item.name} must be defined with tag()")
+    if plugin.configure is Plugin.configure:
+        raise TypeError(f"{name} must define the method configure()")
     return plugin
 
 

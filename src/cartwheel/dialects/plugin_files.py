@@ -5,14 +5,19 @@ from __future__ import annotations
 import importlib.util
 import sys
 import traceback
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from cartwheel.codes import devices
 from cartwheel.codes.graph import MESSAGE_DEFINITION_INVALID
-from cartwheel.dialects.catalogue import checked_plugin
+from cartwheel.dialects.catalogue import checked_plugin, short_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.errors import CartwheelError, GraphError, Origin
+
+_IMPORT_HINT = (
+    "A plugin file can import installed packages, and modules in the folders of PYTHONPATH."
+)
 
 
 class PluginFiles:
@@ -58,6 +63,7 @@ def _plugins_in(path: Path) -> list[type[Plugin[Any]]]:
             for each in vars(module).values()
             if isinstance(each, type) and issubclass(each, Plugin) and each.__module__ == name
         ]
+        _check_distinct(defined)
     except GraphError as error:
         del sys.modules[name]
         if error.code is MESSAGE_DEFINITION_INVALID:
@@ -82,8 +88,21 @@ def _unloadable(path: Path, error: BaseException) -> CartwheelError:
         f"the plugin file cannot be loaded: {type(error).__name__}: {error}",
         code=devices.PLUGIN_FILE_INVALID,
         origin=Origin(file=str(path), line=_line(error, path)),
+        hint=_IMPORT_HINT if isinstance(error, ImportError) else "",
         values={"path": str(path)},
     )
+
+
+def _check_distinct(plugins: Sequence[type[Plugin[Any]]]) -> None:
+    """Raises an error if two plugins of one file have the same file name."""
+    owners: dict[str, type[Plugin[Any]]] = {}
+    for plugin in plugins:
+        for name in map(short_name, plugin.filenames):
+            owner = owners.setdefault(name, plugin)
+            if owner is not plugin:
+                raise TypeError(
+                    f'{owner.__name__} and {plugin.__name__} have the same file name "{name}"'
+                )
 
 
 def _line(error: BaseException, path: Path) -> int:
