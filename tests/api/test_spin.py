@@ -135,6 +135,28 @@ def test_ctrl_c_ends_it_after_a_step(seconds: float | None, on_thread: Any) -> N
         assert world.time == pytest.approx(before + 0.1)
 
 
+@pytest.mark.parametrize("connected", [False, True])
+def test_ctrl_c_ends_a_run_after_a_step(connected: bool) -> None:
+    completed: list[float] = []
+    with cw.World("empty") as world:
+        if connected:
+            world.serve_commands()
+
+        def press(_: Any) -> None:
+            if not completed:
+                signal.raise_signal(signal.SIGINT)
+            completed.append(world.time)
+
+        world.subscribe("/clock", press)
+        with pytest.raises(KeyboardInterrupt):
+            world.run(1000.0)
+        assert len(completed) == 1
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        before = world.time
+        world.run(0.1)
+        assert world.time == pytest.approx(before + 0.1)
+
+
 def test_a_program_with_its_own_handler_keeps_it(on_thread: Any) -> None:
     pressed: list[int] = []
     with cw.World("empty") as world:

@@ -96,6 +96,8 @@ class RunningWorld:
     def run(self, seconds: float, *, speed: float | None = None) -> None:
         """Advances the simulation. Without connections, nothing else can change it meanwhile.
 
+        Ctrl-C completes the current step, so that a later call can continue.
+
         Args:
             seconds: Simulation time. If a client resets the simulation, it starts again.
             speed: Target real-time factor; None is as fast as possible.
@@ -103,13 +105,16 @@ class RunningWorld:
         Raises:
             SimulationError: The simulation diverged, or the world is closed.
             RecordingError: A recording has failed.
+            KeyboardInterrupt: Ctrl-C was pressed.
         """
         duration_ns = to_ns(seconds)
-        with self._run() as simulation:
+        with self._run() as simulation, self._driver.interruptible() as pressed:
             if self._connections is None and speed is None:
                 simulation.advance(simulation.time_ns + duration_ns)
             else:
                 self._driver.run(duration_ns, speed, shared=False)
+        if pressed.is_set():
+            raise KeyboardInterrupt
 
     def spin(self, seconds: float | None = None, *, speed: float | None = 1.0) -> None:
         """Runs the simulation in real time until `stop`, Ctrl-C or a time limit.
