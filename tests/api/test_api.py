@@ -154,3 +154,14 @@ def test_strict_makes_a_warning_an_error(make, rosbots):
     assert caught.value.code is devices.PLUGIN_PARAMETER_UNKNOWN
     assert "rosbots" not in strict.models
     strict.close()
+
+
+def test_a_single_path_or_text_is_not_a_sequence_of_characters(tmp_path):
+    with cw.World(allow_path=str(tmp_path)) as world:
+        assert world.session.allow_path == (tmp_path,)
+        with world.record(tmp_path / "run.mcap", topics="/clock") as recorder:
+            world.run(0.5)
+    assert recorder.summary.messages > 0
+    missing = str(tmp_path / "missing.py")
+    with raises(devices.PLUGIN_FILE_INVALID, path=missing):
+        cw.World(plugins=missing)

@@ -6,7 +6,7 @@ import contextlib
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from cartwheel import description as descriptions
 from cartwheel.api.model import Model
@@ -21,6 +21,8 @@ from cartwheel.simulation.clock import NANOSECONDS
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
+
+T = TypeVar("T", bound=str | Path)
 
 
 class World(RunningWorld):
@@ -63,23 +65,23 @@ class World(RunningWorld):
         seed: int = 0,
         strict: bool = False,
         lenient: bool = False,
-        bridge: Sequence[str | Path] = (),
-        plugins: Sequence[str | Path] = (),
+        bridge: str | Path | Sequence[str | Path] = (),
+        plugins: str | Path | Sequence[str | Path] = (),
         ros1: bool | str = False,
         ros2: bool | str = False,
         rmw: Literal["dds", "zenoh"] = "dds",
         foxglove: bool | int = False,
         viewer: bool | int = False,
         record: str | Path | Sequence[str | Path] = (),
-        record_topics: Sequence[str] = (),
+        record_topics: str | Sequence[str] = (),
         overwrite: bool = False,
-        allow_path: Sequence[str | Path] = (),
+        allow_path: str | Path | Sequence[str | Path] = (),
         package_path: Sequence[str | Path] = (),
         host: str = "127.0.0.1",
-        allow_origin: Sequence[str] = (),
+        allow_origin: str | Sequence[str] = (),
     ) -> None:
         connections = plan = None
-        files = [record] if isinstance(record, str | Path) else list(record)
+        files = _several(record)
         # A port may be 0, which selects a free port.
         if ros1 or ros2 or foxglove is not False or viewer is not False or files:
             from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, Plan
@@ -93,9 +95,11 @@ class World(RunningWorld):
                 viewer=viewer is not False,
                 viewer_port=_port(viewer, None),
                 recordings=tuple(Path(file) for file in files),
-                recording=RecordingOptions(topics=tuple(record_topics), overwrite=overwrite),
+                recording=RecordingOptions(
+                    topics=tuple(_several(record_topics)), overwrite=overwrite
+                ),
             )
-            connections = Connections(host=host, allow_origin=allow_origin)
+            connections = Connections(host=host, allow_origin=_several(allow_origin))
         session: Session | None = None
         try:
             if connections is not None and plan is not None:
@@ -107,13 +111,17 @@ class World(RunningWorld):
                 seed=seed,
                 strict=strict,
                 lenient=lenient,
-                bridge=[Path(file) for file in bridge],
-                allow_path=[Path(folder) for folder in allow_path],
-                plugins=[Path(file) for file in plugins],
+                bridge=[Path(file) for file in _several(bridge)],
+                allow_path=[Path(folder) for folder in _several(allow_path)],
+                plugins=[Path(file) for file in _several(plugins)],
                 package_path=[Path(folder) for folder in package_path],
             )
             super().__init__(
-                session, host=host, allow_origin=allow_origin, connections=connections, plan=plan
+                session,
+                host=host,
+                allow_origin=_several(allow_origin),
+                connections=connections,
+                plan=plan,
             )
         except BaseException:
             if connections is not None:
@@ -154,8 +162,8 @@ class World(RunningWorld):
         pitch: float = 0.0,
         yaw: float = 0.0,
         arguments: Mapping[str, str] | None = None,
-        package_path: Sequence[Path] = (),
-        controllers: Sequence[str | Path] = (),
+        package_path: str | Path | Sequence[str | Path] = (),
+        controllers: str | Path | Sequence[str | Path] = (),
     ) -> Model:
         """Spawns a model.
 
@@ -178,14 +186,19 @@ class World(RunningWorld):
             PluginError: A plugin cannot be used, the model has no controller manager, or a
                 controller file is invalid.
         """
+        folders = [Path(folder) for folder in _several(package_path)]
         if not isinstance(robot, RobotDescription):
-            robot = descriptions.load_robot(robot, arguments=arguments, package_path=package_path)
+            robot = descriptions.load_robot(
+                robot,
+                arguments=arguments,
+                package_path=folders,
+            )
         given = any((x, y, z, roll, pitch, yaw))
         pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
-        files = [Path(file) for file in controllers]
+        files = [Path(file) for file in _several(controllers)]
         with self.used():
             spawned = self.session.spawn(
-                robot, name=name, pose=pose, controllers=files, package_path=package_path
+                robot, name=name, pose=pose, controllers=files, package_path=folders
             )
             return Model(self, spawned)
 
@@ -285,7 +298,7 @@ class World(RunningWorld):
         self,
         file: str | Path,
         *,
-        topics: Sequence[str] = (),
+        topics: str | Sequence[str] = (),
         encoding: Encoding | None = None,
         overwrite: bool = False,
     ) -> Iterator[Recorder]:
@@ -310,7 +323,7 @@ class World(RunningWorld):
             self.graph,
             file,
             time_ns=lambda: simulation.time_ns,
-            topics=topics,
+            topics=_several(topics),
             encoding=encoding,
             overwrite=overwrite,
             notes=self.session.notes,
@@ -344,3 +357,10 @@ def _port(wanted: bool | int, default: int | None) -> int | None:
     if wanted is False:
         return None
     return default if wanted is True else int(wanted)
+
+
+def _several(values: T | Sequence[T]) -> list[T]:
+    """The items of a sequence. A single text or path is one item, not a sequence of characters."""
+    if isinstance(values, str | Path):
+        return [values]
+    return list(values)
