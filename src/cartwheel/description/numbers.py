@@ -30,7 +30,7 @@ their number, and with the square of their length.
 
 
 class _InvalidError(DescriptionError):
-    """A malformed or out-of-range value; `label` says what it is."""
+    """A malformed or out-of-range value; `label` names the value."""
 
     code = VALUE_INVALID
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import queue
-import re
 import socket
 import threading
 import time
@@ -12,29 +11,26 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.foxglove.clients import Clients
 from cartwheel.bridges.foxglove.controls import Controls
-from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming, offered
+from cartwheel.bridges.foxglove.incoming import ENCODINGS, Incoming
 from cartwheel.bridges.foxglove.listener import Listener, playback_state
-from cartwheel.bridges.foxglove.log import TOPIC as LOG
 from cartwheel.bridges.foxglove.log import Log
-from cartwheel.bridges.foxglove.publication import READER, Publication
+from cartwheel.bridges.foxglove.mirror import Mirror
+from cartwheel.bridges.foxglove.slow import SlowClients
 from cartwheel.bridges.foxglove.values import PAUSED, SPEED, Values
-from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.budget import Budget
 from cartwheel.codes.wires import (
     BRIDGE_FAULT,
     FOXGLOVE_NOT_STARTED,
     PACKAGE_MISSING,
     SLOW_SUBSCRIBER,
-    TYPE_UNSUPPORTED,
 )
 from cartwheel.errors import CartwheelError, Diagnostic, Reporter
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.gate.gate import Gate
 from cartwheel.gate.listening import hidden_host, listen
-from cartwheel.graph import Service, TopicInfo
 
 PORT = 8765
 """Default port of Foxglove."""
@@ -43,9 +39,6 @@ APPS = ("https://app.foxglove.dev", "https://studio.foxglove.dev", "file://")
 desktop programs of Foxglove and Lichtblick, which run Chromium with local files."""
 BACKLOG = 256
 """Maximum number of queued messages per client. When full, the oldest is dropped."""
-_CHANGES = 64
-"""Maximum number of channels that are opened and closed at a time. The library disconnects
-every client for which more than `BACKLOG` notifications of such changes are queued."""
 _PAUSE = 0.1
 """Interval in s at which the graph is checked."""
 _STATUSES, _STATUS_RATE = 32, 5.0
@@ -54,10 +47,8 @@ _TIME_RATE = 10.0
 """Minimum rate in Hz of wall time at which clients receive the time."""
 _FINE_TIME_RATE = 50.0
 """Maximum rate in Hz of wall time, while clients receive messages."""
-_STRING = "std_msgs/msg/String"
-_TOLD = 500
-_SLOW = logging.getLogger("foxglove.websocket.connected_client.send_lossy")
-_FULL = re.compile(r"client (\S+) full")
+_SHOWN = 500
+"""Maximum number of different warnings; see `Once`."""
 
 Report = Callable[[Diagnostic], None]
 Assets = Callable[[str], bytes | None]
@@ -108,29 +99,32 @@ class FoxgloveBridge:
         self._report = report
         self._server: Any = None
         self._context: Any = None
-        self._publications: dict[str, Publication] = {}
-        self._by_channel: dict[int, Publication | Log] = {}
-        self._services: dict[str, Service] = {}
-        self._descriptions: dict[str, str] = {}
-        self._watched: dict[str, BridgedSubscription] = {}
         self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._pending: set[str] = set()
         self._surveying = False
         self._surveyed = 0.0
         """Time of the last survey of the graph; monotonic, in s."""
-        self._warn = Reporter(self._show, _TOLD)
+        self._warn = Reporter(self._show, _SHOWN)
         self._statuses = Budget(_STATUSES, _STATUS_RATE)
-        self._told_ns = -1
+        self._sent_ns = -1
         self._fine_due = 0.0
         self._log: Log | None = None
         self._shown: tuple[bool, float | None] | None = None
         """Whether time is paused, and its speed, as last sent to clients."""
         self._closed = False
         self._incoming = Incoming(graph, self._warn)
-        self._values = Values(
-            graph, controls=controls, descriptions=self._descriptions, tell=self._warn
+        self._offers = Mirror(
+            graph,
+            time_ns=lambda: self._controls.time_ns,
+            wake=self._wake,
+            again=self._changed,
+            described=self._described,
+            warn=self._warn,
         )
-        self._slow = _Slow(lambda client: self._jobs.put(lambda: self._warn_of_slow(client)))
+        self._values = Values(
+            graph, controls=controls, descriptions=self._offers.descriptions, tell=self._warn
+        )
+        self._slow = SlowClients(lambda client: self._jobs.put(lambda: self._warn_of_slow(client)))
         self._thread = threading.Thread(target=self._run, name="foxglove", daemon=True)
 
     @property
@@ -168,8 +162,7 @@ class FoxgloveBridge:
             capabilities.append(Capability.PlaybackControl)
         # Its messages about disconnected clients are not for the terminal.
         logging.getLogger("foxglove").addHandler(logging.NullHandler())
-        _SLOW.setLevel(logging.INFO)
-        _SLOW.addHandler(self._slow)
+        self._slow.start()
         self._context = foxglove.Context()
         listener = Listener(
             incoming=self._incoming,
@@ -197,7 +190,7 @@ class FoxgloveBridge:
                 f"the Foxglove server cannot start: {error}", code=FOXGLOVE_NOT_STARTED
             ) from error
         self._log = Log(context=self._context, time_ns=lambda: self._controls.time_ns)
-        self._by_channel[self._log.channel.id()] = self._log
+        self._offers.start(self._server, self._context, self._log)
         self._mirror()
         self._graph.on_change.append(self._changed)
         self._thread.start()
@@ -216,16 +209,13 @@ class FoxgloveBridge:
         if self._closed:
             return
         self._closed = True
-        _SLOW.removeHandler(self._slow)
+        self._slow.stop()
         if self._changed in self._graph.on_change:
             self._graph.on_change.remove(self._changed)
         self._jobs.put(None)
         if self._thread.is_alive():
             self._thread.join(timeout=5.0)
-        for subscription in self._watched.values():
-            subscription.close()
-        for publication in self._publications.values():
-            publication.close()
+        self._offers.close()
         if self._log is not None:
             self._log.close()
         if self._server is not None:
@@ -250,7 +240,7 @@ class FoxgloveBridge:
         """Called on a thread of the server."""
 
         def note() -> None:
-            publication = self._by_channel.get(channel)
+            publication = self._offers.by_channel.get(channel)
             if publication is not None:
                 (publication.join if joins else publication.leave)()
 
@@ -262,6 +252,10 @@ class FoxgloveBridge:
             self._pending.add(topic)
             self._jobs.put(lambda: self._send(topic))
 
+    def _described(self, topic: str) -> None:
+        """Called on the simulation's thread with the topic of a new robot description."""
+        self._jobs.put(lambda: self._server.publish_parameter_values(self._values.get([topic])))
+
     # -- on the bridge's thread
 
     def _run(self) -> None:
@@ -270,7 +264,7 @@ class FoxgloveBridge:
             try:
                 job = self._jobs.get(timeout=max(0.0, due - time.monotonic()))
             except queue.Empty:
-                job = self._tell_time
+                job = self._send_time
                 due = time.monotonic() + 1.0 / _TIME_RATE
             if job is None:
                 return
@@ -281,9 +275,9 @@ class FoxgloveBridge:
             except Exception as error:  # noqa: BLE001 - one error must not stop the others
                 self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))
 
-    def _tell_time(self) -> None:
+    def _send_time(self) -> None:
         state = self._controls.state()
-        self._told_ns = state.time_ns
+        self._sent_ns = state.time_ns
         self._server.broadcast_time(state.time_ns)
         # Other clients also pause time or set its speed, which must be displayed.
         shown = (state.paused, state.speed)
@@ -295,20 +289,20 @@ class FoxgloveBridge:
 
     def _send(self, topic: str) -> None:
         self._pending.discard(topic)
-        publication = self._publications.get(topic)
+        publication = self._offers.publications.get(topic)
         if publication is not None:
-            self._tell_fine_time()
+            self._send_fine_time()
             publication.send()
 
-    def _tell_fine_time(self) -> None:
+    def _send_fine_time(self) -> None:
         """Sends the time before messages, because some clients use it as the time of a message.
 
         The timestamps in messages lag behind it. Clients treat a step back as a jump, and clear
         their display.
         """
         time_ns, now = self._controls.time_ns, time.monotonic()
-        if time_ns > self._told_ns and now >= self._fine_due:
-            self._told_ns, self._fine_due = time_ns, now + 1.0 / _FINE_TIME_RATE
+        if time_ns > self._sent_ns and now >= self._fine_due:
+            self._sent_ns, self._fine_due = time_ns, now + 1.0 / _FINE_TIME_RATE
             self._server.broadcast_time(time_ns)
 
     def _survey(self) -> None:
@@ -322,98 +316,9 @@ class FoxgloveBridge:
             self._mirror()
 
     def _mirror(self) -> None:
-        """Makes the server offer what the graph offers, a limited number of changes at a time."""
         self._surveying = False
         self._surveyed = time.monotonic()
-        topics = offered_by_others(self._graph, READER)
-        topics.pop(LOG, None)  # The bridge provides this topic itself.
-        services = {service.name: service for service in self._graph.services()}
-        self._mirror_topics(topics)
-        self._mirror_descriptions(topics)
-        self._mirror_services(services)
-        self._tell_connections(topics, services)
-
-    def _mirror_topics(self, topics: dict[str, TopicInfo]) -> None:
-        changes = 0
-        for name, publication in list(self._publications.items()):
-            if name in topics and topics[name].type == publication.info.type:
-                publication.latched = topics[name].qos == "latched"
-            elif changes < _CHANGES:
-                changes += 1
-                del self._publications[name]
-                del self._by_channel[publication.channel.id()]
-                publication.close()
-        for name, info in topics.items():
-            if name not in self._publications and changes < _CHANGES:
-                changes += 1
-                publication = Publication(
-                    self._graph,
-                    info,
-                    context=self._context,
-                    time_ns=lambda: self._controls.time_ns,
-                    wake=lambda name=name: self._wake(name),  # type: ignore[misc]
-                    tell=self._warn,
-                )
-                self._publications[name] = publication
-                self._by_channel[publication.channel.id()] = publication
-        if changes == _CHANGES:
-            # More changes may remain.
-            self._changed()
-
-    def _mirror_descriptions(self, topics: dict[str, TopicInfo]) -> None:
-        described = {
-            name
-            for name, info in topics.items()
-            if info.type == _STRING and name.endswith("robot_description") and info.publishers
-        }
-        for name in set(self._watched) - described:
-            self._watched.pop(name).close()
-            self._descriptions.pop(name, None)
-        for name in described - set(self._watched):
-            self._watched[name] = self._graph.subscribe(name, self._describer(name), node=READER)
-
-    def _describer(self, name: str) -> Callable[[Any], None]:
-        def take(message: Any) -> None:
-            self._descriptions[name] = message.data
-            self._jobs.put(lambda: self._server.publish_parameter_values(self._values.get([name])))
-
-        return take
-
-    def _mirror_services(self, services: dict[str, Service]) -> None:
-        gone = [name for name, one in self._services.items() if services.get(name) is not one]
-        if gone:
-            self._server.remove_services(gone)
-            for name in gone:
-                del self._services[name]
-        made = []
-        for name, service in services.items():
-            if name not in self._services:
-                try:
-                    made.append(offered(self._graph, service, self._warn))
-                except CartwheelError as error:
-                    self._warn(
-                        TYPE_UNSUPPORTED.because(
-                            f"service {name} is not available to Foxglove",
-                            error,
-                            values={"service": name},
-                        )
-                    )
-                self._services[name] = service
-        if made:
-            self._server.add_services(made)
-
-    def _tell_connections(self, topics: dict[str, TopicInfo], services: dict[str, Service]) -> None:
-        import foxglove
-
-        graph = foxglove.ConnectionGraph()
-        for info in topics.values():
-            if info.publishers:
-                graph.set_published_topic(info.name, sorted(set(info.publishers)))
-            if info.subscribers:
-                graph.set_subscribed_topic(info.name, sorted(set(info.subscribers)))
-        for service in services.values():
-            graph.set_advertised_service(service.name, [service.node])
-        self._server.publish_connection_graph(graph)
+        self._offers.update()
 
     def _warn_of_slow(self, client: str) -> None:
         # The server sees only the gate's end of the connection.
@@ -433,23 +338,6 @@ class FoxgloveBridge:
             from foxglove import StatusLevel
 
             self._server.publish_status(diagnostic.text, StatusLevel.Warning)
-
-
-class _Slow(logging.Handler):
-    """Detects slow clients in the library's log, because the library offers no other notification.
-
-    Args:
-        slow: Called with the address of a slow client, on any thread.
-    """
-
-    def __init__(self, slow: Callable[[str], None]) -> None:
-        super().__init__(logging.INFO)
-        self._slow = slow
-
-    def emit(self, record: logging.LogRecord) -> None:
-        found = _FULL.search(record.getMessage())
-        if found:
-            self._slow(found[1])
 
 
 def require() -> None:

@@ -25,7 +25,7 @@ MAX_FACTORIAL = 500
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Function:
-    """A function that expressions may call, and nothing else."""
+    """A function that expressions may call. Its attributes are not accessible."""
 
     name: str
     run: Callable[..., Any]
@@ -36,7 +36,12 @@ class Function:
 
 
 def function(name: str, plain: Callable[..., Any]) -> Function:
-    """One whose result is bounded by its arguments."""
+    """A function whose arguments and result are measured against the budget.
+
+    Args:
+        name: Name in expressions.
+        plain: Python's function.
+    """
 
     def run(evaluator: Evaluator, *args: Any, **named: Any) -> Any:
         budget = evaluator.budget
@@ -48,7 +53,7 @@ def function(name: str, plain: Callable[..., Any]) -> Function:
 
 
 def shallow(name: str, plain: Callable[..., Any]) -> Function:
-    """One that does not look at what is in its arguments."""
+    """A function that does not read the elements of its arguments, so they are not measured."""
     return Function(name, lambda _, *args, **named: plain(*args, **named))
 
 

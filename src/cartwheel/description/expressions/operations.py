@@ -1,4 +1,4 @@
-"""Operators and methods of values, each with a bound on what it makes."""
+"""Operators and methods of values; the size of each result is limited."""
 
 from __future__ import annotations
 
