@@ -390,7 +390,9 @@ def _ignored(
 def _foreign(name: str, origin: Origin) -> Diagnostic:
     """Names with a prefix are left to other programs, as SDF specifies."""
     return codes.NOT_SIMULATED.diagnostic(
-        f"{name} is intended for other programs", origin=origin, values={"tag": name}
+        f"{name} has no effect: names with a prefix are reserved for other programs",
+        origin=origin,
+        values={"tag": name},
     )
 
 

@@ -33,7 +33,7 @@ def form_of(path: Path) -> Literal["mcap", "bag", "db3", "folder"]:
         return suffix[1:]  # type: ignore[return-value]
     if suffix and not suffix[1:].isdecimal() and not path.is_dir():
         raise RecordingError(
-            f'the file extension of "{path.name}" is not a recording format',
+            f'the file extension of "{path.name}" does not match a recording format',
             code=RECORDING_NAME_INVALID,
             hint=_NAMES,
             values={"name": path.name},

@@ -30,8 +30,8 @@ class CameraParameters:
         "cameraName",
         "camera_name",
         default="",
-        doc="Namespace of the topics. Default: the sensor's name, or no namespace if other "
-        "tags have ROS 1 spellings such as `imageTopicName`.",
+        doc="Namespace of the topics. Default: the sensor's name. If the plugin uses ROS 1 "
+        "tags such as `imageTopicName`, the default is no namespace.",
     )
     image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
     info_topic: str = tag(

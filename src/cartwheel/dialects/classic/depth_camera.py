@@ -32,7 +32,7 @@ class DepthCameraParameters(CameraParameters):
         doc="Topic of the CameraInfo for the depth images.",
     )
     points_topic: str = tag(
-        "pointCloudTopicName", default="points", doc="Topic of the points (PointCloud2)."
+        "pointCloudTopicName", default="points", doc="Topic of the point cloud (PointCloud2)."
     )
     nearest: float = tag(
         "pointCloudCutoff", default=0.4, unit="m", doc="Depths at or below this value are NaN."
@@ -59,7 +59,7 @@ class DepthCameraParameters(CameraParameters):
 
 
 class DepthCamera(RosCamera[DepthCameraParameters]):
-    """Publishes colour images, depth images and points of a depth camera.
+    """Publishes colour images, depth images and point clouds from a depth camera.
 
     Depths are measured along the optical axis. Points have x right, y down and z forward, so
     ``<frameName>`` should be an optical frame. The point cloud is organised: it contains one point

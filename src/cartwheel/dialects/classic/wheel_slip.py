@@ -71,7 +71,7 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
         self.check_not_negative("rate")
         wheels = tuple(self._wheel(each) for each in element.find_all("wheel"))
         if not wheels:
-            self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so no wheel slips")
+            self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so it has no effect")
             return
         topic = parameters = None
         if "gazebo_ros_wheel_slip" in self.tag.filename:

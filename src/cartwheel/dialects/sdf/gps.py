@@ -38,8 +38,8 @@ def read_gps(
     if datum is None:
         part.report(
             devices.COORDINATES_MISSING.diagnostic(
-                f'the world of sensor "{sensor.name}" has no <spherical_coordinates>, so '
-                "its origin is at latitude 0, longitude 0",
+                f'sensor "{sensor.name}" uses latitude 0 and longitude 0 as the origin of the world, '
+                "because the world has no <spherical_coordinates>",
                 origin=sensor.origin,
                 values={"sensor": sensor.name},
             )
