@@ -356,7 +356,8 @@ class TypeLibrary:
                 return
             self.report(
                 MESSAGE_TYPE_BUILT_IN.diagnostic(
-                    f"the definition of {name} differs from the built-in type, so the built-in type is used",
+                    f"the definition of {name} differs from the built-in type, which is used "
+                    "instead",
                     origin=other.origin,
                     hint="Rename the type, or use the fields of the built-in type.",
                     values={"type": name, "file": other.origin.file},

@@ -38,7 +38,7 @@ def read_gps(
     if datum is None:
         part.report(
             devices.COORDINATES_MISSING.diagnostic(
-                f'sensor "{sensor.name}" uses latitude 0 and longitude 0 as the origin of the world, '
+                f'sensor "{sensor.name}" uses latitude 0 and longitude 0 as the world\'s origin, '
                 "because the world has no <spherical_coordinates>",
                 origin=sensor.origin,
                 values={"sensor": sensor.name},
