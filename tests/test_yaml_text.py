@@ -10,7 +10,7 @@ from cartwheel import yaml_text
 from cartwheel.bridges.recording.folder_reading import _metadata
 from cartwheel.bridges.recording.reading import is_latched
 from cartwheel.bridges.ros1.names import _yaml
-from cartwheel.checks.control_files import ControlFile
+from cartwheel.checks.controller_files import ControlFile
 from cartwheel.codes.devices import BRIDGE_FILE_INVALID, CONTROLLERS_FILE_UNREADABLE
 from cartwheel.codes.recording import RECORDING_DAMAGED
 from cartwheel.dialects.gz.bridge_file import read_bridge

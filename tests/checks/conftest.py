@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,53 +11,8 @@ import pytest
 from tests.checks.seeded import ROBOT
 
 from cartwheel.checks.checking import Report, check
-from cartwheel.checks.knowledge import knowledge
-from cartwheel.checks.subject import PluginKnowledge
-from cartwheel.codes import code_named, devices
-from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.codes import code_named
 from cartwheel.errors import Diagnostic
-
-_KNOWN = {
-    "libgazebo_ros_diff_drive.so": {
-        "leftJoint", "rightJoint", "wheelSeparation", "wheelDiameter", "wheelTorque", "torque",
-        "updateRate", "odometryTopic", "robotBaseFrame", "legacyMode",
-    },
-    "libgazebo_ros_imu.so": {"bodyName", "body_name", "topicName"},
-    "libgazebo_ros_p3d.so": {"bodyName", "topicName"},
-    "libgazebo_ros_control.so": {"robotSimType"},
-    "libgazebo_ros_bumper.so": {"bumperTopicName", "frameName"},
-}  # fmt: skip
-
-
-def judge(tag: PluginTag, _sensor: Sensor | None) -> Iterable[Diagnostic] | None:
-    """What the plugins above would say of their parameters."""
-    known = _KNOWN.get(tag.filename)
-    if known is None:
-        return None
-    return [
-        devices.PLUGIN_PARAMETER_UNKNOWN.diagnostic(
-            f"<{child.tag}> has no effect",
-            origin=child.origin,
-            values={"parameter": child.tag, "meant": "wheelDiameter" * ("iameter" in child.tag)},
-        )
-        for child in tag.element.children
-        if child.tag not in known
-    ]
-
-
-KNOWLEDGE = PluginKnowledge(
-    filenames=tuple(_KNOWN),
-    judge=judge,
-    roles=knowledge().roles,
-    controller_types=(
-        "diff_drive_controller/DiffDriveController",
-        "effort_controllers/JointPositionController",
-        "joint_state_controller/JointStateController",
-        "joint_trajectory_controller/JointTrajectoryController",
-        "position_controllers/JointPositionController",
-    ),
-    controller_files=lambda robot, _joints: sorted(robot.parent.glob("config/*.yaml")),
-)
 
 
 @dataclass
@@ -70,7 +25,7 @@ class Bench:
         """What is found in a text."""
         path = self.folder / name
         path.write_text(text)
-        return check(path, known=KNOWLEDGE, **options)
+        return check(path, **options)
 
     def find(
         self, text: str, rule: str, name: str = "robot.urdf", **options: object

@@ -332,7 +332,7 @@ WITH_ADVICE: dict[str, Case] = {
         "libgazebo_ros_diffdrive.so", 'filename="libgazebo_ros_diff_drive.so"'),
     "parameter": ("plugin-parameter-unknown", [("<wheelDiameter>0.16</wheelDiameter>",
         "<wheeldiameter>0.16</wheeldiameter>")], "wheeldiameter",
-        "<wheelDiameter>0.16</wheelDiameter>"),
+        "<wheel_diameter>0.16</wheel_diameter>"),
     "torque": ("plugin-parameter-obsolete", [("<wheelTorque>2</wheelTorque>", "<torque>2</torque>")],
         "<torque>", "<wheelTorque>2</wheelTorque>"),
     "legacy": ("plugin-parameter-obsolete", [("<wheelTorque>2</wheelTorque>",

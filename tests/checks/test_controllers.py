@@ -169,8 +169,10 @@ def test_a_type_of_ros1_in_a_file_of_ros2(spoil, told, take):
 
 
 def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm, tmp_path):
-    (tmp_path / "config").mkdir()
-    near = tmp_path / "config" / "arm.yaml"
+    bench.folder = tmp_path / "arm"
+    near = bench.folder / "config" / "arm.yaml"
+    near.parent.mkdir(parents=True)
+    (bench.folder / "package.xml").write_text("<package><name>arm</name></package>")
     near.write_text(ARM.replace("  pid: {p: 10.0, i: 0.1, d: 1.0}\n", ""))
     (finding,) = bench.find(arm, "controller-gains-missing")
     assert finding.severity == "warning"

@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+import pkgutil
+
 import pytest
 from tests.checks.seeded import LUMP, WITH_ADVICE, WITHOUT_PLACE
 
-from cartwheel.checks import nodes
-from cartwheel.checks.checking import RULES
+from cartwheel.checks import nodes, rules
+from cartwheel.checks.rules import RULES
 from cartwheel.checks.spelling import meant
 
 
@@ -62,7 +64,7 @@ def test_limits_of_many_turns_are_no_degrees(bench, spoil):
 
 
 def test_a_file_of_new_gazebo_needs_no_prefix(bench, spoil):
-    for name in ("gz-sim-diff-drive-system", "gz_ros2_control-system"):
+    for name in ("gz-sim-thruster-system", "gz_ros2_lights-system"):
         found = bench.find(spoil(("libgazebo_ros_imu.so", name)), "plugin-unknown")
         assert [each.severity for each in found] == ["info"], name
 
@@ -332,8 +334,8 @@ def test_two_giant_wheels_are_told_though_they_are_alike(bench, spoil):
 
 
 def test_a_plugin_of_gazebos_own_is_no_misspelt_one(bench, spoil):
-    """libgazebo_ros_f3d.so resembles libgazebo_ros_p3d.so, and both are there."""
-    changed = ("libgazebo_ros_imu.so", "libgazebo_ros_f3d.so")
+    """libgazebo_ros_video.so resembles other plugins of Gazebo, and Cartwheel does not simulate it."""
+    changed = ("libgazebo_ros_imu.so", "libgazebo_ros_video.so")
     found = bench.find(spoil(changed), "plugin-unknown")
     assert [(f.severity, f.instead) for f in found] == [("info", "")]
 
@@ -522,3 +524,9 @@ def test_the_time_of_unknown_tags_is_linear(bench, monkeypatch):
     report = bench.report(f'<robot name="r"><link name="base"/>{tags}</robot>')
     assert {"tag-ignored", "tag-misplaced"} < {each.code.name for each in report.findings}
     assert len(walks) < 200
+
+
+def test_each_file_of_rules_has_rules_that_are_applied():
+    found = {rule.find.__module__ for rule in RULES}
+    rooms = pkgutil.walk_packages(rules.__path__, "cartwheel.checks.rules.")
+    assert found == {each.name for each in rooms if not each.ispkg}

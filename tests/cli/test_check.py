@@ -6,7 +6,8 @@ import json
 
 import pytest
 
-from cartwheel.checks.checking import REPORTED, RULES
+from cartwheel.checks.checking import REPORTED
+from cartwheel.checks.rules import RULES
 from cartwheel.codes.command import UNKNOWN_CODE
 from cartwheel.errors import UNCLASSIFIED
 

@@ -11,9 +11,8 @@ from tests.coded import coded, raises
 from tests.description.test_elements import DOCUMENTS
 
 import cartwheel as cw
-from cartwheel.checks import mending
+from cartwheel.checks import kinematic_tree, repairs
 from cartwheel.checks.checking import check
-from cartwheel.checks.rules import structure
 from cartwheel.codes import devices
 from cartwheel.codes import world as world_codes
 from cartwheel.codes.robot import MASS_NOT_POSITIVE
@@ -270,15 +269,15 @@ def test_a_check_of_a_long_chain_looks_at_each_joint_a_few_times(form, tmp_path,
     file = tmp_path / f"r.{form}"
     file.write_text(ends[0] + links + joints + ends[1])
     looks = 0
-    original = structure.ends
+    original = kinematic_tree.ends
 
     def counted(node):
         nonlocal looks
         looks += 1
         return original(node)
 
-    monkeypatch.setattr(structure, "ends", counted)
-    monkeypatch.setattr(mending, "ends", counted)
+    monkeypatch.setattr(kinematic_tree, "ends", counted)
+    monkeypatch.setattr(repairs, "ends", counted)
     assert check(file).complete
     assert looks < 30 * count
 
@@ -289,7 +288,7 @@ def test_rings_of_joints_are_found_once_each():
         return Node("joint", {}, place, [Node("parent", {"link": parent}, place)])
 
     parents = {"a": "b", "b": "c", "c": "b", "d": "e", "e": "root", "f": "f", "g": "a"}
-    found = structure.rings({link: holder(parent) for link, parent in parents.items()})
+    found = kinematic_tree.rings({link: holder(parent) for link, parent in parents.items()})
     assert found == [["b", "c"], ["f"]]
 
 

@@ -9,29 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.checks import nodes
-from cartwheel.checks.control_search import control_files
-from cartwheel.checks.mending import displaced, mend
-from cartwheel.checks.rule import Rule
-from cartwheel.checks.rules import (
-    control,
-    controllers,
-    drive,
-    frames,
-    gazebo,
-    inertia,
-    joints,
-    meshes,
-    plugins,
-    sensor_values,
-    sensors,
-    stance,
-    structure,
-    tags,
-    units,
-    wheel_sizes,
-    xacro_use,
-)
-from cartwheel.checks.subject import PluginKnowledge, Robot, Subject
+from cartwheel.checks.controller_search import controller_files_of
+from cartwheel.checks.repairs import displaced, mend
+from cartwheel.checks.reported import passed
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.rules import RULES
+from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.loading import Opened, open_description, understand
@@ -39,26 +22,6 @@ from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.node import Node
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
-RULES: tuple[Rule, ...] = (
-    *structure.RULES,
-    *joints.RULES,
-    *inertia.RULES,
-    *drive.RULES,
-    *wheel_sizes.RULES,
-    *stance.RULES,
-    *sensors.RULES,
-    *sensor_values.RULES,
-    *gazebo.RULES,
-    *frames.RULES,
-    *plugins.RULES,
-    *control.RULES,
-    *controllers.RULES,
-    *meshes.RULES,
-    *units.RULES,
-    *tags.RULES,
-    *xacro_use.RULES,
-)
-"""All rules, grouped by subject."""
 REPORTED = tuple(
     code for module in ("files", "robot", "tags", "devices") for code in codes_of(module)
 )
@@ -92,7 +55,6 @@ def check(
     *,
     arguments: Mapping[str, str] | None = None,
     package_path: Sequence[Path] = (),
-    known: PluginKnowledge | None = None,
     controller_files: Sequence[Path] = (),
 ) -> Report:
     """Checks a description for errors and misleading values.
@@ -101,7 +63,6 @@ def check(
         path: As for `load`.
         arguments: Values of ``name:=value`` arguments.
         package_path: As for `load`.
-        known: Information about plugins; plugin parameters are not checked without it.
         controller_files: Controller files to use instead of those found near the robot.
 
     Raises:
@@ -114,12 +75,12 @@ def check(
         return Report(file=opened.files[0], name=name, findings=(), complete=True)
     if opened.root.tag not in ("robot", "sdf", "gazebo") or _is_empty(opened.root):
         understand(opened)  # raises an error that says what the file contains
-    subject = _subject(opened, known, controller_files)
+    subject = _subject(opened, controller_files)
     # Numbers near the largest float overflow; rules report nothing about non-finite results.
     with np.errstate(all="ignore"):
         findings = _distinct(
             [
-                *tags.passed(subject),
+                *passed(subject),
                 *(one for each in RULES for one in each.apply(subject)),
             ]
         )
@@ -136,7 +97,7 @@ def check(
     )
 
 
-def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path]) -> Subject:
+def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
     tree = nodes.copy(opened.root)
     mended: set[str] = set()
     if tree.tag == "robot":
@@ -153,12 +114,9 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
     if root is None:
         cut |= _left_out(opened.root, read)
     lost = displaced(opened.root, tree) if root is not None else set()
-    roles = known.roles if known is not None else lambda _: ()
     robots = tuple(
-        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost, roles=roles)
-        for each in described
+        Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
     )
-    search = known.controller_files if known is not None else None
     return Subject(
         root=opened.root,
         files=opened.files,
@@ -167,8 +125,7 @@ def _subject(opened: Opened, known: PluginKnowledge | None, given: Sequence[Path
         robots=robots,
         failures=tuple(failures),
         gaps=tuple(gaps),
-        plugins=known,
-        control=control_files(robots, opened.packages, given, search),
+        control=controller_files_of(robots, opened.packages, given),
     )
 
 

@@ -12,7 +12,6 @@ from cartwheel.errors import UNCLASSIFIED, Code, Diagnostic, Origin
 
 MOST_FINDINGS = 200
 """Maximum findings per rule. Each finding may search all names for a similar one."""
-
 Finder = Callable[[Subject], Iterable[Diagnostic]]
 
 

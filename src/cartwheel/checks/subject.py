@@ -2,286 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from cartwheel.checks import nodes
-from cartwheel.checks.control_files import ControlFile
+from cartwheel.checks.controller_files import ControlFile
+from cartwheel.checks.robot import Robot
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
 from cartwheel.description import xml
 from cartwheel.description.model import (
-    Collision,
-    Element,
-    Joint,
-    Link,
-    Mesh,
-    PluginTag,
     RobotDescription,
-    Sensor,
-    Visual,
     WorldDescription,
 )
 from cartwheel.description.node import Node
 from cartwheel.description.packages import Packages
-from cartwheel.description.solids import Floats, Solid, bounds, solid_of
-from cartwheel.dialects.tag_roles import TagRole, wheels
 from cartwheel.errors import Diagnostic, Origin
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PluginKnowledge:
-    """Information about plugins, passed in by the caller from higher layers."""
-
-    filenames: tuple[str, ...]
-    """Plugin files such as ``libgazebo_ros_camera.so``."""
-    judge: Callable[[PluginTag, Sensor | None], Iterable[Diagnostic] | None]
-    """Diagnostics about a plugin's parameters; None for an unknown plugin."""
-    default_joints: Callable[[PluginTag], Iterable[tuple[tuple[str, ...], str]]] | None = None
-    """Default joints of a plugin: for each, the tag's spellings and the joint's name."""
-    roles: Callable[[str], tuple[TagRole, ...]] = lambda _: ()
-    """Returns the tags of a plugin whose meaning is known, by the plugin's file name."""
-    controller_types: tuple[str, ...] = ()
-    """Types such as ``effort_controllers/JointPositionController``; empty if unknown."""
-    controller_files: Callable[[Path, Sequence[str]], Sequence[Path]] | None = None
-    """Finds the files that a launch file may load, from the robot's file and its joints."""
+def is_known(name: str, robot: Robot, subject: Subject) -> bool:
+    """Whether a joint with this name exists, with or without its scope."""
+    if name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names:
+        return True
+    if subject.is_urdf:
+        return False
+    return subject.lacks_models or name.rpartition("::")[2] in subject.joints_written
 
 
 ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
 """Codes for files, models and packages that do not exist locally."""
 GAZEBO_STEP = 0.001
 """Default time step, s."""
-DRIVE_JOINT_TAGS = (
-    "leftJoint", "left_joint", "rightJoint", "right_joint", "leftFrontJoint", "leftRearJoint",
-    "rightFrontJoint", "rightRearJoint",
-)  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Drive:
-    """A plugin that drives wheels."""
-
-    tag: PluginTag
-    left: tuple[str, ...]
-    """Joint names."""
-    right: tuple[str, ...]
-    left_tag: Element | None
-    """The tag of the first left joint; None if it contains several joints, or is missing."""
-
-    @property
-    def joints(self) -> tuple[str, ...]:
-        """Left and right joints."""
-        return self.left + self.right
-
-
-class Robot:
-    """A model, with cached values that several rules use.
-
-    Args:
-        description: The model as read.
-        root: The expanded ``<robot>``; None for an SDF model.
-        mended: Links whose inertia was replaced.
-        cut: Links that lost an unreadable element.
-        displaced: Links whose joint is unreadable, so that their pose is unknown.
-        roles: Returns the tags of a plugin whose meaning is known, by the plugin's file name.
-    """
-
-    def __init__(
-        self,
-        description: RobotDescription,
-        root: Node | None,
-        *,
-        mended: Iterable[str] = (),
-        cut: Iterable[str] = (),
-        displaced: Iterable[str] = (),
-        roles: Callable[[str], tuple[TagRole, ...]] = lambda _: (),
-    ) -> None:
-        self.description = description
-        self.root = root
-        self.roles = roles
-        self.mended = frozenset(mended)
-        self.cut = frozenset(cut)
-        self.links = {link.name: link for link in description.links}
-        self.joints = {joint.name: joint for joint in description.joints}
-        self.inbound: dict[str, Joint] = {}
-        for joint in description.joints:
-            self.inbound.setdefault(joint.child, joint)
-        self._displaced = frozenset(displaced)
-
-    @cached_property
-    def collisions(self) -> dict[str, list[Solid]]:
-        """Collision geometry by link."""
-        return {link.name: self._solids(link, visual=False) for link in self.description.links}
-
-    @cached_property
-    def visuals(self) -> dict[str, list[Solid]]:
-        """Visual geometry by link."""
-        return {link.name: self._solids(link, visual=True) for link in self.description.links}
-
-    @cached_property
-    def in_sdf(self) -> frozenset[str]:
-        """Links written in SDF: all links of an SDF model, or those in a <gazebo> element."""
-        return frozenset(self.links) - set(map(nodes.name_of, nodes.children(self.root, "link")))
-
-    @cached_property
-    def incomplete(self) -> frozenset[str]:
-        """Links with a missing mesh, whose remaining geometry is not representative."""
-        found = set(self.cut)
-        for node in nodes.children(self.root, "link"):
-            link = self.links.get(nodes.name_of(node))
-            if link is not None:
-                written = sum(each.tag == "mesh" for each in nodes.walk(node))
-                parts: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
-                read = sum(isinstance(part.shape, Mesh) for part in parts)
-                if read < written:
-                    found.add(link.name)
-        return frozenset(found)
-
-    @cached_property
-    def placed(self) -> frozenset[str]:
-        """Links with a known pose, as the author wrote it."""
-        lost, seen = set(self._displaced), set[str]()
-        for link in self.links:
-            path: dict[str, None] = {}
-            each = link
-            while each not in lost and each not in seen and each not in path:
-                path[each] = None
-                if each in self.inbound:
-                    each = self.inbound[each].parent
-            (lost if each in lost else seen).update(path)
-        return frozenset(self.links) - lost
-
-    @property
-    def is_placed(self) -> bool:
-        """Whether the poses of all links are known."""
-        return len(self.placed) == len(self.links)
-
-    def whole(self, link: str) -> bool:
-        """Whether no mesh is missing in a link and the links fixed to it."""
-        return self.incomplete.isdisjoint(self.rigid_groups[self.rigid_root(link)])
-
-    def solids(self, link: str) -> list[Solid]:
-        """Collisions and visuals of a link."""
-        return self.collisions.get(link, []) + self.visuals.get(link, [])
-
-    def rigid_root(self, link: str) -> str:
-        """The root of the link's rigid group; the link itself if it can move."""
-        seen = {link}
-        while link in self.inbound and self.inbound[link].type == "fixed":
-            parent = self.inbound[link].parent
-            if parent in seen or parent not in self.links:
-                break
-            seen.add(parent)
-            link = parent
-        return link
-
-    @cached_property
-    def rigid_groups(self) -> dict[str, list[str]]:
-        """The links of each rigid group, by root link."""
-        groups: dict[str, list[str]] = {}
-        for link in self.links:
-            groups.setdefault(self.rigid_root(link), []).append(link)
-        return groups
-
-    def rigid_cloud(self, link: str) -> list[Floats]:
-        """Geometry of all links in a rigid group, in the given link's frame."""
-        here = self.links[link].pose.inverse()
-        return [
-            solid.placed(here @ self.links[name].pose)
-            for name in self.rigid_groups[self.rigid_root(link)]
-            for solid in self.solids(name)
-        ]
-
-    @cached_property
-    def size(self) -> float:
-        """Longest edge of the bounding box of all collisions, or of all visuals if there are none,
-        m.
-        """
-        for kind in (self.collisions, self.visuals):
-            found = bounds(
-                [
-                    solid.placed(self.links[name].pose)
-                    for name, solids in kind.items()
-                    for solid in solids
-                ]
-            )
-            if found is not None:
-                return float((found[1] - found[0]).max())
-        return 0.0
-
-    @cached_property
-    def drives(self) -> tuple[Drive, ...]:
-        """Plugins that drive left and right wheels."""
-        found = []
-        for tag in self.description.plugins:
-            roles = self.roles(tag.filename)
-            left, right = wheels(roles, "left"), wheels(roles, "right")
-            if not left:
-                continue
-            single = [name for each in left if each.role == "left_wheel" for name in each.tags]
-            names = (
-                tuple(joint for each in side for joint in each.joints(tag.element))
-                for side in (left, right)
-            )
-            found.append(
-                Drive(
-                    tag=tag,
-                    left=next(names),
-                    right=next(names),
-                    left_tag=next(filter(None, map(tag.element.find, single)), None),
-                )
-            )
-        return tuple(found)
-
-    @cached_property
-    def joint_names(self) -> frozenset[str]:
-        """Names of all joints, including unreadable ones; scoped names also without their scope."""
-        names = {*self.joints, *map(nodes.name_of, nodes.children(self.root, "joint"))}
-        return frozenset(names | {name.rpartition("::")[2] for name in names})
-
-    @cached_property
-    def driven(self) -> frozenset[str]:
-        """Joints that a plugin, a transmission or ros2_control moves."""
-        names = {name for drive in self.drives for name in drive.joints}
-        for element in (*self.description.transmissions, *self.description.ros2_control):
-            for joint in element.find_all("joint"):
-                names.add((joint.attribute("name") or "").strip())
-        return frozenset(names)
-
-    def node_at(self, origin: Origin) -> Node | None:
-        """The element with exactly this origin."""
-        return self._nodes.get(id(origin))
-
-    @cached_property
-    def _nodes(self) -> dict[int, Node]:
-        tree = () if self.root is None else nodes.walk(self.root)
-        return {id(node.origin): node for node in tree}
-
-    def joint_node(self, name: str) -> Node | None:
-        """The joint's element."""
-        return next(
-            (n for n in nodes.children(self.root, "joint") if nodes.name_of(n) == name), None
-        )
-
-    def sensors(self) -> Iterator[tuple[Link, Sensor]]:
-        """All sensors, each with its link."""
-        for link in self.description.links:
-            for sensor in link.sensors:
-                yield link, sensor
-
-    def plugins(self) -> Iterator[tuple[PluginTag, Sensor | None]]:
-        """Model plugins first, then sensor plugins with their sensors."""
-        for tag in self.description.plugins:
-            yield tag, None
-        for _, sensor in self.sensors():
-            for tag in sensor.plugins:
-                yield tag, sensor
-
-    def _solids(self, link: Link, *, visual: bool) -> list[Solid]:
-        parts = link.visuals if visual else link.collisions
-        found = [solid_of(part, link.name) for part in parts]
-        return [solid for solid in found if solid is not None and len(solid.vertices)]
 
 
 @dataclass(kw_only=True)
@@ -300,7 +52,6 @@ class Subject:
     """Errors that prevented reading, except those that have their own rule."""
     gaps: Sequence[Origin] = ()
     """Origins of elements that lost an unreadable child, and of their parents."""
-    plugins: PluginKnowledge | None = None
     control: Sequence[tuple[Robot, ControlFile]] = ()
     """Controller files of each robot."""
 

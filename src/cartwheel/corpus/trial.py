@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from cartwheel.api import Model, World
-from cartwheel.checks.checking import RULES, check
-from cartwheel.checks.knowledge import knowledge
+from cartwheel.checks.checking import check
+from cartwheel.checks.rules import RULES
 from cartwheel.corpus import motion
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
@@ -86,7 +86,6 @@ def try_robot(
                 file,
                 arguments=arguments or {},
                 package_path=package_path,
-                known=knowledge(),
             )
             said = [each for each in report.findings if each.code in _OF_WHEELS]
             verdict = replace(verdict, reasons=tuple(str(each) for each in said))

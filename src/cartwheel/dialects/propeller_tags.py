@@ -18,8 +18,10 @@ SLOWDOWN = 10.0
 class PropellerTags:
     """The tags that all motor models share."""
 
-    joint: str = tag("jointName", doc="Joint of the propeller.")
-    link: str = tag("linkName", doc="Link of the propeller. The thrust acts along its z axis.")
+    joint: str = tag("jointName", role="joint", doc="Joint of the propeller.")
+    link: str = tag(
+        "linkName", role="link", doc="Link of the propeller. The thrust acts along its z axis."
+    )
     direction: Literal["cw", "ccw"] = tag(
         "turningDirection", doc="Direction of rotation, seen from above."
     )

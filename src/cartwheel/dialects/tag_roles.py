@@ -18,13 +18,26 @@ Role = Literal[
     "wheel_radius",
     "wheel_diameter",
     "wheel_torque",
+    "joint",
+    "link",
+    "frame",
+    "rate",
+    "topic",
+    "namespace",
 ]
 """Meaning of a tag.
 
-The tag ``left_wheel`` contains the joint of a driven wheel, and ``left_wheels`` joints separated by
-spaces. ``wheel_separation`` is the distance between wheels across the robot, and ``wheel_base``
-along it.
+- ``left_wheel``: the joint of a driven wheel; ``left_wheels``: joints separated by spaces.
+- ``joint``: any other joint.
+- ``wheel_separation``: distance between wheels across the robot; ``wheel_base``: along it.
+- ``link``: the link that the plugin measures or moves.
+- ``frame``: the frame ID of messages, which is the name of a link.
+- ``rate``: how often per second the plugin does something.
+- ``topic``: a topic on which the plugin publishes; ``namespace``: the first part of its name,
+  which defaults to the plugin's name.
 """
+WHEEL_ROLES: tuple[Role, ...] = ("left_wheel", "right_wheel", "left_wheels", "right_wheels")
+JOINT_ROLES: tuple[Role, ...] = (*WHEEL_ROLES, "joint")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,6 +49,8 @@ class TagRole:
     """Spellings of the tag; the first one that exists is read."""
     default: tuple[float | str, ...]
     """Value without the tag; empty if the tag is required or the value depends on others."""
+    obsolete: tuple[str, ...] = ()
+    """Spellings that Gazebo 11 ignores."""
     wheels: tuple[tuple[str, ...], ...] = ()
     """For a size: the tags of the measured wheels' joints. A distance has two groups of them."""
 

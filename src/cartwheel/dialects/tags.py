@@ -11,7 +11,7 @@ from typing import Any, TypeVar, get_args, get_origin
 from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.description.numbers import LARGEST
-from cartwheel.dialects.tag_roles import Role, TagRole
+from cartwheel.dialects.tag_roles import JOINT_ROLES, Role, TagRole
 from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
 
 C = TypeVar("C")
@@ -36,6 +36,7 @@ def tag(
     nested: bool = False,
     role: Role = "",
     wheels: tuple[str, ...] = (),
+    obsolete: tuple[str, ...] = (),
     doc: str,
 ) -> Any:
     """Declares a dataclass field that is read from a tag.
@@ -48,9 +49,10 @@ def tag(
         most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
         optional: Whether the plugin works without the joint that the default names.
         nested: Whether the tag contains other tags, which the plugin reads itself.
-        role: Meaning of the tag, for the rules of ``cartwheel check``.
+        role: Meaning of the tag, for the rules of ``cartwheel check``. A value in Hz is a rate.
         wheels: For a role that is a size: the fields with the joints of the measured wheels, two of
             them for a distance. Defaults to the fields whose roles are wheels.
+        obsolete: Spellings that Gazebo 11 ignores.
         doc: Description for the plugin reference, one or two sentences. A last sentence
             ``Default: ...`` describes a default that depends on something else.
     """
@@ -60,8 +62,9 @@ def tag(
         "most": most,
         "optional": optional,
         "nested": nested,
-        "role": role,
+        "role": role or ("rate" if unit == "Hz" else ""),
         "wheels": wheels,
+        "obsolete": obsolete,
         "doc": doc,
     }
     if default is dataclasses.MISSING:
@@ -100,6 +103,7 @@ def roles_of(cls: type) -> tuple[TagRole, ...]:
             TagRole(
                 role=role,
                 tags=item.metadata["tags"],
+                obsolete=item.metadata["obsolete"],
                 default=default if isinstance(default, tuple) else (default,),
                 wheels=tuple(measured[: count.get(role, 0)]),
             )
@@ -116,10 +120,13 @@ def default_joints(cls: type, element: Element) -> list[tuple[tuple[str, ...], s
     joints = []
     for item in dataclasses.fields(cls):
         names: tuple[str, ...] = item.metadata["tags"]
-        defaults = item.default if isinstance(item.default, tuple) else (item.default,)
-        if item.metadata["optional"] or any(element.find(name) is not None for name in names):
+        if item.metadata["role"] not in JOINT_ROLES or item.metadata["optional"]:
             continue
-        joints += [(names, each) for each in defaults if str(each).endswith("_joint")]
+        if item.default in (dataclasses.MISSING, ""):
+            continue
+        if not any(element.find(name) is not None for name in names):
+            defaults = item.default if isinstance(item.default, tuple) else (item.default,)
+            joints += [(names, str(each)) for each in defaults]
     return joints
 
 

@@ -8,13 +8,11 @@ from pathlib import Path
 
 from cartwheel.checks.checking import Report, place
 from cartwheel.checks.checking import check as check_description
-from cartwheel.checks.knowledge import knowledge
 from cartwheel.checks.project import workspace
 from cartwheel.checks.project.baseline import Baseline
 from cartwheel.checks.project.selection import Selection
 from cartwheel.checks.project.settings import Settings, settings_for
 from cartwheel.checks.project.suppressions import Suppressions
-from cartwheel.checks.subject import PluginKnowledge
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 
@@ -84,12 +82,10 @@ def check(
     selection = Selection.of(select or project.select, (*project.ignore, *ignore))
     accepted_file = (baseline or project.baseline) if use_baseline else None
     accepted = Baseline.read(accepted_file) if accepted_file is not None else None
-    known = knowledge()
     folder = Path(path).is_dir() and not (Path(path) / "model.config").is_file()
     files = workspace.descriptions(Path(path)) if folder else [Path(path)]
     reports = tuple(
-        _report(file, arguments or {}, package_path, controllers, known, folder=folder)
-        for file in files
+        _report(file, arguments or {}, package_path, controllers, folder=folder) for file in files
     )
     return _result(str(path), reports, selection, accepted, strict=project.strict)
 
@@ -99,7 +95,6 @@ def _report(
     arguments: Mapping[str, str],
     package_path: Sequence[Path],
     controllers: Sequence[Path],
-    known: PluginKnowledge,
     *,
     folder: bool,
 ) -> Report:
@@ -108,7 +103,6 @@ def _report(
             file,
             arguments=arguments,
             package_path=package_path,
-            known=known,
             controller_files=controllers,
         )
     except DescriptionError as error:

@@ -22,8 +22,6 @@ _BUILT_IN = frozenset({
     "include", "arg", "property", "macro", "if", "unless", "insert_block", "call", "element",
     "attribute",
 })  # fmt: skip
-
-
 Walked = Sequence[tuple[Path, list[str]]]
 """Folders, and the names of their files."""
 

@@ -21,35 +21,46 @@ from cartwheel.errors import PluginError
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AckermannParameters:
     front_left: str = tag(
-        "front_left_joint", default="front_left_joint", doc="Joint of the front left wheel."
+        "front_left_joint",
+        default="front_left_joint",
+        role="joint",
+        doc="Joint of the front left wheel.",
     )
     front_right: str = tag(
-        "front_right_joint", default="front_right_joint", doc="Joint of the front right wheel."
+        "front_right_joint",
+        default="front_right_joint",
+        role="joint",
+        doc="Joint of the front right wheel.",
     )
     rear_left: str = tag(
         "rear_left_joint",
         default="rear_left_joint",
+        role="joint",
         doc="Joint of the driven rear left wheel.",
     )
     rear_right: str = tag(
         "rear_right_joint",
         default="rear_right_joint",
+        role="joint",
         doc="Joint of the driven rear right wheel.",
     )
     steer_left: str = tag(
         "left_steering_joint",
         default="left_steering_joint",
+        role="joint",
         doc="Joint that steers the front left wheel.",
     )
     steer_right: str = tag(
         "right_steering_joint",
         default="right_steering_joint",
+        role="joint",
         doc="Joint that steers the front right wheel.",
     )
     steering_wheel: str = tag(
         "steering_wheel_joint",
         default="steering_wheel_joint",
         optional=True,
+        role="joint",
         doc="Joint of the steering wheel, which turns in proportion to the steering angle. "
         "Ignored if the model has no joint with this name.",
     )
@@ -91,6 +102,7 @@ class AckermannParameters:
     base_frame: str = tag(
         "robot_base_frame",
         default="base_footprint",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

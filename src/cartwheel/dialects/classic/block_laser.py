@@ -15,12 +15,17 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BlockLaserParameters:
     topic: str = tag(
-        "topicName", "topic_name", default="points", doc="Topic of the PointCloud messages."
+        "topicName",
+        "topic_name",
+        default="points",
+        role="topic",
+        doc="Topic of the PointCloud messages.",
     )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     noise: float = tag(

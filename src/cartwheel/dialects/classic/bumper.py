@@ -17,12 +17,14 @@ class BumperParameters:
         "bumperTopicName",
         "bumper_topic_name",
         default="bumper_states",
+        role="topic",
         doc="Topic of the ContactsState messages.",
     )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="world",
+        role="frame",
         doc="Frame ID of the messages. The values are always in the world frame, as in Gazebo.",
     )
     update_rate: float = tag(

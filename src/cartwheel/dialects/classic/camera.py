@@ -30,10 +30,13 @@ class CameraParameters:
         "cameraName",
         "camera_name",
         default="",
+        role="namespace",
         doc="Namespace of the topics. Default: the sensor's name. If the plugin uses ROS 1 "
         "tags such as `imageTopicName`, the default is no namespace.",
     )
-    image_topic: str = tag("imageTopicName", default="image_raw", doc="Topic of the images.")
+    image_topic: str = tag(
+        "imageTopicName", default="image_raw", role="topic", doc="Topic of the images."
+    )
     info_topic: str = tag(
         "cameraInfoTopicName", default="camera_info", doc="Topic of the CameraInfo messages."
     )
@@ -41,6 +44,7 @@ class CameraParameters:
         "frameName",
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     update_rate: float = tag(

@@ -65,6 +65,7 @@ class DiffDriveParameters:
         default=_TORQUE,
         unit="N m",
         role="wheel_torque",
+        obsolete=("torque",),
         doc="Maximum torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
     )
     wheel_acceleration: float = tag(
@@ -78,7 +79,11 @@ class DiffDriveParameters:
         "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
     )
     odometry_topic: str = tag(
-        "odometryTopic", "odometry_topic", default="odom", doc="Topic of the odometry."
+        "odometryTopic",
+        "odometry_topic",
+        default="odom",
+        role="topic",
+        doc="Topic of the odometry.",
     )
     odometry_frame: str = tag(
         "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
@@ -87,6 +92,7 @@ class DiffDriveParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_footprint",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

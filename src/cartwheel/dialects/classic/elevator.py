@@ -13,8 +13,10 @@ from cartwheel.dialects.tags import shown, tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ElevatorParameters:
-    lift_joint: str = tag("lift_joint", doc="Prismatic joint that moves the car.")
-    door_joint: str = tag("door_joint", doc="Prismatic joint of the door. Position 0 is closed.")
+    lift_joint: str = tag("lift_joint", role="joint", doc="Prismatic joint that moves the car.")
+    door_joint: str = tag(
+        "door_joint", role="joint", doc="Prismatic joint of the door. Position 0 is closed."
+    )
     floor_height: float = tag("floor_height", default=3.0, unit="m", doc="Height of a floor.")
     door_wait_time: float = tag(
         "door_wait_time", default=5.0, unit="s", doc="Time for which the door stays open."

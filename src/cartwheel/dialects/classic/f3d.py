@@ -13,7 +13,7 @@ from cartwheel.dialects.tags import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class F3DParameters:
-    body: str = tag("bodyName", doc="Link on which the wrench is measured.")
+    body: str = tag("bodyName", role="link", doc="Link on which the wrench is measured.")
     topic: str = tag(
         "topicName",
         default="f3d",
@@ -22,6 +22,7 @@ class F3DParameters:
     frame: str = tag(
         "frameName",
         default="world",
+        role="frame",
         doc="Frame ID of the messages. The values are always in the world frame.",
     )
 

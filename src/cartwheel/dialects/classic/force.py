@@ -13,7 +13,11 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceParameters:
     body: str = tag(
-        "bodyName", "body_name", "link_name", doc="Link to which the wrench is applied."
+        "bodyName",
+        "body_name",
+        "link_name",
+        role="link",
+        doc="Link to which the wrench is applied.",
     )
     topic: str = tag(
         "topicName", "topic_name", default="gazebo_ros_force", doc="Topic of the Wrench messages."

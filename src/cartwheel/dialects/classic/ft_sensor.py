@@ -19,11 +19,13 @@ class FtSensorParameters:
         "jointName",
         "joint_name",
         default="",
+        role="joint",
         doc="Joint on which the wrench is measured. Default: the sensor's joint.",
     )
     body: str = tag(
         "body_name",
         default="",
+        role="link",
         doc="Link on which external forces are measured instead of a joint's wrench, as with "
         "`libgazebo_ros_f3d.so` (ROS 2).",
     )
@@ -33,6 +35,7 @@ class FtSensorParameters:
     frame: str = tag(
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the wrench with `<body_name>`. A joint's wrench is in the frame of "
         "its child link, as in Gazebo. Default: `world`.",
     )

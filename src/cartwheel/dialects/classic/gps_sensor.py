@@ -14,7 +14,10 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GpsSensorParameters:
     frame: str = tag(
-        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
+        "frame_name",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
 
 

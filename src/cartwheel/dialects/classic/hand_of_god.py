@@ -12,7 +12,9 @@ from cartwheel.dialects.tags import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HandOfGodParameters:
-    link: str = tag("linkName", "link_name", doc="Link to pull. Gravity does not act on it.")
+    link: str = tag(
+        "linkName", "link_name", role="link", doc="Link to pull. Gravity does not act on it."
+    )
     frame: str = tag(
         "frameId",
         "frame_id",

@@ -14,14 +14,18 @@ from cartwheel.geometry import Pose, quat_from_rpy
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImuParameters:
-    body: str = tag("bodyName", "body_name", "frame_name", doc="Link that carries the IMU.")
-    topic: str = tag("topicName", default="imu", doc="Topic of the Imu messages.")
+    body: str = tag(
+        "bodyName", "body_name", "frame_name", role="link", doc="Link that carries the IMU."
+    )
+    topic: str = tag("topicName", default="imu", role="topic", doc="Topic of the Imu messages.")
     service: str = tag(
         "serviceName",
         default="imu_service",
         doc="Service of type Empty. Calls succeed and have no effect.",
     )
-    frame: str = tag("frameName", default="", doc="Frame ID of the messages. Default: the link.")
+    frame: str = tag(
+        "frameName", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+    )
     noise: float = tag(
         "gaussianNoise",
         default=0.0,

@@ -15,12 +15,17 @@ from cartwheel.geometry import Pose, quat_from_rpy
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImuSensorParameters:
-    topic: str = tag("topicName", "topic", default="imu_data", doc="Topic of the Imu messages.")
-    body: str = tag("bodyName", default="", doc="No effect: the IMU is on the sensor's link.")
+    topic: str = tag(
+        "topicName", "topic", default="imu_data", role="topic", doc="Topic of the Imu messages."
+    )
+    body: str = tag(
+        "bodyName", default="", role="link", doc="No effect: the IMU is on the sensor's link."
+    )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     noise: float = tag(

@@ -38,6 +38,7 @@ class JointStatePublisherParameters:
         "jointName",
         "joint_name",
         default=(),
+        role="joint",
         doc="Joints to publish, separated by commas. Default: all movable joints.",
     )
     update_rate: float = tag(
@@ -94,6 +95,7 @@ class GzJointStatePublisherParameters:
     names: tuple[str, ...] = tag(
         "joint_name",
         default=(),
+        role="joint",
         doc="Joint to publish. Repeat the tag for each joint. Default: all movable joints.",
     )
     update_rate: float = tag(

@@ -15,11 +15,14 @@ from cartwheel.dialects.tags import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LaserParameters:
-    topic: str = tag("topicName", "topic_name", default="scan", doc="Topic of the scans.")
+    topic: str = tag(
+        "topicName", "topic_name", default="scan", role="topic", doc="Topic of the scans."
+    )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     update_rate: float = tag(

@@ -18,12 +18,15 @@ _WORLD = {"world", "/world", "map", "/map"}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class P3DParameters:
-    body: str = tag("bodyName", "body_name", doc="Link whose pose is published.")
-    topic: str = tag("topicName", "topic_name", default="odom", doc="Topic of the odometry.")
+    body: str = tag("bodyName", "body_name", role="link", doc="Link whose pose is published.")
+    topic: str = tag(
+        "topicName", "topic_name", default="odom", role="topic", doc="Topic of the odometry."
+    )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="world",
+        role="frame",
         doc="Reference frame of pose and twist: a link, `world` or `map`.",
     )
     xyz_offset: tuple[float, float, float] = tag(
@@ -121,12 +124,14 @@ class WorldOdometryParameters(P3DParameters):
         "bodyName",
         "body_name",
         default="",
+        role="link",
         doc="Link whose pose is published. Default: the link in `<frameName>`.",
     )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="world",
+        role="frame",
         doc="Frame ID of the messages. The pose is always relative to the world.",
     )
 

@@ -17,7 +17,11 @@ class PlanarMoveParameters:
         "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
     )
     odometry_topic: str = tag(
-        "odometryTopic", "odometry_topic", default="odom", doc="Topic of the odometry."
+        "odometryTopic",
+        "odometry_topic",
+        default="odom",
+        role="topic",
+        doc="Topic of the odometry.",
     )
     odometry_frame: str = tag(
         "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
@@ -26,6 +30,7 @@ class PlanarMoveParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_footprint",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

@@ -15,12 +15,17 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RangeParameters:
     topic: str = tag(
-        "topicName", "topic_name", default="/range", doc="Topic of the Range messages."
+        "topicName",
+        "topic_name",
+        default="/range",
+        role="topic",
+        doc="Topic of the Range messages.",
     )
     frame: str = tag(
         "frameName",
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view in the messages.")

@@ -40,6 +40,7 @@ class RaySensorParameters:
         "frame_name",
         "frameName",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     radiation: Literal["ultrasound", "infrared", "infared"] = tag(

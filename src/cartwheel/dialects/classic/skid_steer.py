@@ -54,16 +54,24 @@ class SkidSteerParameters:
         doc="Diameter of all wheels.",
     )
     torque: float = tag(
-        "torque", "wheelTorque", default=5.0, unit="N m", doc="Maximum torque of each motor."
+        "torque",
+        "wheelTorque",
+        default=5.0,
+        unit="N m",
+        role="wheel_torque",
+        doc="Maximum torque of each motor.",
     )
     command_topic: str = tag(
         "commandTopic", "topicName", default="cmd_vel", doc="Topic of the Twist commands."
     )
-    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
+    odometry_topic: str = tag(
+        "odometryTopic", default="odom", role="topic", doc="Topic of the odometry."
+    )
     odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

@@ -19,24 +19,28 @@ class TricycleParameters:
         "steeringJoint",
         "steering_joint",
         default="front_steering_joint",
+        role="joint",
         doc="Joint that steers the driven wheel.",
     )
     wheel_joint: str = tag(
         "actuatedWheelJoint",
         "actuated_wheel_joint",
         default="front_wheel_joint",
+        role="joint",
         doc="Joint of the driven wheel.",
     )
     left_joint: str = tag(
         "encoderWheelLeftJoint",
         "encoder_wheel_left_joint",
         default="left_wheel_joint",
+        role="joint",
         doc="Joint of the left passive wheel.",
     )
     right_joint: str = tag(
         "encoderWheelRightJoint",
         "encoder_wheel_right_joint",
         default="right_wheel_joint",
+        role="joint",
         doc="Joint of the right passive wheel.",
     )
     wheel_diameter: float = tag(
@@ -124,6 +128,7 @@ class TricycleParameters:
         "robotBaseFrame",
         "robot_base_frame",
         default="base_link",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

@@ -12,7 +12,7 @@ from cartwheel.dialects.tags import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VacuumGripperParameters:
-    link: str = tag("bodyName", "link_name", doc="Link of the suction cup.")
+    link: str = tag("bodyName", "link_name", role="link", doc="Link of the suction cup.")
     topic: str = tag(
         "topicName",
         default="grasping",

@@ -22,21 +22,25 @@ class GzAckermannParameters(GzLimitedParameters):
     left_joint: tuple[str, ...] = tag(
         "left_joint",
         default=("left_joint",),
+        role="joint",
         doc="Joint of a driven left wheel. Repeat the tag for each wheel.",
     )
     right_joint: tuple[str, ...] = tag(
         "right_joint",
         default=("right_joint",),
+        role="joint",
         doc="Joint of a driven right wheel. Repeat the tag for each wheel.",
     )
     steer_left: str = tag(
         "left_steering_joint",
         default="left_steering_joint",
+        role="joint",
         doc="Joint that steers the front left wheel.",
     )
     steer_right: str = tag(
         "right_steering_joint",
         default="right_steering_joint",
+        role="joint",
         doc="Joint that steers the front right wheel.",
     )
     wheel_separation: float = tag(

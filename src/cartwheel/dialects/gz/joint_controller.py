@@ -48,6 +48,7 @@ class _ServoParameters:
     )
     joints: tuple[str, ...] = tag(
         "joint_name",
+        role="joint",
         doc="Joint to control. Repeat the tag to move several joints to the same target.",
     )
 
@@ -204,7 +205,7 @@ class JointController(Plugin[JointVelocityParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ApplyJointForceParameters:
-    joint: str = tag("joint_name", doc="Joint on which the force acts.")
+    joint: str = tag("joint_name", role="joint", doc="Joint on which the force acts.")
 
 
 class ApplyJointForce(Plugin[ApplyJointForceParameters]):

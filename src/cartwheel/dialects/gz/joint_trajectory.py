@@ -45,6 +45,7 @@ class JointTrajectoryParameters:
     joints: tuple[str, ...] = tag(
         "joint_name",
         default=(),
+        role="joint",
         doc="Joint to control. Repeat the tag for each joint. Default: all single-axis joints.",
     )
     initial: tuple[float, ...] = tag(

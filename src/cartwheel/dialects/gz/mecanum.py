@@ -25,21 +25,25 @@ class MecanumParameters(GzCommonLimits):
     front_left: tuple[str, ...] = tag(
         "front_left_joint",
         default=("front_left_joint",),
+        role="joint",
         doc="Joint of the front left wheel. Repeat the tag for additional wheels.",
     )
     front_right: tuple[str, ...] = tag(
         "front_right_joint",
         default=("front_right_joint",),
+        role="joint",
         doc="Joint of the front right wheel. Repeat the tag for additional wheels.",
     )
     back_left: tuple[str, ...] = tag(
         "back_left_joint",
         default=("back_left_joint",),
+        role="joint",
         doc="Joint of the back left wheel. Repeat the tag for additional wheels.",
     )
     back_right: tuple[str, ...] = tag(
         "back_right_joint",
         default=("back_right_joint",),
+        role="joint",
         doc="Joint of the back right wheel. Repeat the tag for additional wheels.",
     )
     wheel_base: float = tag(

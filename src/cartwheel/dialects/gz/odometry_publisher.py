@@ -23,6 +23,7 @@ class OdometryPublisherParameters:
     base_frame: str = tag(
         "robot_base_frame",
         default="",
+        role="frame",
         doc="Child frame of the odometry. Default: `<model>/base_footprint`.",
     )
     rate: float = tag(

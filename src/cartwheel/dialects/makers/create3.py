@@ -97,7 +97,10 @@ class Create3Cliff(Plugin[Create3CliffParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3IntensityParameters:
     frame: str = tag(
-        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
+        "frame_name",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
 
 
@@ -136,7 +139,10 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3ImuParameters:
     frame: str = tag(
-        "frame_name", default="", doc="Frame ID of the messages. Default: the sensor's link."
+        "frame_name",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the sensor's link.",
     )
 
 
@@ -167,7 +173,7 @@ class Create3Imu(Plugin[Create3ImuParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3MouseParameters:
-    link: str = tag("link_name", doc="Link whose travel is measured.")
+    link: str = tag("link_name", role="link", doc="Link whose travel is measured.")
     rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Publish rate.")
 
 
@@ -189,7 +195,7 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3WheelDropParameters:
-    joint: str = tag("joint_name", doc="Suspension joint of the wheel.")
+    joint: str = tag("joint_name", role="joint", doc="Suspension joint of the wheel.")
     threshold: float = tag(
         "detection_threshold",
         default=0.7,

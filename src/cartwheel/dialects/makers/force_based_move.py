@@ -20,6 +20,7 @@ class ForceBasedMoveParameters:
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

@@ -13,7 +13,9 @@ from cartwheel.dialects.tags import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorBaroParameters:
-    body: str = tag("bodyName", default="", doc="Link of the barometer. Default: the root link.")
+    body: str = tag(
+        "bodyName", default="", role="link", doc="Link of the barometer. Default: the root link."
+    )
     topic: str = tag(
         "topicName",
         default="pressure_height",
@@ -24,7 +26,9 @@ class HectorBaroParameters:
         default="altimeter",
         doc="Topic of the Altimeter messages. Not published if empty.",
     )
-    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
+    frame: str = tag(
+        "frameId", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+    )
     update_rate: float = tag(
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )

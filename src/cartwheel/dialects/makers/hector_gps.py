@@ -21,14 +21,16 @@ _HOUR = (1 / 3600.0,) * 3
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorGpsParameters:
-    body: str = tag("bodyName", default="", doc="Link of the receiver. Default: the root link.")
+    body: str = tag(
+        "bodyName", default="", role="link", doc="Link of the receiver. Default: the root link."
+    )
     topic: str = tag("topicName", default="fix", doc="Topic of the NavSatFix messages.")
     velocity_topic: str = tag(
         "velocityTopicName",
         default="fix_velocity",
         doc="Topic of the velocity (Vector3Stamped). Its components are north, west and up.",
     )
-    frame: str = tag("frameId", default="/world", doc="Frame ID of the messages.")
+    frame: str = tag("frameId", default="/world", role="frame", doc="Frame ID of the messages.")
     update_rate: float = tag(
         "updateRate", default=4.0, unit="Hz", doc="Publish rate. 0: every step."
     )

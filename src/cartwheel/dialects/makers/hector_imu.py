@@ -19,7 +19,9 @@ _HOUR = 1 / 3600.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HectorImuParameters:
-    body: str = tag("bodyName", default="", doc="Link of the IMU. Default: the root link.")
+    body: str = tag(
+        "bodyName", default="", role="link", doc="Link of the IMU. Default: the root link."
+    )
     topic: str = tag("topicName", default="imu", doc="Topic of the Imu messages.")
     bias_topic: str | None = tag(
         "biasTopicName",
@@ -32,7 +34,9 @@ class HectorImuParameters:
         doc="Service (Empty) that removes the drift of the angular velocity. Default: "
         "`<topic>/calibrate`.",
     )
-    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
+    frame: str = tag(
+        "frameId", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+    )
     update_rate: float = tag(
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )

@@ -25,6 +25,7 @@ class HectorMagneticParameters:
     body: str = tag(
         "bodyName",
         default="",
+        role="link",
         doc="Link that carries the magnetometer. Default: the root link.",
     )
     topic: str = tag(
@@ -32,7 +33,9 @@ class HectorMagneticParameters:
         default="magnetic",
         doc="Topic of the Vector3Stamped or MagneticField messages.",
     )
-    frame: str = tag("frameId", default="", doc="Frame ID of the messages. Default: the link.")
+    frame: str = tag(
+        "frameId", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+    )
     update_rate: float = tag(
         "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
     )

@@ -19,6 +19,7 @@ class SonarParameters:
         "frameId",
         "frameName",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     noise: float | None = tag(

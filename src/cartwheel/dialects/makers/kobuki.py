@@ -41,7 +41,9 @@ class KobukiParameters:
     diameter: float = tag(
         "wheel_diameter", unit="m", role="wheel_diameter", doc="Diameter of both wheels."
     )
-    torque: float = tag("torque", unit="N m", doc="Maximum torque of each motor.")
+    torque: float = tag(
+        "torque", unit="N m", role="wheel_torque", doc="Maximum torque of each motor."
+    )
     timeout: float = tag(
         "velocity_command_timeout",
         unit="s",

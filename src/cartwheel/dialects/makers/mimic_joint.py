@@ -16,8 +16,10 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MimicJointParameters:
-    joint: str = tag("joint", default="left_joint", doc="Joint to mimic.")
-    mimic_joint: str = tag("mimicJoint", default="right_joint", doc="Joint that mimics `<joint>`.")
+    joint: str = tag("joint", default="left_joint", role="joint", doc="Joint to mimic.")
+    mimic_joint: str = tag(
+        "mimicJoint", default="right_joint", role="joint", doc="Joint that mimics `<joint>`."
+    )
     multiplier: float = tag(
         "multiplier",
         default=1.0,
@@ -71,9 +73,12 @@ class MimicJoint(Plugin[MimicJointParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DifferentialParameters:
-    first: str = tag("jointA", default="left_joint", doc="First joint.")
+    first: str = tag("jointA", default="left_joint", role="joint", doc="First joint.")
     second: str = tag(
-        "jointB", default="right_joint", doc="Second joint, which turns by the same angle."
+        "jointB",
+        default="right_joint",
+        role="joint",
+        doc="Second joint, which turns by the same angle.",
     )
     force: float = tag(
         "forceConstant", default=0.0, unit="N m/rad", doc="No effect: the coupling is rigid."

@@ -44,13 +44,16 @@ class MultiWheelParameters:
         role="wheel_diameter",
         doc="Diameter of all wheels.",
     )
-    torque: float = tag("torque", default=5.0, unit="N m", doc="Maximum torque of each motor.")
+    torque: float = tag(
+        "torque", default=5.0, unit="N m", role="wheel_torque", doc="Maximum torque of each motor."
+    )
     command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robotBaseFrame",
         default="base_footprint",
+        role="frame",
         doc="Link whose pose the odometry reports. If no link has this name, the root link "
         "is used.",
     )

@@ -65,7 +65,7 @@ class RotorsController(Plugin[RotorsControllerParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsBaseParameters:
-    link: str = tag("linkName", doc="Link that carries the propellers.")
+    link: str = tag("linkName", role="link", doc="Link that carries the propellers.")
     topic: str = tag(
         "motorPubTopic", default="motor_speed", doc="Topic of the speeds of the propellers."
     )

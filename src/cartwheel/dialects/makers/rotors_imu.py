@@ -18,7 +18,9 @@ from cartwheel.geometry import Pose
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsImuParameters:
-    link: str = tag("linkName", doc="Link that carries the IMU, and frame ID of the messages.")
+    link: str = tag(
+        "linkName", role="link", doc="Link that carries the IMU, and frame ID of the messages."
+    )
     topic: str = tag("imuTopic", default="imu", doc="Topic of the Imu messages.")
     rate_noise: float = tag(
         "gyroscopeNoiseDensity",

@@ -18,7 +18,7 @@ _NONE = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsOdometryParameters:
-    link: str = tag("linkName", doc="Link whose pose is published.")
+    link: str = tag("linkName", role="link", doc="Link whose pose is published.")
     pose_topic: str = tag("poseTopic", default="pose", doc="Topic of the Pose messages.")
     with_topic: str = tag(
         "poseWithCovarianceTopic",

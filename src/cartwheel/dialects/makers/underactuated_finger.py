@@ -17,7 +17,9 @@ _LEAST_SCALE = 1 / FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class UnderactuatedFingerParameters:
-    actuated_joint: str = tag("actuatedJoint", doc="Joint of the motor that pulls the tendon.")
+    actuated_joint: str = tag(
+        "actuatedJoint", role="joint", doc="Joint of the motor that pulls the tendon."
+    )
     joints: tuple[str, ...] = tag(
         "virtualJoint",
         default=(),

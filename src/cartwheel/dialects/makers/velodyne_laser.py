@@ -41,6 +41,7 @@ class VelodyneParameters:
         "frameName",
         "frame_name",
         default="",
+        role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
     organize: bool = tag(

@@ -19,10 +19,16 @@ class WarthogSuspensionParameters:
     )
     damping: float = tag("suspension_b", unit="N m s/rad", doc="Damping of each joint.")
     left: str = tag(
-        "left_joint", default="left_diff_unit_joint", doc="Suspension joint on the left side."
+        "left_joint",
+        default="left_diff_unit_joint",
+        role="joint",
+        doc="Suspension joint on the left side.",
     )
     right: str = tag(
-        "right_joint", default="right_diff_unit_joint", doc="Suspension joint on the right side."
+        "right_joint",
+        default="right_diff_unit_joint",
+        role="joint",
+        doc="Suspension joint on the right side.",
     )
 
 

@@ -1,0 +1,92 @@
+"""Finds the controller files of a robot: files it refers to, or files a launch file may load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cartwheel.checks.controller_files import ControlFile
+from cartwheel.checks.robot import Robot
+from cartwheel.codes import devices as devices_codes
+from cartwheel.description.model import Element
+from cartwheel.description.packages import Packages
+from cartwheel.dialects.ros_control.suggestion import files_for
+from cartwheel.errors import DescriptionError, Diagnostic
+
+
+def controller_files_of(
+    robots: Sequence[Robot],
+    packages: Packages,
+    given: Sequence[Path],
+) -> list[tuple[Robot, ControlFile]]:
+    """The controller files of each robot.
+
+    Args:
+        robots: Robots in the description.
+        packages: Resolves package URIs.
+        given: Files from the user; no other files are searched.
+    """
+    found = []
+    for robot in robots:
+        found += [(robot, ControlFile(path=_plain(path), named=True)) for path in given]
+        for element in named_files(robot):
+            path = resolved(packages, element)
+            if isinstance(path, Path):
+                found.append((robot, ControlFile(path=path, named=True, element=element)))
+        if not given and is_of_ros1(robot):
+            file = Path(robot.description.origin.file)
+            joints = [joint.name for joint in robot.joints.values() if joint.type != "fixed"]
+            found += [
+                (robot, ControlFile(path=path, named=False))
+                for path in files_for(file, joints)
+                if _belongs(path, file)
+            ]
+    return found
+
+
+def named_files(robot: Robot) -> Iterator[Element]:
+    """Tags that refer to a controller file."""
+    for tag, _ in robot.plugins():
+        if "ros2_control" in tag.filename:
+            for element in tag.element.find_all("parameters"):
+                if element.text.strip():
+                    yield element
+
+
+def resolved(packages: Packages, element: Element) -> Path | Diagnostic:
+    """The file that a tag refers to, or a diagnostic if it cannot be found."""
+    try:
+        return packages.resolve(element.text.strip(), element.origin, what="file")
+    except DescriptionError as error:
+        return devices_codes.CONTROLLERS_FILE_UNREADABLE.diagnostic(
+            message=f"{error.message}, so no controller starts",
+            values={"file": element.text.strip()},
+            origin=element.origin,
+            hint=error.hint or "",
+            mark=element.text.strip(),
+        )
+
+
+def is_of_ros1(robot: Robot) -> bool:
+    """Whether ROS 1 controllers move the robot."""
+    return any(
+        "ros_control" in tag.filename and "ros2" not in tag.filename for tag, _ in robot.plugins()
+    )
+
+
+def _plain(path: Path) -> Path:
+    """The path in ``NAME=FILE``, which names the controller in a file without one."""
+    name, _, file = str(path).partition("=")
+    return Path(file) if name and file and not path.exists() else path
+
+
+def _belongs(path: Path, robot: Path) -> bool:
+    """Whether a file is in the robot's package, or in a package named after it."""
+    ours, theirs = (_package(each.absolute()) for each in (robot, path))
+    if ours is None or theirs is None:
+        return ours == theirs
+    return ours == theirs or ours.name.split("_")[0] == theirs.name.split("_")[0]
+
+
+def _package(file: Path) -> Path | None:
+    return next((each for each in file.parents if (each / "package.xml").is_file()), None)

@@ -1,0 +1,1 @@
+"""Rules about sensors, plugins and controllers (CW4xx)."""

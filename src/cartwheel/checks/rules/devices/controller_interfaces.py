@@ -1,0 +1,120 @@
+"""Interfaces that controllers need and joints offer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.checks.controller_claims import (
+    Claim,
+    claims,
+    has_standard_hardware,
+    offers,
+    severity_in,
+)
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import devices as devices_codes
+from cartwheel.description.model import Element
+from cartwheel.errors import Diagnostic
+
+
+@rule(devices_codes.CONTROLLER_INTERFACE_MISMATCH)
+def controller_interface(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        found = [
+            claim
+            for own, file in subject.control
+            if own is robot
+            for controller in file.controllers
+            for claim in claims(controller)
+            if claim.joint in robot.joints
+        ]
+        for ros2 in (True, False):
+            held = offers(robot, ros2=ros2)
+            ours = {claim.controller.file for claim in found if claim.joint in held}
+            asked = [
+                claim
+                for claim in found
+                if claim.controller.file.is_ros2 is ros2
+                # A nearby file without any movable joint is for a different variant.
+                and (claim.controller.file.named or claim.controller.file in ours)
+            ]
+            if asked and has_standard_hardware(robot, ros2=ros2):
+                yield from _unanswered(asked, held, ros2=ros2)
+
+
+def _unanswered(
+    asked: list[Claim], held: dict[str, list[tuple[str, Element]]], *, ros2: bool
+) -> Iterator[Diagnostic]:
+    """Joints that offer none of the interfaces requested by any of their controllers."""
+    joints = dict.fromkeys(claim.joint for claim in asked)
+    for joint in joints:
+        wanted = [claim for claim in asked if claim.joint == joint]
+        offered = [name for name, _ in held.get(joint, ()) if name]
+        if any(claim.interface in offered for claim in wanted):
+            continue
+        claim = wanted[0]
+        who = (
+            f'controller "{claim.controller.name}" commands the {claim.interface} of joint '
+            f'"{joint}"'
+        )
+        where = "<ros2_control>" if ros2 else "<transmission>"
+        if joint not in held:
+            yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
+                severity=severity_in(claim.controller.file),
+                message=f"{who}, which no {where} lists, so the controller does not start",
+                values={
+                    "controller": claim.controller.name,
+                    "joint": joint,
+                    "interface": claim.interface,
+                },
+                origin=claim.value.origin,
+                instead=_ros2_joint(claim) if ros2 else _transmission(claim),
+                mark=claim.value.text,
+                hint="Add this element to the robot" + ("'s <ros2_control>." if ros2 else "."),
+            )
+            continue
+        element = held[joint][0][1]
+        if claim.interface not in ("position", "velocity", "effort"):
+            continue
+        old = (
+            f"offers {', '.join(dict.fromkeys(offered))}" if offered else "has no command interface"
+        )
+        written = element.tag == "hardwareInterface"
+        text = f"<hardwareInterface>{_interface(claim)}</hardwareInterface>"
+        yield devices_codes.CONTROLLER_INTERFACE_MISMATCH.diagnostic(
+            severity=severity_in(claim.controller.file),
+            message=f"{who}, whose {where} {old}, so the controller does not start",
+            values={
+                "controller": claim.controller.name,
+                "joint": joint,
+                "interface": claim.interface,
+                "offered": tuple(offered),
+            },
+            origin=held[joint][-1][1].origin if ros2 else element.origin,
+            instead=f'<command_interface name="{claim.interface}"/>' if ros2 else text,
+            place="element" if written else "inside",
+            mark=element.text.strip() if written else joint,
+            hint=f"The controller is at {claim.controller.type.origin}.",
+        )
+
+
+def _transmission(claim: Claim) -> str:
+    return (
+        f'<transmission name="{claim.joint}_transmission">'
+        "<type>transmission_interface/SimpleTransmission</type>"
+        f'<joint name="{claim.joint}"><hardwareInterface>{_interface(claim)}</hardwareInterface>'
+        f'</joint><actuator name="{claim.joint}_motor">'
+        "<mechanicalReduction>1</mechanicalReduction></actuator></transmission>"
+    )
+
+
+def _interface(claim: Claim) -> str:
+    return f"hardware_interface/{claim.interface.capitalize()}JointInterface"
+
+
+def _ros2_joint(claim: Claim) -> str:
+    return (
+        f'<joint name="{claim.joint}"><command_interface name="{claim.interface}"/>'
+        '<state_interface name="position"/><state_interface name="velocity"/></joint>'
+    )

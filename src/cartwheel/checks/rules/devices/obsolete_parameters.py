@@ -1,0 +1,44 @@
+"""Parameters that Gazebo 11 ignores."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import devices as devices_codes
+from cartwheel.errors import Diagnostic
+
+
+@rule(devices_codes.PLUGIN_PARAMETER_OBSOLETE)
+def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for drive in robot.drives:
+            element = drive.tag.element
+            if "gazebo_ros_diff_drive" not in drive.tag.filename:
+                continue
+            for torque in plugin_tags.roles_with(drive.tag.filename, "wheel_torque"):
+                stated = {name: found for name in torque.tags if (found := element.find(name))}
+                if any(name not in torque.obsolete for name in stated):
+                    continue
+                for name, each in stated.items():
+                    yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
+                        message=f"Gazebo 11 ignores <{name}>, so the wheel torque is "
+                        f"{torque.default[0]:g} N m instead of {each.text.strip()} N m",
+                        values={"tag": name, "plugin": drive.tag.name},
+                        origin=each.origin,
+                        instead=nodes.written(torque.tags[0], {}, each.text.strip()),
+                        place="element",
+                    )
+            legacy = element.find("legacyMode")
+            if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
+                yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
+                    message="Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite "
+                    "direction",
+                    values={"tag": "legacyMode", "plugin": drive.tag.name},
+                    origin=legacy.origin,
+                    instead="<legacyMode>false</legacyMode>",
+                    place="element",
+                    hint="Swap the names of the two joints.",
+                )

@@ -1,0 +1,52 @@
+"""Files of plugins."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from cartwheel.checks import plugin_tags
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import devices as devices_codes
+from cartwheel.errors import Diagnostic, meant_one
+
+_CLASSIC = re.compile(r"(?:lib)?(gazebo_ros_\w+)(?:\.so)?")
+
+
+@rule(devices_codes.PLUGIN_UNKNOWN)
+def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for tag, _ in robot.plugins():
+            if (own := _plain_file(tag.filename)) != tag.filename:
+                yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
+                    severity="warning",
+                    message=f'Gazebo loads the file "{tag.filename}", but the plugin is in "{own}"',
+                    values={"plugin": tag.filename, "meant": own},
+                    origin=tag.origin,
+                    instead=f'filename="{own}"',
+                    place="attribute",
+                    mark=tag.filename,
+                )
+                continue
+            if plugin_tags.is_simulated(tag):
+                continue
+            # Suggest a tag only for misspelt names: other plugins share most of their tags.
+            near = meant_one(tag.filename, plugin_tags.filenames(), cutoff=0.92)
+            yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
+                severity="warning" if near else "info",
+                message=f'the plugin "{tag.filename}" does not exist'
+                if near
+                else f'Cartwheel does not simulate the plugin "{tag.filename}"',
+                values={"plugin": tag.filename, "meant": near},
+                origin=tag.origin,
+                instead=f'filename="{near}"' if near else "",
+                place="attribute" if near else "",
+                mark=tag.filename,
+            )
+
+
+def _plain_file(name: str) -> str:
+    """The file name of a Gazebo Classic ROS plugin without its path, as it must be written."""
+    match = _CLASSIC.fullmatch(name)
+    return name if match is None else f"lib{match[1]}.so"

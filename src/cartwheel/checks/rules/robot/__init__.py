@@ -1,0 +1,1 @@
+"""Rules about links, joints, masses and wheels (CW2xx)."""

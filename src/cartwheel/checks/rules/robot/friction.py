@@ -1,0 +1,89 @@
+"""Friction of wheels and casters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.checks import nodes
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links
+from cartwheel.codes import robot as robot_codes
+from cartwheel.description.model import Link
+from cartwheel.description.node import Node
+from cartwheel.errors import Diagnostic
+
+SLIPPERY = 0.01
+
+
+@rule(robot_codes.WHEEL_FRICTIONLESS)
+def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for joint in wheel_joints(robot):
+            link = robot.links[joint.child]
+            for collision in link.collisions[:1]:
+                mu = [m for m in (collision.surface.mu1, collision.surface.mu2) if m is not None]
+                if not mu or max(mu) >= SLIPPERY:
+                    continue
+                node = _surface_node(robot, link.name, "mu1")
+                yield robot_codes.WHEEL_FRICTIONLESS.diagnostic(
+                    message=f'the friction coefficient of the driven wheel "{link.name}" is '
+                    f"{max(mu):g}, so the wheel slips",
+                    values={"link": link.name, "friction": max(mu)},
+                    origin=node.origin if node is not None else collision.origin,
+                    instead="<mu1>1.0</mu1>" if node is not None else "",
+                    place="element" if node is not None else "",
+                    hint="Use the same value for <mu2>.",
+                )
+
+
+@rule(robot_codes.CASTER_FRICTION)
+def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        wheels = {name for joint in wheel_joints(robot) for name in wheel_links(robot, joint)}
+        if not wheels or not subject.is_urdf:
+            continue
+        for link in robot.description.links:
+            holder = robot.inbound.get(link.name)
+            if "caster" not in link.name.lower() or holder is None or holder.type != "fixed":
+                continue
+            if not _touches_ground(robot, link, wheels):
+                continue
+            collision = link.collisions[0]
+            mu = collision.surface.mu1
+            if (mu is not None and mu <= 0.3) or _names_nothing(subject):
+                continue
+            text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
+            yield robot_codes.CASTER_FRICTION.diagnostic(
+                message=f'the caster "{link.name}" cannot roll, and its friction coefficient is '
+                f"{'1, the default' if mu is None else f'{mu:g}'}",
+                values={"link": link.name, "friction": mu},
+                origin=collision.origin,
+                instead=text,
+                hint="Add these tags to the robot, or change the existing values.",
+            )
+
+
+def _names_nothing(subject: Subject) -> bool:
+    """Whether a <gazebo> with friction has no reference, so that its link is unknown."""
+    known = {nodes.name_of(node) for node in subject.root.children if node.tag in ("link", "joint")}
+    return any(
+        nodes.child(node, "mu1") is not None and nodes.text_of(node, "reference") not in known
+        for node in nodes.children(subject.root, "gazebo")
+        if nodes.text_of(node, "reference")
+    )
+
+
+def _surface_node(robot: Robot, link: str, tag: str) -> Node | None:
+    found = None
+    for node in nodes.children(robot.root, "gazebo"):
+        if nodes.text_of(node, "reference") == link:
+            found = nodes.child(node, tag) or found
+    return found
+
+
+def _touches_ground(robot: Robot, link: Link, wheels: set[str]) -> bool:
+    height = lowest(robot, link.name)
+    bottoms = [h for name in wheels if (h := lowest(robot, name)) is not None]
+    return height is not None and bool(bottoms) and abs(height - min(bottoms)) < 0.006

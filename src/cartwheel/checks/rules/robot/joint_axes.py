@@ -1,0 +1,57 @@
+"""Axes of joints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from cartwheel.checks import nodes
+from cartwheel.checks.kinematic_tree import joints_with_types
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import robot as robot_codes
+from cartwheel.description.node import Node
+from cartwheel.errors import Diagnostic
+
+
+@rule(robot_codes.AXIS_ZERO)
+def axis_zero(subject: Subject) -> Iterator[Diagnostic]:
+    wheels = {name for robot in subject.robots for drive in robot.drives for name in drive.joints}
+    for joint, axis, xyz in _axes(subject):
+        if math.hypot(*xyz) < 1e-6:
+            yield robot_codes.AXIS_ZERO.diagnostic(
+                message=f'the axis of joint "{nodes.name_of(joint)}" has length 0',
+                values={"joint": nodes.name_of(joint)},
+                origin=axis.origin,
+                instead='xyz="0 1 0"' if nodes.name_of(joint) in wheels else 'xyz="0 0 1"',
+                place="attribute",
+                mark="xyz",
+            )
+
+
+@rule(robot_codes.AXIS_NOT_NORMALIZED)
+def axis_not_unit(subject: Subject) -> Iterator[Diagnostic]:
+    for joint, axis, xyz in _axes(subject):
+        length = math.hypot(*xyz)
+        # Three digits, as in 0.577, are close enough to a unit vector.
+        if length >= 1e-6 and abs(length - 1) > 0.01:
+            unit = " ".join(nodes.short(value / length) for value in xyz)
+            yield robot_codes.AXIS_NOT_NORMALIZED.diagnostic(
+                message=f'the axis of joint "{nodes.name_of(joint)}" has length {length:.3g} '
+                "instead of 1",
+                values={"joint": nodes.name_of(joint), "length": length},
+                origin=axis.origin,
+                instead=f'xyz="{unit}"',
+                place="attribute",
+                mark="xyz",
+            )
+
+
+def _axes(subject: Subject) -> Iterator[tuple[Node, Node, tuple[float, ...]]]:
+    for joint, kind in joints_with_types(subject):
+        axis = nodes.child(joint, "axis")
+        if axis is None or kind in ("fixed", "floating"):
+            continue
+        xyz = nodes.numbers(axis.attributes.get("xyz"), 3)
+        if xyz is not None:
+            yield joint, axis, xyz

@@ -1,0 +1,94 @@
+"""Effort and velocity limits, and torques, of driven joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks.kinematic_tree import joints_with_types
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import robot as robot_codes
+from cartwheel.errors import Diagnostic
+
+_GRAVITY = 9.8
+"""m/s²."""
+_LEAST_EFFORT = 10.0
+
+
+@rule(robot_codes.EFFORT_ZERO)
+def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
+    yield from _torque_zero(subject)
+    movers = {name: robot for robot in subject.robots for name in robot.driven}
+    for joint, kind in joints_with_types(subject):
+        limit = nodes.child(joint, "limit")
+        name = nodes.name_of(joint)
+        if limit is None or kind in ("fixed", "floating") or name not in movers:
+            continue
+        slides = kind == "prismatic"
+        if nodes.number(limit.attributes.get("effort")) == 0.0:
+            usual = _holding(movers[name], name, slides=slides)
+            yield robot_codes.EFFORT_ZERO.diagnostic(
+                message=f'the effort limit of the driven joint "{name}" is 0, so Gazebo cannot '
+                "move the joint",
+                values={"joint": name, "attribute": "effort"},
+                origin=limit.origin,
+                instead=f'effort="{nodes.short(usual)}"',
+                place="attribute",
+                mark="effort",
+                hint="Cartwheel treats 0 as no limit. The suggested limit is twice the effort "
+                "required to hold the load. Replace it with the motor's actual limit.",
+            )
+        if nodes.number(limit.attributes.get("velocity")) == 0.0:
+            yield robot_codes.EFFORT_ZERO.diagnostic(
+                message=f'the velocity limit of the driven joint "{name}" is 0, so Gazebo cannot '
+                "move the joint",
+                values={"joint": name, "attribute": "velocity"},
+                origin=limit.origin,
+                instead=f'velocity="{"1" if slides else "10"}"',
+                place="attribute",
+                mark="velocity",
+                hint="Set the velocity limit to the motor's maximum speed.",
+            )
+
+
+def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        for drive in robot.drives:
+            torques = plugin_tags.roles_with(drive.tag.filename, "wheel_torque")
+            read = {name for each in torques for name in each.tags if name not in each.obsolete}
+            for element in drive.tag.element.children:
+                if element.tag in read and nodes.number(element.text) == 0.0:
+                    yield robot_codes.EFFORT_ZERO.diagnostic(
+                        message=f"<{element.tag}> is 0 N m, so the wheels do not move",
+                        values={"tag": element.tag, "plugin": drive.tag.name},
+                        origin=element.origin,
+                        instead=nodes.written(element.tag, {}, "5"),
+                        place="element",
+                        mark=element.text.strip(),
+                        hint=f"Set <{element.tag}> to the motors' maximum torque.",
+                    )
+
+
+def _holding(robot: Robot, name: str, *, slides: bool) -> float:
+    """Twice the effort to hold all that a joint carries, fully extended, N or N m; at least 10."""
+    joint = robot.joints.get(name)
+    if joint is None or joint.child not in robot.links:
+        return _LEAST_EFFORT
+    here = np.array(robot.links[joint.child].pose.position)
+    load = 0.0
+    carried, waiting = set[str](), [joint.child]
+    while waiting:
+        link = robot.links.get(waiting.pop())
+        if link is None or link.name in carried:
+            continue
+        carried.add(link.name)
+        waiting += [one.child for one in robot.description.joints if one.parent == link.name]
+        if link.inertial is not None:
+            centre = (link.pose @ link.inertial.pose).position
+            arm = 1.0 if slides else float(np.linalg.norm(np.array(centre) - here))
+            load += link.inertial.mass * arm
+    return max(_LEAST_EFFORT, float(f"{2 * _GRAVITY * load:.1g}"))

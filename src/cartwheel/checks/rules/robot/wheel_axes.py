@@ -1,0 +1,71 @@
+"""Directions of the axes of driven wheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cartwheel.checks import nodes
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.checks.wheels import CAMBER, axis_senses, wheel_pairs, wheel_place
+from cartwheel.codes import robot as robot_codes
+from cartwheel.description.model import Joint
+from cartwheel.description.solids import Floats
+from cartwheel.errors import Diagnostic
+from cartwheel.geometry import Pose, matrix_from_quat
+
+
+@rule(robot_codes.WHEEL_AXIS_MISALIGNED)
+def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
+    for robot, _, left, right in wheel_pairs(subject):
+        poses = [wheel_place(robot, joint) for joint in (left, right)]
+        senses = axis_senses(robot, left, right)
+        if not senses or (poses[0].y < poses[1].y and all(each < -CAMBER for each in senses)):
+            continue
+        across = np.array(poses[0].position) - np.array(poses[1].position)
+        wide = float(np.linalg.norm(across))
+        for joint, pose, sense in zip((left, right), poses, senses, strict=True):
+            if sense > -CAMBER:
+                axis = nodes.child(robot.joint_node(joint.name), "axis")
+                stated = nodes.numbers(nodes.text_of(axis, "xyz"), 3)
+                turns = joint.type != "fixed" and (stated is None or any(stated))
+                if sense < CAMBER and turns:
+                    yield _not_across(robot, joint, pose, across / wide)
+                continue
+            node = nodes.child(robot.joint_node(joint.name), "axis")
+            xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
+            both = all(each < -CAMBER for each in senses)
+            yield robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
+                message=f'the wheel of joint "{joint.name}" turns backwards because its axis '
+                "points to the right of the "
+                "robot" + ("" if both else " and the other wheel's axis to the left"),
+                values={"joint": joint.name, "attribute": "backwards"},
+                origin=node.origin if node is not None else joint.origin,
+                instead=f'xyz="{xyz}"' if node is not None else "",
+                place="attribute" if node is not None else "",
+                mark="xyz",
+            )
+
+
+def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagnostic:
+    """The diagnostic for a wheel whose axis is not parallel to the axle; the default axis is x."""
+    written = robot.joint_node(joint.name)
+    node = nodes.child(written, "axis")
+    left = across if across[1] >= 0 else -across
+    own = matrix_from_quat(pose.orientation).T @ left
+    xyz = " ".join(nodes.short(round(float(value), 3) + 0.0) for value in own)
+    stated = "" if node is not None or written is None else " (the default)"
+    text = f'xyz="{xyz}"'
+    return robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
+        message=f'the wheel of joint "{joint.name}" cannot roll forward because the axis '
+        f'"{" ".join(nodes.short(value) for value in joint.axis.xyz)}"{stated} is not '
+        "parallel to the axle",
+        values={"joint": joint.name, "axis": joint.axis.xyz, "attribute": "askew"},
+        origin=node.origin if node is not None else joint.origin,
+        instead="" if written is None else text if node is not None else f"<axis {text}/>",
+        place="" if written is None else "attribute" if node is not None else "inside",
+        mark="xyz" if node is not None else f'name="{joint.name}"',
+    )

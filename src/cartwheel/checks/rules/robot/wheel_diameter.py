@@ -1,0 +1,36 @@
+"""Stated radii and diameters of wheels, compared with their geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.checks.rule import rule
+from cartwheel.checks.stated_sizes import LEAST, differing, is_different, stated_sizes
+from cartwheel.checks.subject import Subject
+from cartwheel.checks.wheels import is_across, wheel_radius
+from cartwheel.codes import robot as robot_codes
+from cartwheel.errors import Diagnostic
+
+
+@rule(robot_codes.WHEEL_DIAMETER_MISMATCH)
+def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
+    for one in stated_sizes(subject):
+        if one.measure not in ("radius", "diameter"):
+            continue
+        wheel = one.robot.joints[one.first[0]]
+        if wheel.child not in one.robot.links or not one.robot.whole(wheel.child):
+            continue
+        radius = wheel_radius(one.robot, wheel)
+        if radius is None or not is_across(one.robot, wheel):
+            continue
+        real = radius if one.measure == "radius" else 2 * radius
+        if is_different(one.value, real, LEAST / 2):
+            slow = "slower" if one.value > real else "faster"
+            far = abs(real / one.value - 1) if one.value else 1.0
+            yield differing(
+                robot_codes.WHEEL_DIAMETER_MISMATCH,
+                one,
+                real,
+                f'the {one.measure} of the wheel "{wheel.child}" is {real:.4g} m, so the robot '
+                f"drives {far:.0%} {slow} than commanded",
+            )

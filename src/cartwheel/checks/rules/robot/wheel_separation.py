@@ -1,0 +1,72 @@
+"""Stated wheel separations, compared with the distance between the wheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.checks.rule import rule
+from cartwheel.checks.stated_sizes import (
+    LEAST,
+    Stated,
+    differing,
+    is_different,
+    mean_between,
+    stated_sizes,
+)
+from cartwheel.checks.subject import Subject
+from cartwheel.checks.wheels import wheel_place
+from cartwheel.codes import robot as robot_codes
+from cartwheel.errors import Diagnostic
+
+WIDEST_SKID = 2.5
+"""Maximum ratio of the stated wheel separation to the track of a skid-steered robot.
+
+Skid-steered robots need a larger value for correct odometry. This limit applies to robots that are
+not longer than wide; see `_widest`.
+"""
+
+
+@rule(robot_codes.WHEEL_SEPARATION_MISMATCH)
+def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
+    for one in stated_sizes(subject):
+        if one.measure not in ("apart", "reach"):
+            continue
+        apart, joints = (mean_between(one, 1, middles=middles) for middles in (True, False))
+        if one.measure == "reach":
+            apart, joints = ((each + mean_between(one, 0)) / 2 for each in (apart, joints))
+        if one.skids and min(apart, joints) <= one.value <= _widest(one, apart):
+            continue
+        # A wheel may be offset from its joint; either distance is accepted.
+        if is_different(one.value, apart, LEAST) and is_different(one.value, joints, LEAST):
+            more = "more" if one.value > apart else "less"
+            said = (
+                "the wheels are"
+                if one.measure == "apart"
+                else "half the sum of wheel base and track is"
+            )
+            yield differing(
+                robot_codes.WHEEL_SEPARATION_MISMATCH,
+                one,
+                apart,
+                f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}, so the robot turns "
+                f"{abs(one.value / apart - 1):.0%} {more} than commanded",
+            )
+
+
+def _widest(one: Stated, track: float) -> float:
+    """Largest plausible wheel separation for a skid-steered robot, m.
+
+    Consider four wheels of a robot with track t and wheelbase b that turns on the spot at 1 rad/s,
+    with rim speed u. Each wheel slides by t/2 - u lengthwise and b/2 sideways. The friction torque
+    vanishes where t/2 (t/2 - u) + b/2 b/2 = 0, so that 2 u = t (1 + (b/t)²). This is 2 t for a
+    square robot. The limit for longer robots grows by the same ratio beyond `WIDEST_SKID`.
+    """
+    along = [
+        wheel_place(one.robot, joint).position[0]
+        for name in one.first + one.second
+        if (joint := one.robot.joints[name]).child in one.robot.placed
+    ]
+    if not along or track <= 0:
+        return 0.0
+    base = max(along) - min(along)
+    return WIDEST_SKID * track * max(1.0, (1 + (base / track) ** 2) / 2)

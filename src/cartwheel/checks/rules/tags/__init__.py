@@ -1,0 +1,1 @@
+"""Rules about tags (CW3xx)."""

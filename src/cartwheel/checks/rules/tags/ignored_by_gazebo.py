@@ -1,0 +1,36 @@
+"""Tags that Cartwheel reads, but Gazebo ignores."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cartwheel.checks import nodes
+from cartwheel.checks.rule import rule
+from cartwheel.checks.subject import Subject
+from cartwheel.codes import tags as codes
+from cartwheel.errors import Diagnostic
+
+
+@rule(codes.GAZEBO_IGNORES)
+def gazebo_ignores(subject: Subject) -> Iterator[Diagnostic]:
+    if not subject.is_urdf:
+        return
+    for node in nodes.children(subject.root, "gazebo"):
+        on_link = bool(nodes.text_of(node, "reference"))
+        for child in node.children:
+            value = child.text or child.attributes.get("value", "")
+            if on_link and child.tag == "mu":
+                yield codes.GAZEBO_IGNORES.diagnostic(
+                    message="Gazebo ignores <mu> in this element, so the friction coefficient is 1",
+                    origin=child.origin,
+                    instead=f"<mu1>{value}</mu1><mu2>{value}</mu2>",
+                    place="element",
+                )
+            elif not on_link and child.tag == "selfCollide":
+                yield codes.GAZEBO_IGNORES.diagnostic(
+                    message="Gazebo supports <selfCollide> only for links; for the whole robot, "
+                    "use <self_collide>",
+                    origin=child.origin,
+                    instead=f"<self_collide>{value}</self_collide>",
+                    place="element",
+                )

@@ -1,0 +1,237 @@
+"""Wheel separations and sizes that plugins and controllers state, compared with the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from cartwheel.checks import controller_claims as claimed
+from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks.controller_files import Controller, Value
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.subject import Subject
+from cartwheel.checks.units import FARTHEST
+from cartwheel.checks.wheels import wheel_middle, wheel_place
+from cartwheel.description.model import PluginTag
+from cartwheel.dialects.tag_roles import TagRole
+from cartwheel.errors import Code, Diagnostic, Origin, Place
+
+TOLERANCE = 0.02
+"""Relative tolerance for tyre compression and rounded numbers."""
+LEAST = 0.001
+"""Minimum difference in a distance, m; half of it for a wheel."""
+
+
+def differing(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
+    stated = f"{one.label} is {one.value:g} m"
+    if not one.written:
+        stated = f"{one.label} is missing and defaults to {one.value:g} m"
+    return code.diagnostic(
+        message=f"{stated}, but {why}",
+        values={
+            "tag": one.label,
+            "joint": one.first[0],
+            "stated": one.value,
+            "measured": real,
+        },
+        origin=one.origin,
+        instead=one.write(nodes.short(round(real, 4))),
+        place=one.place,
+        mark=one.mark,
+    )
+
+
+def is_different(value: float, real: float, least: float) -> bool:
+    return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
+
+
+def mean_between(one: Stated, axis: int, *, middles: bool = False) -> float:
+    """Distance between the means of two sets of joints or wheels along a robot axis, m."""
+    first, second = (_mean(one.robot, names, axis, middles) for names in (one.first, one.second))
+    return 0.0 if first is None or second is None else abs(first - second)
+
+
+def _mean(robot: Robot, names: tuple[str, ...], axis: int, middles: bool) -> float | None:
+    places = [
+        (wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position)[axis]
+        for name in names
+        if (joint := robot.joints[name]).child in robot.placed
+    ]
+    return sum(places) / len(places) if places else None
+
+
+Measure = Literal["apart", "base", "reach", "radius", "diameter"]
+"""``apart`` is across the robot, ``base`` is along it, and ``reach`` is half their sum."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Stated:
+    """A stated size."""
+
+    robot: Robot
+    measure: Measure
+    label: str
+    """The parameter's name in the file."""
+    value: float
+    written: bool
+    """False for a plugin's default."""
+    first: tuple[str, ...]
+    """Joints of the left or front wheels, or of the measured wheels."""
+    second: tuple[str, ...] = ()
+    skids: bool = False
+    """Whether several wheels on a side slide during turns."""
+    origin: Origin
+    mark: str
+    write: Callable[[str], str]
+    """Formats a number as replacement text."""
+    place: Place
+
+
+_MEASURES: Mapping[str, Measure] = {
+    "wheel_separation": "apart",
+    "wheel_base": "base",
+    "wheel_radius": "radius",
+    "wheel_diameter": "diameter",
+}
+"""Measures by the role of a plugin's tag."""
+
+
+def stated_sizes(subject: Subject) -> Iterator[Stated]:
+    """All wheel sizes stated in a description."""
+    for robot in subject.robots:
+        for tag in robot.description.plugins:
+            for size in plugin_tags.roles(tag.filename):
+                if size.role in _MEASURES:
+                    yield from _of_plugin(robot, tag, size)
+    for robot, file in subject.control:
+        for controller in file.controllers:
+            yield from _of_controller(robot, controller)
+
+
+def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
+    measure = _MEASURES[size.role]
+    groups = [_joints(robot, tag, names) for names in size.wheels]
+    if not all(groups):
+        return
+    first, second = groups if len(groups) == 2 else (groups[0], ())
+    name = next((name for name in size.tags if tag.element.find(name) is not None), "")
+    written = list(tag.element.find_all(name)) if name else []
+    for index, element in enumerate(written):
+        value = nodes.number(element.text)
+        # Repeated tags apply to one wheel pair each.
+        pick = slice(index, index + 1) if len(written) > 1 else slice(None)
+        if value is None or not first[pick] or (second and not second[pick]):
+            continue
+        yield Stated(
+            robot=robot,
+            measure=measure,
+            label=f"<{name}>",
+            value=value,
+            written=True,
+            first=first[pick],
+            second=second[pick],
+            skids=len(first[pick]) > 1,
+            origin=element.origin,
+            mark=element.text.strip(),
+            write=lambda number, name=name: nodes.written(name, {}, number),  # type: ignore[misc]
+            place="element",
+        )
+    if not written and size.default:
+        name = size.tags[-1] if "gazebo_ros" in tag.filename and _is_new(tag) else size.tags[0]
+        yield Stated(
+            robot=robot,
+            measure=measure,
+            label=f"<{name}>",
+            value=float(size.default[0]),
+            written=False,
+            first=first,
+            second=second,
+            skids=len(first) > 1,
+            origin=tag.origin,
+            mark=tag.filename,
+            write=lambda number: nodes.written(name, {}, number),
+            place="inside",
+        )
+
+
+def _is_new(tag: PluginTag) -> bool:
+    """Whether the plugin uses ROS 2 tag names."""
+    return any("_" in child.tag for child in tag.element.children)
+
+
+def _joints(robot: Robot, tag: PluginTag, names: Sequence[str]) -> tuple[str, ...]:
+    found = [
+        word
+        for name in names
+        for element in tag.element.find_all(name)
+        for word in element.text.split()
+    ]
+    return tuple(name for name in found if name in robot.joints)
+
+
+def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
+    kind, ros2 = controller.kind, controller.file.is_ros2
+
+    def say(
+        measure: Measure,
+        names: Sequence[str],
+        first: Sequence[Value | None],
+        second: Sequence[Value | None] = (),
+    ) -> Iterator[Stated]:
+        value = controller.value(*names)
+        number = value.number if value is not None else None
+        sides = [tuple(_known(robot, side)) for side in (first, second)]
+        if value is None or number is None or not sides[0] or (second and not sides[1]):
+            return
+        yield Stated(
+            robot=robot,
+            measure=measure,
+            label=f'"{next(name for name in names if controller.has(name)).rpartition("/")[2]}"',
+            value=number,
+            written=True,
+            first=sides[0],
+            second=sides[1],
+            skids=len(sides[0]) > 1 and kind == claimed.DIFF_DRIVE,
+            origin=value.origin,
+            mark=value.text,
+            write=value.replaced,
+            place="line",
+        )
+
+    if kind == claimed.DIFF_DRIVE:
+        left, right = (claimed.wheels_of(controller, side) for side in ("left", "right"))
+        yield from say("apart", ["wheel_separation"], left, right)
+        yield from say("radius", ["wheel_radius"], left)
+    elif kind == claimed.MECANUM:
+        corners = claimed.ROS2_CORNERS if ros2 else claimed.CORNERS
+        wheels = [claimed.wheel_at(controller, corner) for corner in corners]
+        yield from say("base", ["wheel_separation_x"], wheels[:1], wheels[2:3])
+        yield from say("apart", ["wheel_separation_y"], wheels[:1], wheels[1:2])
+        reach = "kinematics/sum_of_robot_center_projection_on_X_Y_axis"
+        yield from say("reach", [reach], wheels[:1], wheels[3:])
+        yield from say("radius", ["kinematics/wheels_radius", "wheel_radius"], wheels[:1])
+    elif ros2 and kind in claimed.STEERED:
+        driven, steered = (
+            ("rear", "front") if claimed.front_steers(controller) else ("front", "rear")
+        )
+        axles = {driven: claimed.traction(controller), steered: claimed.steering(controller)}
+        yield from say("base", ["wheelbase"], axles[steered], axles[driven])
+        for axle, role in ((driven, "traction"), (steered, "steering")):
+            names = [f"{role}_track_width", "wheel_track", f"{axle}_wheel_track"]
+            if len(axles[axle]) == 2:
+                yield from say("apart", names, axles[axle][:1], axles[axle][1:])
+        radii = ("traction_wheels_radius", "wheels_radius", f"{driven}_wheels_radius")
+        yield from say("radius", radii, axles[driven])
+    elif not ros2 and kind in claimed.STEERED_BY_ONE:
+        wheel, steer = claimed.traction(controller), claimed.steering(controller)
+        yield from say("base", ["wheel_separation_h"], steer, wheel)
+        yield from say("radius", ["wheel_radius"], wheel)
+    elif kind == claimed.TRICYCLE:
+        yield from say("radius", ["wheel_radius"], claimed.traction(controller))
+
+
+def _known(robot: Robot, values: Sequence[Value | None]) -> Iterator[str]:
+    for value in values:
+        if value is not None and value.text.strip() in robot.joints:
+            yield value.text.strip()
