@@ -76,6 +76,17 @@ def tags_with(filename: str, *roles: Role) -> frozenset[str]:
     return frozenset(name for each in roles_with(filename, *roles) for name in each.tags)
 
 
+def links_in(filename: str) -> frozenset[str]:
+    """The tags of a plugin that name the link that it measures or moves."""
+    # IMUs read their link from <frame_name>, which is a frame in all other plugins.
+    return tags_with(filename, "link") - tags_with(filename, "frame")
+
+
+def joints_in(filename: str) -> frozenset[str]:
+    """The tags of a plugin that name joints other than those of driven wheels."""
+    return tags_with(filename, "joint") - tags_with(filename, *WHEEL_ROLES)
+
+
 @cache
 def roles(filename: str) -> tuple[TagRole, ...]:
     """The tags of a plugin that have a role; of an unknown plugin only those of its wheels."""

@@ -12,23 +12,10 @@ from cartwheel.checks.controller_files import ControlFile
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
 from cartwheel.description import xml
-from cartwheel.description.model import (
-    RobotDescription,
-    WorldDescription,
-)
+from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.node import Node
 from cartwheel.description.packages import Packages
 from cartwheel.errors import Diagnostic, Origin
-
-
-def is_known(name: str, robot: Robot, subject: Subject) -> bool:
-    """Whether a joint with this name exists, with or without its scope."""
-    if name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names:
-        return True
-    if subject.is_urdf:
-        return False
-    return subject.lacks_models or name.rpartition("::")[2] in subject.joints_written
-
 
 ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})
 """Codes for files, models and packages that do not exist locally."""
@@ -125,3 +112,12 @@ class Subject:
         if isinstance(self.read, WorldDescription) and self.read.physics.max_step_size:
             return self.read.physics.max_step_size
         return GAZEBO_STEP
+
+
+def is_known(name: str, robot: Robot, subject: Subject) -> bool:
+    """Whether a joint with this name exists, with or without its scope."""
+    if name in robot.joint_names or name.rpartition("::")[2] in robot.joint_names:
+        return True
+    if subject.is_urdf:
+        return False
+    return subject.lacks_models or name.rpartition("::")[2] in subject.joints_written

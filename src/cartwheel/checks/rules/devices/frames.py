@@ -19,7 +19,7 @@ _OUTER = frozenset({"world", "map", "odom", "earth", ""})
 @rule(devices_codes.BODY_UNKNOWN)
 def body_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, tag, _ in _plugins(subject):
-        links = plugin_tags.tags_with(tag.filename, "link")
+        links = plugin_tags.links_in(tag.filename)
         for element in tag.element.children:
             name = element.text.strip().lstrip("/")
             if element.tag in links and name and name not in _known(robot):

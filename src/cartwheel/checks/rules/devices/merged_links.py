@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from cartwheel.checks import plugin_tags
 from cartwheel.checks.robot import Robot
@@ -10,13 +10,12 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import Element
-from cartwheel.dialects.tag_roles import Role
 from cartwheel.errors import Diagnostic
 
 
 @rule(devices_codes.LUMPED_JOINT)
 def lumped_joint(subject: Subject) -> Iterator[Diagnostic]:
-    for robot, element in _named(subject, "joint"):
+    for robot, element in _named(subject, plugin_tags.joints_in):
         joint = robot.joints.get(element.text.strip())
         if joint is None or joint.type != "fixed" or joint.preserve_fixed or not subject.is_urdf:
             continue
@@ -38,7 +37,7 @@ def lumped_joint(subject: Subject) -> Iterator[Diagnostic]:
 def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
     if not subject.is_urdf:
         return
-    for robot, element in _named(subject, "link"):
+    for robot, element in _named(subject, plugin_tags.links_in):
         name = element.text.strip().lstrip("/")
         root = merged_root(robot, name) if name in robot.links else name
         holder = robot.inbound.get(name)
@@ -72,10 +71,12 @@ def lumped_link(subject: Subject) -> Iterator[Diagnostic]:
             )
 
 
-def _named(subject: Subject, role: Role) -> Iterator[tuple[Robot, Element]]:
+def _named(
+    subject: Subject, tags_in: Callable[[str], frozenset[str]]
+) -> Iterator[tuple[Robot, Element]]:
     for robot in subject.robots:
         for tag, _ in robot.plugins():
-            tags = plugin_tags.tags_with(tag.filename, role)
+            tags = tags_in(tag.filename)
             for element in tag.element.children:
                 if element.tag in tags and element.text.strip():
                     yield robot, element
