@@ -220,6 +220,7 @@ def severity_in(file: ControlFile, severity: Severity = "error") -> Severity:
 
 
 def used_controllers(subject: Subject) -> Iterator[Controller]:
+    """The controllers of all robots, except those in nearby files for other robots."""
     for robot, file in subject.control:
         for controller in file.controllers:
             held = claims(controller)

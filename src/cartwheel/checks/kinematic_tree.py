@@ -12,6 +12,7 @@ JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "plan
 
 
 def elements_of(subject: Subject, tag: str) -> list[Node]:
+    """The direct children of ``<robot>`` with a tag; none in an SDF file."""
     return nodes.children(subject.root, tag) if subject.is_urdf else []
 
 
@@ -97,6 +98,7 @@ def mimic_chain(joints: dict[str, Node], leader: str) -> list[str]:
 
 
 def joints_with_types(subject: Subject) -> Iterator[tuple[Node, str]]:
+    """The joints of a URDF, each with its type."""
     if subject.is_urdf:
         for node in nodes.children(subject.root, "joint"):
             yield node, nodes.text_of(node, "type")

@@ -39,6 +39,7 @@ def moments_of(inertial: Node) -> Vec3 | None:
 
 
 def inertials(subject: Subject) -> Iterator[tuple[Node, Node]]:
+    """The links of a URDF that have an ``<inertial>``, each with it."""
     if not subject.is_urdf:
         return
     for link in nodes.children(subject.root, "link"):
@@ -84,6 +85,7 @@ def shape_inertia(robot: Robot, link: Link) -> Inertial | None:
 
 
 def inertia_of_geometry(subject: Subject, link: str) -> Inertial | None:
+    """Inertia of a solid with the shape of a link, by the link's name; None without a shape."""
     for robot in subject.robots:
         if link in robot.links:
             return shape_inertia(robot, robot.links[link])

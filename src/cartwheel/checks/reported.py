@@ -58,6 +58,7 @@ def _relevant(subject: Subject) -> Iterator[Diagnostic]:
 
 
 def diagnostics_of(subject: Subject) -> tuple[Diagnostic, ...]:
+    """What the readers report about a description."""
     return () if subject.read is None else subject.read.diagnostics
 
 

@@ -23,44 +23,6 @@ LEAST = 0.001
 """Minimum difference in a distance, m; half of it for a wheel."""
 
 
-def differing(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
-    stated = f"{one.label} is {one.value:g} m"
-    if not one.written:
-        stated = f"{one.label} is missing and defaults to {one.value:g} m"
-    return code.diagnostic(
-        message=f"{stated}, but {why}",
-        values={
-            "tag": one.label,
-            "joint": one.first[0],
-            "stated": one.value,
-            "measured": real,
-        },
-        origin=one.origin,
-        instead=one.write(nodes.short(round(real, 4))),
-        place=one.place,
-        mark=one.mark,
-    )
-
-
-def is_different(value: float, real: float, least: float) -> bool:
-    return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
-
-
-def mean_between(one: Stated, axis: int, *, middles: bool = False) -> float:
-    """Distance between the means of two sets of joints or wheels along a robot axis, m."""
-    first, second = (_mean(one.robot, names, axis, middles) for names in (one.first, one.second))
-    return 0.0 if first is None or second is None else abs(first - second)
-
-
-def _mean(robot: Robot, names: tuple[str, ...], axis: int, middles: bool) -> float | None:
-    places = [
-        (wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position)[axis]
-        for name in names
-        if (joint := robot.joints[name]).child in robot.placed
-    ]
-    return sum(places) / len(places) if places else None
-
-
 Measure = Literal["apart", "base", "reach", "radius", "diameter"]
 """``apart`` is across the robot, ``base`` is along it, and ``reach`` is half their sum."""
 
@@ -235,3 +197,50 @@ def _known(robot: Robot, values: Sequence[Value | None]) -> Iterator[str]:
     for value in values:
         if value is not None and value.text.strip() in robot.joints:
             yield value.text.strip()
+
+
+def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
+    """The diagnostic for a stated size that differs from the real one.
+
+    Args:
+        code: Its code.
+        one: The stated size.
+        real: The size as measured in the description, m.
+        why: The real size and the consequence, as they follow "but" in the message.
+    """
+    stated = f"{one.label} is {one.value:g} m"
+    if not one.written:
+        stated = f"{one.label} is missing and defaults to {one.value:g} m"
+    return code.diagnostic(
+        message=f"{stated}, but {why}",
+        values={
+            "tag": one.label,
+            "joint": one.first[0],
+            "stated": one.value,
+            "measured": real,
+        },
+        origin=one.origin,
+        instead=one.write(nodes.short(round(real, 4))),
+        place=one.place,
+        mark=one.mark,
+    )
+
+
+def differs(value: float, real: float, least: float) -> bool:
+    """Whether two sizes differ by more than `TOLERANCE` and `least`, m."""
+    return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
+
+
+def mean_between(one: Stated, axis: int, *, middles: bool = False) -> float:
+    """Distance between the means of two sets of joints or wheels along a robot axis, m."""
+    first, second = (_mean(one.robot, names, axis, middles) for names in (one.first, one.second))
+    return 0.0 if first is None or second is None else abs(first - second)
+
+
+def _mean(robot: Robot, names: tuple[str, ...], axis: int, middles: bool) -> float | None:
+    places = [
+        (wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position)[axis]
+        for name in names
+        if (joint := robot.joints[name]).child in robot.placed
+    ]
+    return sum(places) / len(places) if places else None

@@ -122,6 +122,7 @@ def wheel_place(robot: Robot, joint: Joint) -> Pose:
 
 
 def drives_in(subject: Subject) -> Iterator[tuple[Robot, Drive]]:
+    """The drives of all robots, each with its robot."""
     for robot in subject.robots:
         for drive in robot.drives:
             yield robot, drive

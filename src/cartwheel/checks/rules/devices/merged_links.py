@@ -88,6 +88,7 @@ def _same_frame(robot: Robot, a: str, b: str) -> bool:
 
 
 def merged_root(robot: Robot, link: str) -> str:
+    """The link into which Gazebo merges a link; the link itself if it remains."""
     seen = {link}
     while link in robot.inbound:
         joint = robot.inbound[link]

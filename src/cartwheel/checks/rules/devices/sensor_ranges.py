@@ -93,6 +93,7 @@ def _counts(element: Element, tags: tuple[str, ...]) -> Iterator[Diagnostic]:
 
 
 def elements_in(element: Element) -> Iterator[Element]:
+    """All elements in a sensor, except those of its plugins."""
     for child in element.children:
         if child.tag != "plugin":
             yield child
@@ -105,6 +106,7 @@ def _value(element: Element, tag: str) -> float | None:
 
 
 def sensors_of(subject: Subject) -> Iterator[tuple[Robot, Sensor]]:
+    """All sensors, each with its robot."""
     for robot in subject.robots:
         for _, sensor in robot.sensors():
             yield robot, sensor

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.checks.rule import rule
-from cartwheel.checks.stated_sizes import LEAST, differing, is_different, mean_between, stated_sizes
+from cartwheel.checks.stated_sizes import LEAST, differs, mean_between, size_mismatch, stated_sizes
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.errors import Diagnostic
@@ -16,9 +16,9 @@ def wheel_base(subject: Subject) -> Iterator[Diagnostic]:
     for one in stated_sizes(subject):
         if one.measure == "base":
             apart = mean_between(one, 0)
-            if is_different(one.value, apart, LEAST):
+            if differs(one.value, apart, LEAST):
                 more = "more" if one.value > apart else "less"
-                yield differing(
+                yield size_mismatch(
                     robot_codes.WHEEL_BASE_MISMATCH,
                     one,
                     apart,

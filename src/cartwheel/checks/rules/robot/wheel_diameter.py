@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cartwheel.checks.rule import rule
-from cartwheel.checks.stated_sizes import LEAST, differing, is_different, stated_sizes
+from cartwheel.checks.stated_sizes import LEAST, differs, size_mismatch, stated_sizes
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import is_across, wheel_radius
 from cartwheel.codes import robot as robot_codes
@@ -24,10 +24,10 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
         if radius is None or not is_across(one.robot, wheel):
             continue
         real = radius if one.measure == "radius" else 2 * radius
-        if is_different(one.value, real, LEAST / 2):
+        if differs(one.value, real, LEAST / 2):
             slow = "slower" if one.value > real else "faster"
             far = abs(real / one.value - 1) if one.value else 1.0
-            yield differing(
+            yield size_mismatch(
                 robot_codes.WHEEL_DIAMETER_MISMATCH,
                 one,
                 real,

@@ -8,9 +8,9 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.stated_sizes import (
     LEAST,
     Stated,
-    differing,
-    is_different,
+    differs,
     mean_between,
+    size_mismatch,
     stated_sizes,
 )
 from cartwheel.checks.subject import Subject
@@ -37,14 +37,14 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
         if one.skids and min(apart, joints) <= one.value <= _widest(one, apart):
             continue
         # A wheel may be offset from its joint; either distance is accepted.
-        if is_different(one.value, apart, LEAST) and is_different(one.value, joints, LEAST):
+        if differs(one.value, apart, LEAST) and differs(one.value, joints, LEAST):
             more = "more" if one.value > apart else "less"
             said = (
                 "the wheels are"
                 if one.measure == "apart"
                 else "half the sum of wheel base and track is"
             )
-            yield differing(
+            yield size_mismatch(
                 robot_codes.WHEEL_SEPARATION_MISMATCH,
                 one,
                 apart,
