@@ -103,7 +103,7 @@ def test_a_command_between_two_runs_fails_in_time(monkeypatch: pytest.MonkeyPatc
         world.spawn("rosbots.xacro")
         with raises(SIMULATION_SILENT) as caught:
             client.request("delete", model="rosbots")
-        assert "World.run" in (caught.value.hint or "")
+        assert caught.value.hint
         world.run(0.1)
         # The caller was told that it failed, so it must not happen later.
         assert "rosbots" in world.models
@@ -119,11 +119,25 @@ def test_messages_that_wait_are_limited(monkeypatch: pytest.MonkeyPatch) -> None
         for _ in range(2):
             for _ in range(3):
                 client.request("publish", topic=CMD, type=TWIST, message=message)
-            with raises(CONTROL_LIMIT, most=3) as caught:
+            with raises(CONTROL_LIMIT, most=3):
                 client.request("publish", topic=CMD, type=TWIST, message=message)
-            assert "World.run" in (caught.value.hint or "")
             world.run(0.1)
         assert len(arrived) == 6
+
+
+@pytest.mark.wording
+def test_clients_are_told_to_call_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(operations, "PATIENCE", 0.2)
+    monkeypatch.setattr(operations, "_MOST_WAITING", 1)
+    with cw.World("empty") as world, client_of(world) as client:
+        with raises(SIMULATION_SILENT) as caught:
+            client.request("delete", model="rosbots")
+        assert "World.run" in (caught.value.hint or "")
+        world.spawn("rosbots.xacro")
+        client.request("publish", topic=CMD, type=TWIST, message={})
+        with raises(CONTROL_LIMIT) as caught:
+            client.request("publish", topic=CMD, type=TWIST, message={})
+        assert "World.run" in (caught.value.hint or "")
 
 
 def test_a_client_can_pause_a_run(on_thread: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -432,6 +446,19 @@ def test_an_exception_in_the_block_completes_the_recording(tmp_path: Path) -> No
 
 
 def test_a_failed_recording_does_not_hide_the_exception(tmp_path: Path) -> None:
+    with (
+        pytest.raises(ValueError, match="mine") as caught,
+        cw.World("empty", record=tmp_path / "a.mcap"),
+    ):
+        (child,) = bridges()
+        os.kill(child, signal.SIGKILL)
+        wait_for(lambda: not bridges(), "its end")
+        raise ValueError("mine")
+    assert len(caught.value.__notes__) == 1
+
+
+@pytest.mark.wording
+def test_the_recording_that_failed_is_named(tmp_path: Path) -> None:
     with (
         pytest.raises(ValueError, match="mine") as caught,
         cw.World("empty", record=tmp_path / "a.mcap"),

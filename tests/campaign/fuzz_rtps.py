@@ -20,6 +20,7 @@ from cartwheel.messages.ros2_types import ros2_service, ros2_type
 from rtps_lite import participant as participants
 from rtps_lite import room, wire
 from rtps_lite.discovery import EndpointQos
+from rtps_lite.network import Network
 
 OURS, THEIRS = ("127.0.0.1", 20001), ("127.0.0.1", 20002)
 _TWIST, _ODOMETRY, _TF = (
@@ -76,6 +77,8 @@ class Net:
 
     def is_own(self, host: str) -> bool:
         return host.startswith("127.")
+
+    nearest = Network.nearest
 
     def cast(self, data: bytes) -> None:
         self.sent.append((data, THEIRS))
