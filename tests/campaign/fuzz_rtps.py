@@ -62,7 +62,7 @@ class Loop:
             self.timers.pop(0)()
 
 
-class Net:
+class Net(Network):
     """A network of two."""
 
     def __init__(self, address: tuple[str, int]) -> None:
