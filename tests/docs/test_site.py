@@ -65,7 +65,7 @@ def test_links_to_moved_pages_follow() -> None:
     assert link("../plugins.md", "docs/plugins/imu-sensor.md") == "index.md"
     assert link("../README.md", "docs/index.md") == "index.md"
     assert link("../../README.md", "docs/tutorial/README.md") == "../index.md"
-    assert link("../benchmarks/README.md#wires", "docs/ros2.md") == "benchmarks.md#wires"
+    assert link("../benchmarks/README.md#bridges", "docs/ros2.md") == "benchmarks.md#bridges"
     assert link("docs/images/browser.png", "README.md") == "images/browser.png"
     assert link("https://example.org/a.md", "README.md") == "https://example.org/a.md"
     with pytest.raises(make_site.SiteError, match=r"docs/ros2\.md: images/nothing\.png"):
