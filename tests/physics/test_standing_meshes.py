@@ -10,7 +10,7 @@ from cartwheel.codes.world import MODELS_OVERLAP, PHYSICS_SETTING_IGNORED
 from cartwheel.description.meshes.standing import standing_pieces
 from cartwheel.geometry import Pose
 
-SURFACE = "the surface of a mesh"
+SURFACE = "the triangle surface of a mesh"
 """What has no effect where a part of it has too many facets."""
 
 

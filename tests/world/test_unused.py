@@ -79,7 +79,7 @@ def test_a_velocity_limit_that_controllers_heed_is_none_without_effect() -> None
         assert len(found) == told, more
 
 
-AXIS = "the axis of a joint"
+AXIS = "a joint axis"
 RESISTANCE = "a joint's limits, damping, friction or spring"
 LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/><link name="c"/>
   <joint name="ab" type="revolute"><parent>a</parent><child>b</child><axis/></joint>

@@ -113,7 +113,7 @@ def check(
 ) -> None:
     """Find mistakes in robot descriptions, with suggested fixes.
 
-    Exit status: 0 without errors and warnings, 1 with errors or warnings, 2 if the file cannot be
+    Exit status: 0 if there are no errors or warnings, 1 if there are any, 2 if the file cannot be
     read or is not a robot description.
     """
     from cartwheel.cli.commands import check as work

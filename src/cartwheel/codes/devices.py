@@ -15,7 +15,7 @@ SENSOR_RANGE_INVALID = Code(
     "CW404", "sensor-range-invalid", "error", "a sensor has an empty range, no rays or no pixels"
 )
 IMAGE_FORMAT_UNKNOWN = Code(
-    "CW405", "image-format-unknown", "warning", "the image format of a camera does not exist"
+    "CW405", "image-format-unknown", "warning", "the image format of a camera is unknown"
 )
 CONTACT_COLLISION_UNKNOWN = Code(
     "CW406",

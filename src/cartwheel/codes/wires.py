@@ -165,7 +165,7 @@ PAGE_REFUSED = Code(
     "CW838", "page-refused", "warning", "a web page from another origin was rejected"
 )
 ORIGIN_INVALID = Code(
-    "CW839", "origin-invalid", "error", "the value of `--allow-origin` is not an origin"
+    "CW839", "origin-invalid", "error", "the value of `--allow-origin` is not a valid origin"
 )
 ADDRESS_UNAVAILABLE = Code(
     "CW840", "address-unavailable", "error", "a server cannot listen on its host or port"

@@ -83,7 +83,9 @@ def open_picture(source: Path | bytes) -> Iterator[Any]:
 
 def _content(path: Path) -> bytes:
     if path.stat().st_size > MOST_BYTES:
-        raise PictureError(path.name, "it is too large", f"The limit is {MOST_BYTES >> 20} MiB.")
+        raise PictureError(
+            path.name, "the file is too large", f"The limit is {MOST_BYTES >> 20} MiB."
+        )
     return read_regular(path, MOST_BYTES)
 
 

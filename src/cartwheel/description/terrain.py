@@ -69,7 +69,7 @@ def _grey(path: Path, _changed: int, most: int) -> NDArray[np.float64]:
             channel = image.getchannel(0) if len(image.getbands()) > 1 else image
         pixels = np.asarray(channel)
     if pixels.dtype.kind == "f" and not np.isfinite(pixels).all():
-        raise PictureError(path.name, "a height is not a finite number")
+        raise PictureError(path.name, "a pixel is not a finite number")
     rows = _samples(pixels.shape[0], most)
     columns = _samples(pixels.shape[1], most)
     grey = _interpolated(_interpolated(pixels, rows).T, columns).T

@@ -234,7 +234,7 @@ def _normal_origin(text: str) -> str:
     match = _ORIGIN.fullmatch(text.strip().lower())
     if match is None or bool(match["authority"]) == (match["scheme"] == "file"):
         raise ControlError(
-            f'"{text}" is not an origin for --allow-origin',
+            f'"{text}" is not a valid origin for --allow-origin',
             code=ORIGIN_INVALID,
             hint=(
                 "Expected SCHEME://HOST or SCHEME://HOST:PORT, such as https://robots.example.org."

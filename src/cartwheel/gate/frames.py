@@ -141,7 +141,7 @@ class Frames:
             return data
         kind, length = head[0] & 15, head[1] & 127
         if not head[1] & 128:
-            raise FrameError("a frame has no mask")
+            raise FrameError("a WebSocket frame is not masked")
         if length == 126:
             length = int.from_bytes(head[2:4])
         elif length == 127:
@@ -149,16 +149,18 @@ class Frames:
         self._is_control = kind >= _CONTROL
         if self._is_control:
             if length > _LARGEST_CONTROL:
-                raise FrameError(f"a control frame is larger than {_LARGEST_CONTROL} bytes")
+                raise FrameError(
+                    f"a WebSocket control frame is larger than {_LARGEST_CONTROL} bytes"
+                )
         elif self._is_open == bool(kind):
-            raise FrameError("a frame starts or continues a message out of sequence")
+            raise FrameError("a WebSocket frame starts or continues a message out of sequence")
         elif kind:
             self._is_open, self._is_text, self._size = True, kind == _TEXT, 0
         # Headers count as well, because a message may consist of any number of empty frames.
         self._size += length + len(head)
         most = _LARGEST_TEXT if self._is_text else _LARGEST
         if self._size > most:
-            raise FrameError(f"a message is larger than {most} bytes")
+            raise FrameError(f"a WebSocket message is larger than {most} bytes")
         self._left = length
         self._is_held = self._is_text and not self._is_control
         self._is_last = bool(head[0] & 128)

@@ -168,10 +168,10 @@ class _Parser:
             self._fail(f"{_shown(line)} has no valid field name")
         name = named[1]
         if len(name) > _LONGEST_NAME or name in _TAKEN:
-            self._fail(f"{_shown(name)} is not a valid name", {"name": name[:_LONGEST_NAME]})
+            self._fail(f"{_shown(name)} is not a valid field name", {"name": name[:_LONGEST_NAME]})
         rest = rest[named.end() :]
         if name in self._names:
-            self._fail(f'the name "{name}" is used twice', {"name": name})
+            self._fail(f'two fields or constants have the name "{name}"', {"name": name})
         self._names.add(name)
         if rest.startswith("="):
             if match["longest"] or match["array"] or base not in _PRIMITIVES:
@@ -241,7 +241,7 @@ class _Parser:
         else:
             full = base
         if not is_type_name(full) or "/srv/" in full:
-            self._fail(f'"{base}" is not a valid type', {"type": base})
+            self._fail(f'"{base}" is not a valid ROS type', {"type": base})
         return full
 
     def _with_default(self, made: DefinedField, text: str) -> DefinedField:

@@ -289,7 +289,7 @@ class TypeLibrary:
             allowed = False
         if not allowed:
             raise GraphError(
-                f'the file is a link that does not lead to a file of the package "{file.package}"',
+                f'the file is a symbolic link to a file outside the package "{file.package}"',
                 code=MESSAGE_DEFINITION_INVALID,
                 origin=origin,
                 values={"type": f"{file.package}/{kind}/{stem}", "name": str(file.path)},

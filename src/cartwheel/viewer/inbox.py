@@ -188,7 +188,7 @@ class Inbox:
             raise MalformedError(str(error)) from error
         if isinstance(message, Camera):
             if not any(message.wxyz):
-                raise MalformedError("a quaternion is zero")
+                raise MalformedError("the quaternion of the browser's camera is zero")
             # viser treats a browser as connected only from here on, and cleans up after it.
             self._known.add(client)
             return

@@ -40,8 +40,8 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         for collision in link.collisions:
             shape = collision.shape
             if description.static and isinstance(shape, Mesh) and standing_parts(shape).hulls:
-                why = "a part of it has too many facets and collides as its convex hull"
-                note("the surface of a mesh", collision.origin, why)
+                why = "a connected component has too many facets and collides as its convex hull"
+                note("the triangle surface of a mesh", collision.origin, why)
             if isinstance(shape, Mesh) and shape.convex_decomposition and not description.static:
                 why = "meshes that move collide as their convex hull"
                 note("the convex decomposition of a mesh", collision.origin, why)
@@ -60,7 +60,7 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
     for joint in _closing(description):
         if joint.type not in _HELD:
             why = f"a {joint.type} joint that closes a loop constrains only one point"
-            note("the axis of a joint", joint.origin, why)
+            note("a joint axis", joint.origin, why)
         elif joint.type != "fixed" and joint.resists:
             why = "not simulated for joints that close a loop"
             note("a joint's limits, damping, friction or spring", joint.origin, why)

@@ -259,7 +259,7 @@ def test_lines_are_told_and_skinned_meshes_shown(tmp_path):
     nodes = '<node><instance_controller url="#c"/></node>'
     (part,) = load(tmp_path, document(surface=surface, more=more, nodes=nodes))
     assert part.vertices[:, 2].tolist() == [7, 7, 7]
-    assert mesh_notes(Mesh(uri="", path=tmp_path / "t.dae")) == ("its lines are not shown",)
+    assert mesh_notes(Mesh(uri="", path=tmp_path / "t.dae")) == ("the COLLADA <lines> are ignored",)
 
 
 UNUSABLE = [
@@ -270,7 +270,7 @@ UNUSABLE = [
     (document(unit="0"), "unit"),
     (document(unit="x"), "could not convert"),
     (document(positions="0 0 0 1 0 0 0 nan 0"), "not finite"),
-    (document(positions="0 0 0 1 0 0"), "refers to entry 2"),
+    (document(positions="0 0 0 1 0 0"), "the index 2"),
     (document(nodes='<node><instance_geometry url="#none"/></node>'), '"#none"'),
     (document(nodes='<node id="a"><instance_node url="#a"/></node>'), "in a cycle"),
     (

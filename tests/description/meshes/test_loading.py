@@ -286,7 +286,7 @@ UNUSABLE = [
     ("a.stl", b"solid a\nfacet normal 0 0 0\nvertex 1 2 x\n" * 3, '"x" is not a number'),
     ("a.stl", binary_stl([[(0, 0, 0), (1, 0, 0), (0, float("nan"), 0)]]), "not finite"),
     ("a.obj", "v 0 0 0\nv 1 0\nf 1 2 3\n", '"v" statement'),
-    ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "refers to entry 2"),
+    ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "the index 2"),
     ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n", "an invalid index"),
     ("a.obj", "nothing of use", "no triangles"),
     ("a.fbx", b"Kaydara", 'format "fbx" is not supported'),

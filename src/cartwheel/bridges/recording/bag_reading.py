@@ -42,7 +42,7 @@ class BagRecording(BlockRecording):
         try:
             return self._load(block)
         except (KeyError, struct.error) as error:
-            raise ValueError(f"a record is incomplete: {error}") from error
+            raise ValueError(f"a record of the bag file is incomplete: {error}") from error
 
     def _load(self, block: Block) -> list[Recorded]:
         with self.path.open("rb") as file:
@@ -177,7 +177,7 @@ def fields(data: bytes) -> Fields:
     while source:
         name, mark, value = source.take(source.number(4)).partition(b"=")
         if not mark:
-            raise ValueError('a header field contains no "="')
+            raise ValueError('a header field of a bag record contains no "="')
         found[name.decode(errors="replace")] = value
     return found
 

@@ -57,7 +57,7 @@ class Db3Recording:
             )
             for time_ns, own, data in rows:
                 if type(time_ns) is not int or type(data) is not bytes:
-                    raise ValueError("a message has no timestamp or no data")
+                    raise ValueError("a row of the messages table has no timestamp or no data")
                 yield Recorded(time_ns, self._numbers[own], self._unpack(data))
         except (sqlite3.Error, ValueError, OverflowError) as error:
             raise RecordingError(
@@ -100,7 +100,9 @@ class Db3Recording:
         for own, name, kind, encoding, profile in base.execute(query):
             schema, text = texts.get(kind, ("", ""))
             if not all(isinstance(text, str) for text in (name, kind, encoding, schema, text)):
-                raise ValueError("a topic lacks a name, type or encoding")
+                raise ValueError(
+                    "a row of the topics table has no name, type or serialization format"
+                )
             self._numbers[own] = len(self.topics)
             self.topics.append(
                 RecordedTopic(
@@ -116,7 +118,7 @@ class Db3Recording:
         for own, count, first, last in base.execute(f"{query} GROUP BY topic_id"):
             if own in self._numbers:
                 if not (isinstance(first, int) and isinstance(last, int)):
-                    raise ValueError("a message has no timestamp")
+                    raise ValueError("a row of the messages table has no timestamp")
                 topic = self.topics[self._numbers[own]]
                 topic.count, topic.first_ns, topic.last_ns = count, first, last
         # Since version 4, the metadata is written into the file at the end. Before, it was a

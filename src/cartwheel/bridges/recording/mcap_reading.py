@@ -70,7 +70,7 @@ class McapRecording(BlockRecording):
             data = records.take(length)
             if op == Op.MESSAGE:
                 if length < MESSAGE.size:
-                    raise ValueError("a message is shorter than its header")
+                    raise ValueError("an MCAP message record is shorter than its header")
                 channel, _, time_ns, _ = MESSAGE.unpack_from(data)
                 if channel not in self.numbers:
                     raise ValueError(f"a message refers to the unknown channel {channel}")

@@ -37,19 +37,19 @@ def decode_header(body: bytes | memoryview) -> dict[str, str]:
     offset = 0
     while offset < len(data):
         if len(fields) >= FIELDS:
-            raise HeaderError(f"the header has more than {FIELDS} fields")
+            raise HeaderError(f"the TCPROS header has more than {FIELDS} fields")
         if offset + 4 > len(data):
-            raise HeaderError("a header field is truncated")
+            raise HeaderError("a field of the TCPROS header is truncated")
         (length,) = _LENGTH.unpack_from(data, offset)
         offset += 4
         if offset + length > len(data):
             raise HeaderError(
-                f"a header field has a length of {length} bytes, but only "
+                f"a field of the TCPROS header is {length} bytes long, but only "
                 f"{len(data) - offset} bytes remain"
             )
         name, sign, value = data[offset : offset + length].partition(b"=")
         if not sign:
-            raise HeaderError('a header field contains no "="')
+            raise HeaderError('a field of the TCPROS header contains no "="')
         fields[name.decode(errors="replace")] = value.decode(errors="replace")
         offset += length
     return fields

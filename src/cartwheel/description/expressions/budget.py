@@ -189,7 +189,9 @@ class Budget:
                     )
                 continue
             if isinstance(each, self.opaque):
-                raise ExpressionError("a namespace is not a value", values={"refused": "namespace"})
+                raise ExpressionError(
+                    "a xacro namespace cannot be used as a value", values={"refused": "namespace"}
+                )
             if isinstance(each, dict):
                 count += 2 * len(each)
             elif isinstance(each, list | tuple | set | frozenset):

@@ -88,7 +88,7 @@ class Evaluator:
             finally:
                 self._calls -= 1
         kind = type(called).__name__
-        raise ExpressionError(f"a {kind} cannot be called", values={"refused": kind})
+        raise ExpressionError(f"a value of type {kind} cannot be called", values={"refused": kind})
 
     def method(self, value: Any, name: str, args: list[Any], named: dict[str, Any]) -> Any:
         """Calls a method of a value, or a function of a namespace."""

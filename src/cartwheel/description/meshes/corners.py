@@ -48,7 +48,8 @@ def weld(
     for values, indices in tables:
         if indices.size and (indices.min() < 0 or indices.max() >= len(values)):
             raise ValueError(
-                f"a face refers to entry {int(indices.max())}, but only {len(values)} exist"
+                f"a face of the mesh contains the index {int(indices.max())}, but only "
+                f"{len(values)} entries exist"
             )
     key = points[1]
     for values, indices in tables[1:]:

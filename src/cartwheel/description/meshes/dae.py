@@ -39,7 +39,7 @@ def read_dae(path: Path, data: bytes, notes: list[str]) -> list[Submesh]:
         ValueError: What is wrong with the file.
     """
     if b"<!ENTITY" in data:
-        raise ValueError("the file declares entities, which are not allowed")
+        raise ValueError("the file declares XML entities, which are not allowed")
     try:
         root = _parsed(data)
     except ET.ParseError as error:
@@ -106,7 +106,7 @@ class _Scene:
     def _node(self, node: ET.Element, outer: Array, depth: int) -> Iterator[Submesh]:
         self.instances += 1
         if depth > MAX_DEPTH or self.instances > MAX_INSTANCES:
-            raise ValueError("the nodes refer to each other in a cycle")
+            raise ValueError("the COLLADA <node> elements refer to each other in a cycle")
         transform = outer @ self._transform(node)
         name = node.get("name") or node.get("id") or ""
         for child in node:
@@ -120,7 +120,9 @@ class _Scene:
             elif child.tag == "instance_controller":
                 skin = self._require(child.get("url", "")).find("skin")
                 if skin is None:
-                    self._note(f'the controller of node "{name}" is not shown')
+                    self._note(
+                        f'the COLLADA <controller> of node "{name}" has no <skin> and is ignored'
+                    )
                     continue
                 bind = skin.find("bind_shape_matrix")
                 pose = transform @ _matrix(bind) if bind is not None else transform
@@ -130,7 +132,7 @@ class _Scene:
     def _require(self, url: str) -> ET.Element:
         found = self.library.get(url)
         if found is None:
-            raise ValueError(f'the file refers to "{url}", which is not in the file')
+            raise ValueError(f'the file refers to "{url}", but contains no element with this ID')
         return found
 
     def _transform(self, node: ET.Element) -> Array:
@@ -147,7 +149,9 @@ class _Scene:
             elif step.tag == "rotate":
                 result = result @ _rotation(_floats(step, 4))
             elif step.tag in ("lookat", "skew"):
-                self._note(f"a node's <{step.tag}> is not applied")
+                self._note(
+                    f"the <{step.tag}> of a COLLADA <node> is not supported and has no effect"
+                )
         return result
 
     def _place(
@@ -188,7 +192,7 @@ class _Scene:
     def _primitives(self, geometry: ET.Element) -> Iterator[_Primitive]:
         mesh = geometry.find("mesh")
         if mesh is None:
-            self._note(f'geometry "{geometry.get("id", "")}" is not a mesh and is not shown')
+            self._note(f'geometry "{geometry.get("id", "")}" has no <mesh> and is ignored')
             return
         for element in mesh:
             if element.tag in _SURFACES:
@@ -196,7 +200,7 @@ class _Scene:
                 if primitive is not None:
                     yield primitive
             elif element.tag in _NO_SURFACES:
-                self._note("its lines are not shown")
+                self._note(f"the COLLADA <{element.tag}> are ignored")
 
     def _primitive(self, element: ET.Element) -> _Primitive | None:
         offsets: dict[str, tuple[int, str]] = {}
@@ -207,13 +211,13 @@ class _Scene:
             # The first set of texture coordinates is used for colours.
             offsets.setdefault(each.get("semantic", ""), (offset, each.get("source", "")))
         if "VERTEX" not in offsets or stride > 64:
-            raise ValueError(f"a <{element.tag}> has no usable VERTEX input")
+            raise ValueError(f"a COLLADA <{element.tag}> has no valid VERTEX input")
         for each in self._require(offsets["VERTEX"][1]).findall("input"):
             offsets.setdefault(
                 each.get("semantic", ""), (offsets["VERTEX"][0], each.get("source", ""))
             )
         if "POSITION" not in offsets:
-            raise ValueError(f"a <{element.tag}> has no POSITION input")
+            raise ValueError(f"the vertices of a COLLADA <{element.tag}> have no POSITION input")
         counts, indices = _polygons(element, stride)
         if not len(counts):
             return None
@@ -238,14 +242,15 @@ class _Scene:
         source = self._require(url)
         array = source.find("float_array")
         if array is None:
-            raise ValueError(f'source "{url}" has no numbers')
+            raise ValueError(f'the COLLADA <source> "{url}" has no <float_array>')
         values = np.array((array.text or "").split(), dtype=np.float64)
         accessor = source.find("technique_common/accessor")
         stride = int(accessor.get("stride", "1")) if accessor is not None else width
         start = int(accessor.get("offset", "0")) if accessor is not None else 0
         if not width <= stride <= 64 or start < 0:
             raise ValueError(
-                f'source "{url}" has {stride} numbers per row, but {width} are required'
+                f'the COLLADA <source> "{url}" has {stride} numbers per row, '
+                f"but {width} are required"
             )
         # The accessor's count is ignored: some exporters write the number of values there.
         rows = (len(values) - start) // stride
@@ -267,7 +272,7 @@ def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDAr
     rows = [np.array((p.text or "").split(), dtype=np.int64) for p in lists]
     for row in rows:
         if len(row) % stride:
-            raise ValueError(f"a <{element.tag}> is truncated")
+            raise ValueError(f"the index list of a COLLADA <{element.tag}> is truncated")
     if not rows:
         return np.zeros(0, dtype=np.int64), np.zeros((0, stride), dtype=np.int64)
     if element.tag in ("tristrips", "trifans"):
@@ -280,7 +285,7 @@ def _polygons(element: ET.Element, stride: int) -> tuple[NDArray[np.int64], NDAr
         counts = np.array((vcount.text or "").split() if vcount is not None else [], dtype=np.int64)
     else:
         if len(indices) % 3:
-            raise ValueError(f"a <{element.tag}> is truncated")
+            raise ValueError(f"the index list of a COLLADA <{element.tag}> is truncated")
         counts = np.full(len(indices) // 3, 3, dtype=np.int64)
     return counts, indices
 
@@ -307,7 +312,7 @@ def _bindings(instance: ET.Element) -> dict[str, str]:
 def _floats(element: ET.Element, count: int) -> Array:
     values = np.array((element.text or "").split(), dtype=np.float64)
     if len(values) != count or not np.isfinite(values).all():
-        raise ValueError(f"a <{element.tag}> must contain {count} numbers")
+        raise ValueError(f"a COLLADA <{element.tag}> must contain {count} finite numbers")
     return values
 
 

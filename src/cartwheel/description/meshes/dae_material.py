@@ -130,7 +130,9 @@ def _image(
 def _numbers(element: ET.Element, least: int) -> tuple[float, ...]:
     values = tuple(float(word) for word in (element.text or "").split())
     if len(values) < least or not all(abs(v) < 1e6 for v in values):
-        raise ValueError(f"a <{element.tag}> has fewer than {least} numbers")
+        raise ValueError(
+            f"a COLLADA <{element.tag}> must contain at least {least} numbers below 1000000"
+        )
     return values
 
 

@@ -52,7 +52,7 @@ def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submes
         linear = matrix[:3, :3]
         faces = np.asarray(geometry.faces)
         if faces.size and (faces.min() < 0 or faces.max() >= len(geometry.vertices)):
-            raise ValueError("a face refers to a vertex that does not exist")
+            raise ValueError("a face of the mesh contains an invalid vertex index")
         if np.linalg.det(linear) < 0:
             faces = faces[:, ::-1]
         rgba, texture = _look(geometry.visual)

@@ -97,7 +97,7 @@ def _table(rows: list[bytes], width: int, key: str) -> NDArray[np.float64]:
             return np.array(words, dtype="S").astype(np.float64).reshape(-1, width)
         return np.array([[float(w) for w in row.split()[:width]] for row in rows], dtype=np.float64)
     except ValueError:
-        raise ValueError(f'a "{key}" statement must contain {width} numbers') from None
+        raise ValueError(f'an OBJ "{key}" statement must contain {width} numbers') from None
 
 
 def _absolute(face: bytes, tables: dict[bytes, list[bytes]]) -> bytes:
@@ -135,7 +135,7 @@ def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         try:
             numbers = np.array(flat.split(b"/"), dtype="S").astype(np.int64)
         except ValueError:
-            raise ValueError("a face contains an invalid index") from None
+            raise ValueError("an OBJ face (f) contains an invalid index") from None
         corners[:, :width] = numbers.reshape(-1, width) - 1
     else:
         for row, word in enumerate(words):

@@ -105,7 +105,7 @@ def build_submesh(
     if not np.isfinite(points).all():
         raise ValueError("a vertex coordinate is not finite")
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
-        raise ValueError("a face refers to a vertex that does not exist")
+        raise ValueError("a face of the mesh contains an invalid vertex index")
     proper = _has_area(points, triangles)
     directions = _per_vertex(normals, len(points), 3)
     coordinates = _per_vertex(uv, len(points), 2)

@@ -94,7 +94,9 @@ def read_pose(node: Node | None) -> Pose:
             values={"name": notation, "meant": meant(notation, _NOTATIONS)},
         )
     if quaternion and in_degrees:
-        raise node.fail("a quaternion cannot be in degrees", 'Remove degrees="true".')
+        raise node.fail(
+            'a pose in quaternion format cannot have degrees="true"', 'Remove degrees="true".'
+        )
     if not node.text.strip():
         return Pose()
     if quaternion:

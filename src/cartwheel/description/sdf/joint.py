@@ -74,7 +74,7 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
     if child == WORLD:
         raise node.fail(
             f'joint "{name}": the world cannot be the child',
-            "Swap parent and child.",
+            "Swap <parent> and <child>.",
             code=robot.JOINT_LINK_UNKNOWN,
             values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
         )
@@ -132,7 +132,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     if child == WORLD:
         raise node.fail(
             f'joint "{name}": the world cannot be the child',
-            "Swap parent and child.",
+            "Swap <parent> and <child>.",
             code=robot.JOINT_LINK_UNKNOWN,
             values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
         )

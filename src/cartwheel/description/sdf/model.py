@@ -99,7 +99,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         if found.node.tag == "light":
             raise each.fail(
                 "a light cannot be included in a model",
-                "Include it in the world.",
+                "Include the light in the <world>.",
                 code=tags.TAG_MISPLACED,
             )
         nested.append(read_included(found))

@@ -73,7 +73,9 @@ def read_sdf(
             )
         if models:
             raise models[0].fail(
-                "a model outside the <world>", "Put it into the <world>.", code=tags.TAG_MISPLACED
+                "a model outside the <world>",
+                "Move the <model> into the <world>.",
+                code=tags.TAG_MISPLACED,
             )
         described = read_world(worlds[0], ctx)
     elif len(models) == 1:

@@ -231,7 +231,7 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
         values = scale.vec3()
     if scale is not None and 0.0 in values:
         raise _UnusableFileError(
-            f"the scale {scale.text} flattens the mesh",
+            f"a component of the mesh's scale is 0 (got {scale.text})",
             code=files.MESH_UNREADABLE,
             origin=scale.origin,
             values={"kind": "mesh", "stated": scale.text},

@@ -189,7 +189,7 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
             f"{len(roots)} moving links have no <inertial>. Gazebo {fate}; Cartwheel computes the "
             f"masses from the geometry at {WATER:g} kg/m³: {shown}{more}",
             origin=first.origin,
-            hint="`cartwheel check` shows the <inertial> of each.",
+            hint="`cartwheel check` prints an <inertial> for each link.",
             values={"links": tuple(roots), "masses": tuple(weights)},
         )
     )

@@ -51,7 +51,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
     if child == "world":
         raise node.fail(
             f'joint "{name}": the link "world" cannot be a child, since it never moves',
-            "Swap parent and child.",
+            "Swap <parent> and <child>.",
             code=robot.JOINT_LINK_UNKNOWN,
             values={"joint": name, "name": child},
         )

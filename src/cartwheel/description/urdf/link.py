@@ -196,7 +196,7 @@ def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
         if len(values) == 3:
             ctx.report(
                 tags.VALUE_IGNORED.diagnostic(
-                    f'the colour "{text}" has no opacity, so 1 is used',
+                    f'the colour "{text}" has no alpha value, so 1 is used',
                     origin=node.origin,
                     values={"stated": text},
                 )
@@ -308,7 +308,7 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
     scale = node.vec3_of("scale", (1.0, 1.0, 1.0))
     if 0.0 in scale:
         raise node.fail(
-            f'the scale of a mesh of link "{link}" is {_listed(scale)}, which flattens it'
+            f'the scale of a mesh of link "{link}" has a component of 0 (got {_listed(scale)})'
         )
     try:
         path = ctx.packages.resolve(uri, node.origin, what="mesh")

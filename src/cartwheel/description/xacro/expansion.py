@@ -284,7 +284,7 @@ def _parse(content: bytes | str, file: str, run: Run) -> Document:
             codes.XACRO_NAMESPACE.diagnostic(
                 "the root element does not declare xmlns:xacro, so ROS xacro rejects the file",
                 origin=root.origin,
-                hint=f"Add {NAMESPACE} to it.",
+                hint=f"Add {NAMESPACE} to the root element.",
             )
         )
     prefixed(root, run.warn_of_prefix)

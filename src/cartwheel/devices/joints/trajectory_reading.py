@@ -99,9 +99,11 @@ class TrajectoryReader:
                 # The joints move as fast as they can. The goal ends when they can have arrived.
                 return Trajectory(time_ns, [replace(waypoint, time=self._shortest(waypoint))])
         if not points:
-            raise InvalidTrajectoryError(OLD_HEADER, "all points are in the past")
+            raise InvalidTrajectoryError(OLD_HEADER, "all trajectory points are in the past")
         if self._rules.must_stop and any(abs(rate) > _STILL for rate in points[-1].velocity):
-            raise InvalidTrajectoryError(INVALID_GOAL, "the last point has a nonzero velocity")
+            raise InvalidTrajectoryError(
+                INVALID_GOAL, "the last trajectory point has a nonzero velocity"
+            )
         self._unwind(points, begin)
         first = Waypoint(
             time=0.0,
@@ -161,7 +163,9 @@ class TrajectoryReader:
     def _integrated(self, before: Waypoint, point: Waypoint, number: int) -> Waypoint:
         """Computes the positions of a point from velocities, by the trapezoidal rule."""
         if not self._rules.integrates or not point.velocity:
-            raise InvalidTrajectoryError(INVALID_GOAL, f"point {number} has no positions")
+            raise InvalidTrajectoryError(
+                INVALID_GOAL, f"trajectory point {number} has no positions"
+            )
         span = max(point.time - before.time, 0.0)
         rates = zip(before.velocity or point.velocity, point.velocity, strict=True)
         return replace(

@@ -55,7 +55,8 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
         assert sensor is not None
         if not (0 <= config.near < config.far and 0 < config.view < math.pi):
             raise PluginError(
-                "the view must satisfy 0 <= <near> < <far> and 0 < <horizontal_fov> < pi",
+                "the clip distances and field of view must satisfy 0 <= <near> < <far> and "
+                "0 < <horizontal_fov> < pi",
                 code=devices.SENSOR_RANGE_INVALID,
                 origin=sensor.origin,
                 values={"near": config.near, "far": config.far, "view": config.view},

@@ -90,7 +90,7 @@ class ManagerServices:
                     f'the type of controller "{name}" is not specified because there is no '
                     f"parameter {path}/type",
                     code=running.CONTROLLER_TYPE_MISSING,
-                    hint="Load its YAML file into that namespace first.",
+                    hint="First load the controller's YAML file into that namespace.",
                     values={"controller": name, "parameter": f"{path}/type"},
                 )
             settings = Settings(values, name, f"parameters of {path}")

@@ -140,7 +140,7 @@ def _image_format(plugin: Component, name: str) -> ImageFormat:
     if "FLOAT" not in name.upper():
         plugin.warn(
             devices.IMAGE_FORMAT_UNKNOWN,
-            f'the image format "{name}" is not supported, so R8G8B8 is used',
+            f'unknown image format "{name}"; R8G8B8 is used',
             hint=f"Supported formats: {', '.join(_FORMATS)}.",
             values={"format": name},
         )

@@ -129,8 +129,8 @@ class MecanumDriveController(Controller):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
                 "the wheels do not model rollers, so the robot does not move sideways",
-                hint="To push the robot with a servo instead, pass the controller's parameters "
-                "when the robot is spawned.",
+                hint="Load the controller's parameters before the robot is spawned: Cartwheel then "
+                "moves the whole robot at the commanded velocity.",
             )
 
     def start(self, time_ns: int) -> None:
