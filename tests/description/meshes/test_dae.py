@@ -277,7 +277,7 @@ UNUSABLE = [
         document(nodes='<node><scale>0 1 1</scale><instance_geometry url="#g"/></node>'),
         "to zero size",
     ),
-    (document(nodes="<node><matrix>1 2 3</matrix></node>"), "16 numbers"),
+    (document(nodes="<node><matrix>1 2 3</matrix></node>"), "16 finite numbers"),
     (document(surface="<triangles><p>0 1 2</p></triangles>"), "VERTEX"),
     (document(surface=f"<polylist>{VERTEX}<vcount>9</vcount><p>0 1 2</p></polylist>"), "9"),
 ]
