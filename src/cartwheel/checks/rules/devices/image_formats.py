@@ -31,7 +31,7 @@ def image_format(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             near = spelling.meant(name, FORMATS, parts=False) or "R8G8B8"
             yield devices_codes.IMAGE_FORMAT_UNKNOWN.diagnostic(
-                message=f'the image format "{name}" does not exist, so R8G8B8 is used',
+                message=f'unknown image format "{name}"; R8G8B8 is used',
                 values={"format": name},
                 origin=image.origin,
                 instead=nodes.written("format", {}, near),
