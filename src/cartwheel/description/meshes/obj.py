@@ -116,7 +116,7 @@ def _index(word: bytes) -> int:
     try:
         return int(word)
     except ValueError:
-        raise ValueError(f'"{word[:20].decode(errors="replace")}" is not a valid OBJ index') from None
+        raise ValueError(f'"{word[:20].decode(errors="replace")}" is not an OBJ index') from None
 
 
 def _corners(faces: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
