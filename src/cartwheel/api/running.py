@@ -28,7 +28,7 @@ class RunningWorld:
 
     Args:
         session: The session.
-        host: Address on which the viewer and Foxglove's server listen.
+        host: Address on which the viewer and the Foxglove server listen.
         allow_origin: Origins of web pages that may connect to them.
         connections: Prepared connections; None if there are none.
         plan: The connections to open.

@@ -49,7 +49,7 @@ class World(RunningWorld):
         record_topics: Patterns of the recorded topics; empty for all topics.
         overwrite: Replace existing recordings.
         allow_path: Folders with files that clients may load.
-        host: Address on which the web interface and Foxglove's server listen.
+        host: Address on which the web interface and the Foxglove server listen.
         allow_origin: Origins of further web pages that may connect to them.
         package_path: Folders to search for the packages of message types first.
 

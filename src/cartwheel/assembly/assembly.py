@@ -48,7 +48,7 @@ class Assembly:
     connections, the last one first.
 
     Args:
-        access: Who may connect to the viewer and to Foxglove's server.
+        access: Who may connect to the viewer and to the Foxglove server.
         package_path: Folders to search first for packages of spawned models.
         observer: Is notified of connections.
         at_end: Creates the context managers that close the connections.

@@ -51,7 +51,7 @@ class Plan:
     """Name of the ROS 2 node."""
     rmw: Rmw = "dds"
     foxglove: int | None = None
-    """Port of Foxglove's server."""
+    """Port of the Foxglove server."""
     viewer: bool = False
     viewer_port: int | None = None
     """Port of the viewer; None for the first free port."""
@@ -82,7 +82,7 @@ class Connections:
     the end of the process at the latest.
 
     Args:
-        host: Address on which the viewer and Foxglove's server listen.
+        host: Address on which the viewer and the Foxglove server listen.
         allow_origin: Origins of further web pages that may connect to them.
 
     Raises:
