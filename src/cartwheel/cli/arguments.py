@@ -123,7 +123,7 @@ AllowOrigin = Annotated[
     typer.Option(
         "--allow-origin",
         metavar="ORIGIN",
-        help="Accept connections from web pages of this origin, such as"
+        help="Accept connections from web pages with this origin, such as"
         " https://robots.example.org. Can be repeated.",
         rich_help_panel=help.PAGE,
     ),

@@ -84,7 +84,7 @@ def add_propeller(
         topic: Topic of the commands.
         message: Message type of the commands.
         thrust_sign: When the thrust is upwards; see `PropellerConfig`.
-        max_airspeed: Velocity along the axis at which the thrust becomes 0, m/s.
+        max_airspeed: Axial airspeed at which the thrust becomes 0, m/s.
         signed_rolling: Whether the rolling moment is negated for clockwise propellers.
 
     Raises:

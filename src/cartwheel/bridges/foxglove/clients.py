@@ -138,13 +138,13 @@ class _Share:
             raise _FullError(
                 f"{total.title} of a client",
                 f"a client may have at most {_MOST} {total.title} and {_MOST_BYTES >> 20} MiB of "
-                "their text",
+                "text",
             )
         if total.count + len(new) > _ALL or total.size + size > _ALL_BYTES:
             raise _FullError(
                 f"{total.title} of all clients",
                 f"all clients together may have at most {_ALL} {total.title} and "
-                f"{_ALL_BYTES >> 20} MiB of their text",
+                f"{_ALL_BYTES >> 20} MiB of text",
             )
         self._sizes.update(new)
         total.count += len(new)

@@ -52,7 +52,7 @@ class PropellerConfig:
     """The thrust is upwards if the propeller turns in its direction, if the joint's velocity is
     positive, or always."""
     max_airspeed: float | None = None
-    """Velocity along the axis at which the thrust becomes 0, m/s. None: no influence."""
+    """Axial airspeed at which the thrust becomes 0, m/s. None: no influence."""
     moment: float
     """Torque on the parent link divided by the thrust, m."""
     drag: float

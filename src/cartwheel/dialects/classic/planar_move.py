@@ -72,8 +72,8 @@ class PlanarMoveParameters:
 class PlanarMove(Plugin[PlanarMoveParameters]):
     """Moves the robot in the plane from Twist commands and publishes odometry.
 
-    No wheels are needed: a servo pushes the whole robot with a force of at most five times its
-    weight, so walls stop it. The odometry is the ground-truth pose. Original plugin:
+    No wheels are needed: a velocity controller applies a force to the robot. The force is at most
+    five times the robot's weight, so walls stop the robot. The odometry is the ground-truth pose. Original plugin:
     ``gazebo_ros_planar_move`` in the package ``gazebo_plugins``.
     """
 

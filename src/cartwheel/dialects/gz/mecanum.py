@@ -75,9 +75,10 @@ class MecanumParameters(GzCommonLimits):
 class GzMecanumDrive(Plugin[MecanumParameters]):
     """Drives four mecanum wheels from Twist commands and publishes odometry.
 
-    If the wheel collisions model rollers (``<fdir1 gz:expressed_in="...">`` with different ``<mu>``
-    and ``<mu2>``), friction moves the robot. Otherwise, a servo pushes the robot, as with
-    ``libgazebo_ros_planar_move.so``, and the wheels turn at the corresponding speeds.
+    Friction moves the robot if the wheels' collisions represent rollers: they contain
+    ``<fdir1 gz:expressed_in="...">`` and different values of ``<mu>`` and ``<mu2>``. Otherwise, a
+    velocity controller applies a force to the robot, as with ``libgazebo_ros_planar_move.so``, and
+    the wheels turn at the corresponding speeds.
 
     The odometry is computed from the rotation of the wheels. Original plugin: ``MecanumDrive`` in
     gz-sim.

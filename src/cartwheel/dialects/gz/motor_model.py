@@ -17,7 +17,7 @@ class GzMotorParameters(PropellerTags):
     number: int = tag(
         "actuator_number",
         "motorNumber",
-        doc="Index of the motor's speed in the commands, from 0.",
+        doc="Zero-based index of the motor in the command message.",
     )
     topic: str = tag(
         "commandSubTopic",

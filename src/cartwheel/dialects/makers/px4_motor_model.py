@@ -15,7 +15,7 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Px4MotorParameters(PropellerTags):
     number: int = tag(
-        "motorNumber", default=0, doc="Index of the motor's speed in the commands, from 0."
+        "motorNumber", default=0, doc="Zero-based index of the motor in the command message."
     )
     topic: str = tag(
         "commandSubTopic",
@@ -29,7 +29,7 @@ class Px4MotorParameters(PropellerTags):
         "maxRelativeAirspeed",
         default=25.0,
         unit="m/s",
-        doc="Velocity along the axis at which the thrust becomes 0.",
+        doc="Axial airspeed at which the thrust becomes 0.",
     )
     reversible: bool = tag("reversible", default=False, doc="Allow negative thrust.")
 

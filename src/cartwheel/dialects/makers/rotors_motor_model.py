@@ -16,7 +16,7 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsMotorParameters(PropellerTags):
     number: int = tag(
-        "motorNumber", default=0, doc="Index of the motor's speed in the commands, from 0."
+        "motorNumber", default=0, doc="Zero-based index of the motor in the command message."
     )
     topic: str = tag(
         "commandSubTopic",
