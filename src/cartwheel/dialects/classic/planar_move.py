@@ -73,8 +73,8 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
     """Moves the robot in the plane from Twist commands and publishes odometry.
 
     No wheels are needed: a velocity controller applies a force to the robot. The force is at most
-    five times the robot's weight, so walls stop the robot. The odometry is the ground-truth pose. Original plugin:
-    ``gazebo_ros_planar_move`` in the package ``gazebo_plugins``.
+    five times the robot's weight, so walls stop the robot. The odometry is the ground-truth pose.
+    Original plugin: ``gazebo_ros_planar_move`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
