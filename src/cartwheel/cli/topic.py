@@ -10,7 +10,9 @@ from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
 
 app = typer.Typer(
-    cls=help.Group, help="List, print, measure and publish topics.", no_args_is_help=True
+    cls=help.Group,
+    help="List and print topics, measure their rate, and publish messages.",
+    no_args_is_help=True,
 )
 
 Topic = Annotated[

@@ -396,8 +396,8 @@ class _Service:
         if self._pending >= _PENDING:
             self._dds._tell(
                 CALL_LIMIT.diagnostic(
-                    f"more than {_PENDING} responses of {self._name} are waiting until DDS "
-                    "discovers their callers, so one is dropped",
+                    f"more than {_PENDING} responses of {self._name} are waiting for DDS "
+                    "to discover the clients, so one is dropped",
                     values={"service": self._name, "most": _PENDING},
                 )
             )

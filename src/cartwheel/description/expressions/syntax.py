@@ -490,7 +490,8 @@ def _target(node: ast.expr) -> Callable[[_Scope, Any], None]:
 
         return spread
     raise ExpressionError(
-        "only names can be assigned in an expression", values={"refused": "assignment"}
+        "the target of an assignment in an expression must be a variable name",
+        values={"refused": "assignment"},
     )
 
 

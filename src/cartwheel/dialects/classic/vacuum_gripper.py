@@ -32,9 +32,9 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
     """While switched on, holds the nearest link of another model that is within reach.
 
     The held link keeps its pose relative to the cup, as with a fixed joint. In Gazebo, the link is
-    pulled toward the cup. The services `on` and `off` switch the gripper. If the plugin tag
-    contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and ``off``. Original
-    plugin: ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
+    pulled toward the cup. The services ``on`` and ``off`` switch the gripper on and off. If the
+    plugin tag contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and ``off``.
+    Original plugin: ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)

@@ -146,7 +146,7 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
         if not any(gains.p or gains.i for gains in both):
             self.warn(
                 devices.PLUGIN_IDLE,
-                "all gains are 0, so only the efforts in a trajectory have an effect",
+                "all gains are 0, so only the efforts of the trajectory points are applied",
             )
 
     def _gains(self, quantity: str, index: int) -> PidGains:

@@ -51,7 +51,7 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
             return " ".join(words[1:])
         if command in ("arg", "var"):
             raise PluginError(
-                f"{match[0]} has no value because the robot has no argument with this name",
+                f"{match[0]} has no value because the description has no argument of this name",
                 code=devices.CONTROLLERS_FILE_ARGUMENT,
                 origin=Origin(file=str(path)),
                 hint=f"Write the value into the file, or pass it with {name}:=…."
