@@ -5,6 +5,7 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 
@@ -177,3 +178,40 @@ def test_worlds_of_several_threads_draw_side_by_side(rosbots):
     with ThreadPoolExecutor(3) as pool:
         together = list(pool.map(image, range(3)))
     assert set(together) == {image(0)}
+
+
+FORKED_CONNECTED = """
+import os, sys
+import cartwheel as cw
+
+world = cw.World("empty", foxglove=0, record="run.mcap")
+world.run(0.1)
+child = os.fork()
+if child == 0:
+    codes = []
+    for use in (world.reset, lambda: world.run(0.1), lambda: world.spawn("rosbots.xacro")):
+        try:
+            use()
+        except cw.errors.SimulationError as error:
+            codes.append(error.code.number)
+    world.close()
+    os._exit(0 if codes == ["CW624"] * 3 else 1)
+assert os.waitpid(child, 0)[1] == 0
+world.run(0.1)
+world.close()
+print(round(world.time, 3))
+"""
+
+
+def test_a_connected_world_is_refused_in_a_forked_process(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", FORKED_CONNECTED],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["0.2"]
+    assert (tmp_path / "run.mcap").stat().st_size > 0

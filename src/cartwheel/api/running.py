@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, Self
 
 from cartwheel.assembly.driver import Driver
 from cartwheel.assembly.turns import Turns
-from cartwheel.codes.world import SIMULATION_CLOSED
+from cartwheel.codes.world import SIMULATION_CLOSED, WORLD_FORKED
 from cartwheel.errors import CartwheelError, SimulationError
 from cartwheel.messages.store import finding_with
 from cartwheel.session import Session
@@ -79,8 +79,16 @@ class RunningWorld:
         """Exclusive access to the simulation for this thread.
 
         Raises:
-            SimulationError: The world is closed.
+            SimulationError: The world is closed, or is connected and belongs to the parent process.
         """
+        if self._connections is not None and self._connections.forked:
+            # The threads and processes behind the connections do not exist here, so a wait for them
+            # would not end.
+            raise SimulationError(
+                "a connected world cannot be used in a forked process",
+                code=WORLD_FORKED,
+                hint="Create a world in the forked process.",
+            )
         with self.lock:
             if self.session.simulation.closed:
                 raise SimulationError("the world is closed", code=SIMULATION_CLOSED)

@@ -101,6 +101,11 @@ class Connections:
         self._owner: weakref.ref[object] | None = None
         _close_at_exit(self)
 
+    @property
+    def forked(self) -> bool:
+        """Whether this process was forked from the one that has the connections."""
+        return os.getpid() != self._pid
+
     def prepare(self, plan: Plan) -> None:
         """Checks the options, and starts processes while the world is loaded.
 
@@ -206,7 +211,7 @@ class Connections:
         Raises:
             RecordingError: A recording has failed.
         """
-        if os.getpid() != self._pid:
+        if self.forked:
             return
         with self._closing:
             if self.closed:
@@ -234,7 +239,7 @@ class Connections:
 
     def _abandon(self) -> None:
         # The thread that happens to free the memory may be one that the connections need.
-        if not self.closed and os.getpid() == self._pid:
+        if not self.closed and not self.forked:
             threading.Thread(target=self.close, name="close").start()
 
     def _serve_reads(self) -> None:

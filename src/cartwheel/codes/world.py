@@ -75,3 +75,9 @@ OPENGL_FORKED = Code(
 CALLBACK_FAILED = Code(
     "CW623", "callback-failed", "error", "a callback or command raised an exception"
 )
+WORLD_FORKED = Code(
+    "CW624",
+    "world-forked",
+    "error",
+    "a forked process uses a world that its parent connected to other programs",
+)
