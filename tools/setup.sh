@@ -42,6 +42,7 @@ catkin ros-message-generation ros-message-runtime
 libstd-msgs-dev libgeometry-msgs-dev libtrajectory-msgs-dev libstd-srvs-dev
 libactionlib-msgs-dev ros-actionlib-msgs python3-actionlib-msgs
 ros-std-msgs ros-geometry-msgs ros-trajectory-msgs ros-sensor-msgs ros-std-srvs
+ros-nav-msgs ros-rosgraph-msgs ros-tf2-msgs ros-roscpp-msg              # for rosmsg
 python3-std-msgs python3-geometry-msgs python3-trajectory-msgs python3-sensor-msgs python3-std-srvs
 python3-nav-msgs python3-tf2-msgs python3-rosgraph-msgs python3-roscpp-msg  # to echo topics
 python3-dynamic-reconfigure             # to set parameters of /gazebo and of cameras

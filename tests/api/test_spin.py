@@ -5,6 +5,7 @@ import queue
 import signal
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,14 @@ pytestmark = pytest.mark.usefixtures("tidy")
 def until_running(world: cw.World) -> None:
     start = world.time
     wait_for(lambda: world.time > start, "time to pass")
+
+
+@pytest.fixture(autouse=True)
+def default_sigint() -> Iterator[None]:
+    """SIGINT has its default handler, also where the tests were started in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def test_it_lasts_as_long_as_its_time() -> None:
