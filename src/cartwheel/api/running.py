@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, Self
 
 from cartwheel.assembly.driver import Driver
 from cartwheel.assembly.turns import Turns
-from cartwheel.codes.world import SIMULATION_CLOSED, WORLD_FORKED
+from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError
 from cartwheel.messages.store import finding_with
 from cartwheel.session import Session
@@ -81,14 +81,6 @@ class RunningWorld:
         Raises:
             SimulationError: The world is closed, or is connected and belongs to the parent process.
         """
-        if self._connections is not None and self._connections.forked:
-            # The threads and processes behind the connections do not exist here, so a wait for them
-            # would not end.
-            raise SimulationError(
-                "a connected world cannot be used in a forked process",
-                code=WORLD_FORKED,
-                hint="Create a world in the forked process.",
-            )
         with self.lock:
             if self.session.simulation.closed:
                 raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
@@ -111,7 +103,8 @@ class RunningWorld:
             speed: Target real-time factor; None is as fast as possible.
 
         Raises:
-            SimulationError: The simulation diverged, or the world is closed.
+            SimulationError: The simulation diverged, the world is closed, a callback of the same
+                world called the method, or the process was forked while the world was connected.
             RecordingError: A recording has failed.
             KeyboardInterrupt: Ctrl-C was pressed.
         """
@@ -154,6 +147,12 @@ class RunningWorld:
     def _run(self) -> Iterator[Simulation]:
         """Runs the block, which may close the world."""
         with self.used() as simulation:
+            if self._running and self._runner == threading.get_ident():
+                raise SimulationError(
+                    "a callback runs the world that called it",
+                    code=RUN_NESTED,
+                    hint="Call run and spin outside of callbacks.",
+                )
             if self._connections is not None:
                 self._connections.raise_failure()
                 if not self._running:
@@ -276,11 +275,15 @@ class RunningWorld:
         """Ends all connections, completes recordings and closes all topics.
 
         Recorded values stay readable. When called within `run` or `spin`, it stops the run first.
-        The memory is freed with the last reference to the world.
+        The memory is freed with the last reference to the world. In a process that was forked
+        while the world was connected, the method does nothing.
 
         Raises:
             RecordingError: A recording has failed.
         """
+        connections = self._connections
+        if connections is not None and connections.forked:
+            return
         with self.lock:
             if not self._running:
                 self._end()

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from cartwheel import description as descriptions
 from cartwheel.api.model import Model
 from cartwheel.api.running import RunningWorld
+from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Mailbox, Publisher
 from cartwheel.messages import from_dict, from_flat, type_name
@@ -29,8 +30,8 @@ class World(RunningWorld):
     """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.
-    A forked process has its own copy. Its cameras work only if no image was rendered before the
-    fork.
+    A forked process has its own copy of a world without connections. Its cameras work only if no
+    image was rendered before the fork. A world with connections raises a `SimulationError` there.
 
     Args:
         world: ``empty``, the name of another built-in world, a file, or a description.
@@ -133,6 +134,7 @@ class World(RunningWorld):
     @property
     def graph(self) -> Graph:
         """The world's topics and services."""
+        self.lock.check()
         return self.session.graph
 
     @property
@@ -222,13 +224,22 @@ class World(RunningWorld):
 
         Raises:
             UnknownNameError: The topic does not exist.
-            GraphError: The message type does not have a given field.
+            GraphError: The message type does not have a given field, or `message` is not a message
+                of the topic's type.
         """
         kind = self.graph.topic(topic).type
         if fields:
             message = from_flat(kind, fields)
         elif message is None or isinstance(message, Mapping):
             message = from_dict(kind, message or {})
+        elif getattr(type(message), "__msgtype__", None) != kind:
+            given = getattr(type(message), "__msgtype__", type(message).__name__)
+            raise GraphError(
+                f'topic "{topic}" requires a message of type {kind}, not {given}',
+                code=FIELD_VALUE_INVALID,
+                values={"topic": topic, "type": kind, "given": given},
+                hint="Pass a message, a mapping of its fields, or the fields as keyword arguments.",
+            )
         self.graph.publish(topic, kind, message)
 
     def subscribe(

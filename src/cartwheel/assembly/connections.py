@@ -22,6 +22,7 @@ from cartwheel.assembly.recording import RecordingOptions, check_recordings
 from cartwheel.assembly.turns import Turns
 from cartwheel.description.reach import run_folders
 from cartwheel.errors import Diagnostic
+from cartwheel.forks import keep_object
 from cartwheel.gate.access import Access, refused_page
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ class Connections:
         self._closing = threading.Lock()
         self.closed = False
         self._owner: weakref.ref[object] | None = None
+        keep_object(self)
         _close_at_exit(self)
 
     @property
@@ -191,6 +193,8 @@ class Connections:
 
     def update(self) -> None:
         """See `Assembly.update`."""
+        if self.forked:
+            return
         self._assembly.update()
         self._serve_reads()
 
@@ -201,7 +205,17 @@ class Connections:
 
     def raise_failure(self) -> None:
         """See `Assembly.raise_failure`."""
-        self._assembly.raise_failure()
+        if not self.forked:
+            self._assembly.raise_failure()
+
+    def leave_to_parent(self) -> None:
+        """Ends the use of the simulation in a forked process."""
+        if self.closed:
+            return
+        if self._turns is not None:
+            self._turns.abandon()
+            # The process may have been forked by a callback. Its run ends.
+            self._assembly.session.simulation.stop()
 
     def close(self) -> None:
         """Closes all connections and completes the recordings. Other threads that call it wait.
@@ -277,6 +291,17 @@ def _close_at_exit(connections: Connections) -> None:
         if _closer is None or not _closer.is_alive():
             _closer = threading.Thread(target=_close_all, name="closer")
             _closer.start()
+
+
+def _after_fork() -> None:
+    """The parent closes its connections. Another thread may have held the lock."""
+    global _closer, _starting
+    _open.clear()
+    _closer = None
+    _starting = threading.Lock()
+
+
+os.register_at_fork(after_in_child=_after_fork)
 
 
 def _close_all() -> None:

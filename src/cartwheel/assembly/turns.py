@@ -7,6 +7,8 @@ import threading
 from collections.abc import Callable, Iterator
 
 from cartwheel.calls import Post
+from cartwheel.codes.world import WORLD_FORKED
+from cartwheel.errors import SimulationError
 
 _LOOK = 0.05
 """Interval in s at which a waiting thread checks whether the holder shares its turn."""
@@ -20,6 +22,26 @@ class Turns:
     def __init__(self) -> None:
         self._lock = threading.RLock()
         self._post: Post | None = None
+        self._abandoned = False
+
+    def abandon(self) -> None:
+        """Refuses all later turns. A thread that does not exist after a fork may hold the lock."""
+        self._abandoned = True
+
+    def check(self) -> None:
+        """Raises the error of an abandoned lock.
+
+        Raises:
+            SimulationError: This process was forked while the simulation was connected.
+        """
+        if self._abandoned:
+            # The threads and processes behind the connections do not exist here, so a wait for them
+            # would not end.
+            raise SimulationError(
+                "a connected world cannot be used in a forked process",
+                code=WORLD_FORKED,
+                hint="Create a world in the forked process.",
+            )
 
     def __enter__(self) -> Turns:
         self.acquire()
@@ -29,7 +51,12 @@ class Turns:
         self.release()
 
     def acquire(self) -> None:
-        """Waits for the turn of this thread."""
+        """Waits for the turn of this thread.
+
+        Raises:
+            SimulationError: This process was forked while the simulation was connected.
+        """
+        self.check()
         if self._lock.acquire(blocking=False):
             return
         entered = threading.Event()

@@ -81,3 +81,4 @@ WORLD_FORKED = Code(
     "error",
     "a forked process uses a world that its parent connected to other programs",
 )
+RUN_NESTED = Code("CW625", "run-nested", "error", "a callback runs the world that called it")

@@ -20,6 +20,7 @@ from cartwheel.control.registry import Running
 from cartwheel.control.stream import Streams
 from cartwheel.control.wills import Wills
 from cartwheel.errors import CartwheelError, ControlError
+from cartwheel.forks import keep_socket
 from cartwheel.graph import resolve_name
 from cartwheel.interfaces import RunningSession
 
@@ -71,6 +72,7 @@ class ControlServer:
         self._lock = threading.Lock()
         self._clients: dict[Connection, _Use] = {}
         self._socket, path = registry.listen()
+        keep_socket(self._socket)
         self.entry = Running(
             pid=os.getpid(),
             title=title,
@@ -119,6 +121,7 @@ class ControlServer:
                 if self._closed.wait(0.05):
                     return
                 continue  # Possibly out of file descriptors, which may be freed later.
+            keep_socket(sock)
             client = Connection(sock)
             if not self._admit(client):
                 client.refuse(

@@ -19,6 +19,7 @@ from typing import Protocol
 import h11
 
 from cartwheel.errors import Once
+from cartwheel.forks import keep_socket
 from cartwheel.gate.access import Access, Refusal
 from cartwheel.gate.frames import FrameError, Frames, Room
 from cartwheel.gate.relay import relay
@@ -99,6 +100,7 @@ class Gate:
         client: Callable[[], Client] | None = None,
     ) -> None:
         self._listener = listener
+        keep_socket(listener)
         self._access = access
         self._server = server
         self._apps = apps
@@ -158,6 +160,7 @@ class Gate:
                     # No file descriptor is free, or the client has already disconnected.
                     await asyncio.sleep(_ACCEPT_PAUSE)
                     continue
+                keep_socket(sock)
                 task = loop.create_task(self._handle(sock, address))
                 tasks.add(task)
                 self._waiting[task] = None

@@ -15,6 +15,7 @@ from cartwheel.bridges.apart.link import Handler, Link
 from cartwheel.bridges.apart.ring import RingFiles, RingWriter
 from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_FAULT, BRIDGE_SLOW
 from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Reporter
+from cartwheel.forks import keep_socket
 from cartwheel.graph import Graph
 
 _START = 60.0
@@ -52,6 +53,7 @@ class BridgeProcess:
         self.on_lost: Callable[[], None] = lambda: None
         """Called on a separate thread when the process has exited unexpectedly."""
         self._own, theirs = socket.socketpair()
+        keep_socket(self._own)
         self._files, their_files = RingFiles.pair()
         patience = "patient" if patient else ""
         self._process = subprocess.Popen(  # noqa: S603 - runs Python with this package

@@ -27,6 +27,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from cartwheel.forks import keep_object
+
 SIZE = 32 << 20
 """Size of a ring in bytes. Only the used part occupies memory."""
 LARGEST = 256 << 20
@@ -164,6 +166,12 @@ class RingWriter(_End):
         """Bytes written so far, for `RingReader.read_to`."""
         self.largest = LARGEST
         """Maximum size of a message in bytes."""
+        keep_object(self)
+
+    def leave_to_parent(self) -> None:
+        """Closes this process's copy. The memory is shared, so a second writer would destroy it."""
+        self._lock = threading.Lock()
+        self.close()
 
     def put(self, number: int, time_ns: int, data: bytes) -> Put:
         """Adds a message without waiting.
