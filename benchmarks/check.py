@@ -18,8 +18,8 @@ from cartwheel.checks.project.run import check
 from cartwheel.codes import code_named
 from cartwheel.corpus.finding import robots_in
 from cartwheel.description.convert import to_urdf
-from cartwheel.description.package_folders import share
-from cartwheel.description.shipped import shipped_descriptions
+from cartwheel.description.files.named_files import shipped_descriptions
+from cartwheel.description.files.package_folders import share
 from cartwheel.errors import Code, DescriptionError, Diagnostic
 
 KINDS = {"URDF": mutations, "SDF": mutations_of_sdf, "xacro": mutations_of_xacro}

@@ -77,7 +77,7 @@ def _read_ros1(uri: str, take: Callable[[str, bytearray], None]) -> None:
 def _read_ros2(_: str, take: Callable[[str, bytes], None]) -> None:
     from cartwheel.bridges.loop import Loop
     from cartwheel.bridges.ros2.environment import discovery_range, domain_id
-    from cartwheel.messages.ros2_types import ros2_type
+    from cartwheel.messages.ros2.types import ros2_type
     from rtps_lite.discovery import EndpointQos
     from rtps_lite.participant import Participant
 
@@ -105,7 +105,7 @@ def _read_zenoh(_: str, take: Callable[[str, bytes], None]) -> None:
     import zenoh
 
     from cartwheel.bridges.ros2.zenoh import PORT
-    from cartwheel.messages.ros2_types import ros2_type
+    from cartwheel.messages.ros2.types import ros2_type
 
     configuration = zenoh.Config()
     configuration.insert_json5("mode", '"peer"')

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.description import load_robot, load_world
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.session import Session
 from cartwheel.viewer import Viewer

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from cartwheel.errors import Diagnostic
     from cartwheel.geometry import Pose, Vec3
     from cartwheel.graph import Graph
+    from cartwheel.simulation.models.occupied_space import Space
     from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
-    from cartwheel.simulation.space import Space
 
 T = TypeVar("T")
 

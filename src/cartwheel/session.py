@@ -8,8 +8,8 @@ from typing import Any
 
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.component import Shared
+from cartwheel.description.files.package_files import SimulationPackages
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.package_files import SimulationPackages
 from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
@@ -20,12 +20,12 @@ from cartwheel.geometry import Pose
 from cartwheel.graph import Graph
 from cartwheel.graph.topic import Subscription
 from cartwheel.messages import message_class, stamp
-from cartwheel.messages.library import TypeLibrary
+from cartwheel.messages.library.library import TypeLibrary
 from cartwheel.messages.store import finding_with
 from cartwheel.simulation import Part, Simulation
 from cartwheel.simulation.clock import Task
+from cartwheel.simulation.models.resident import Behaviour
 from cartwheel.simulation.pacing import Pacer
-from cartwheel.simulation.resident import Behaviour
 
 CLOCK_RATE = 100.0
 """Default rate of ``/clock``, Hz of simulation time."""

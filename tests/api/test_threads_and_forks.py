@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import cartwheel as cw
-from cartwheel.simulation.offscreen import ForkedError
+from cartwheel.simulation.sensing.opengl import ForkedError
 
 _IMAGES = "/rosbots/camera1/image_raw"
 _FORK = f"""

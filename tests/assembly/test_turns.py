@@ -10,7 +10,7 @@ from tests.bridges.ros1_peers import wait_for
 
 from cartwheel.assembly.attendant import Attendant
 from cartwheel.assembly.turns import Turns
-from cartwheel.simulation.running import Run
+from cartwheel.simulation.run_state import Run
 
 
 def test_a_shared_turn_lets_others_in_when_it_says_so() -> None:

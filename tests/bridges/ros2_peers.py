@@ -19,7 +19,7 @@ from tests.reserved import dds_domains
 
 from cartwheel.bridges.ros2 import Parameter, Ros2Bridge
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
-from cartwheel.messages.ros2_types import dds_name, ros2_name, ros2_service
+from cartwheel.messages.ros2.types import dds_name, ros2_name, ros2_service
 from cartwheel.session import Session
 
 SOURCE = Path(__file__).with_name("fastdds_peer.cpp")

@@ -22,7 +22,7 @@ from tests.reserved import free_port
 
 from cartwheel.codes.graph import MESSAGE_DEFINITION_INVALID
 from cartwheel.messages import from_dict, to_dict
-from cartwheel.messages.library import TypeLibrary
+from cartwheel.messages.library.library import TypeLibrary
 
 pytestmark = pytest.mark.timeout(300)
 

@@ -48,8 +48,10 @@ from cartwheel.codes.recording import (
 from cartwheel.codes.wires import BRIDGE_ENDED
 from cartwheel.errors import Code, Diagnostic, RecordingError
 from cartwheel.graph import Graph
-from cartwheel.messages import encode_cdr, from_dict, message_class, ros1_writing, ros2
+from cartwheel.messages import encode_cdr, from_dict, message_class
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
+from cartwheel.messages.ros1 import writing as ros1_writing
+from cartwheel.messages.ros2 import definitions as ros2
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 PYTHON = "/usr/bin/python3"

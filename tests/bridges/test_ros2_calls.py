@@ -10,7 +10,7 @@ from tests.bridges.ros2_peers import DOMAIN
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.dds import Dds, _Service
 from cartwheel.bridges.ros2.middleware import Reply, Served
-from cartwheel.messages.ros2_types import ros2_service
+from cartwheel.messages.ros2.types import ros2_service
 from rtps_lite import discovery, wire
 from rtps_lite.discovery import Endpoint, EndpointQos
 from rtps_lite.reader import Taken

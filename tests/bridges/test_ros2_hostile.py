@@ -30,7 +30,7 @@ from cartwheel.codes.wires import (
     ROS_VARIABLE_INVALID,
 )
 from cartwheel.graph import Graph
-from cartwheel.messages.ros2_types import ros2_type
+from cartwheel.messages.ros2.types import ros2_type
 from rtps_lite import discovery, wire
 from rtps_lite import remotes as remotes_module
 from rtps_lite.discovery import ParticipantData, encode_participant

@@ -18,7 +18,7 @@ from cartwheel.codes.world import UNKNOWN_MODEL
 from cartwheel.errors import one_line
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.geometry import Pose
-from cartwheel.messages.ros2_types import ros2_type
+from cartwheel.messages.ros2.types import ros2_type
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
 

@@ -21,7 +21,7 @@ from tests.reserved import free_port
 from cartwheel.bridges.ros2 import zenoh as ours
 from cartwheel.graph import Action, Goal
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
-from cartwheel.messages.ros2_types import ros2_service
+from cartwheel.messages.ros2.types import ros2_service
 
 zenoh = pytest.importorskip("zenoh", reason="not installed: eclipse-zenoh")
 

@@ -42,8 +42,8 @@ def _reader(kind: str) -> Callable[[bytes], None]:
     def run_one(data: bytes) -> None:
         from cartwheel.messages import decode_cdr, encode_cdr, zero
         from cartwheel.messages.learnt import learnt, parts_of
-        from cartwheel.messages.library import TypeLibrary
-        from cartwheel.messages.ros2 import ros2_definition
+        from cartwheel.messages.library.library import TypeLibrary
+        from cartwheel.messages.ros2.definitions import ros2_definition
 
         for each in ("msg", kind):
             (folder / each).mkdir(parents=True, exist_ok=True)
@@ -63,7 +63,9 @@ def _reader(kind: str) -> Callable[[bytes], None]:
 
 def _forget() -> None:
     """Lets the next input define the same names, which a process otherwise keeps."""
-    from cartwheel.messages import cdr_reading, cdr_writing, fields, learnt, ros2
+    from cartwheel.messages import fields, learnt
+    from cartwheel.messages.cdr import reading, writing
+    from cartwheel.messages.ros2 import definitions
     from cartwheel.messages.store import loaded
 
     made = loaded()
@@ -72,11 +74,11 @@ def _forget() -> None:
         for table in (made.types, made.fielddefs, made.cache):
             table.pop(name, None)
     for cached in (
-        cdr_reading.has_wide_text,
-        cdr_reading._fields,
-        cdr_writing._plan,
+        reading.has_wide_text,
+        reading._fields,
+        writing._plan,
         fields.fields,
-        ros2.ros2_definition,
+        definitions.ros2_definition,
     ):
         cached.cache_clear()
 

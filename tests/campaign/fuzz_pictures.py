@@ -46,7 +46,7 @@ def _run_one(data: bytes) -> None:
     import numpy as np
 
     from cartwheel.description.model import Heightmap
-    from cartwheel.description.terrain import heights_of
+    from cartwheel.description.shapes.terrain import heights_of
     from cartwheel.viewer.shapes import _mean_colour
     from cartwheel.viewer.skins import _reduced
     from cartwheel.world.shapes import _pixels

@@ -16,7 +16,7 @@ from cartwheel.bridges.ros2.dds import Dds
 from cartwheel.bridges.ros2.middleware import DEFAULT, LATCHED, SENSOR, Reply, Served
 from cartwheel.errors import GraphError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
-from cartwheel.messages.ros2_types import ros2_service, ros2_type
+from cartwheel.messages.ros2.types import ros2_service, ros2_type
 from rtps_lite import participant as participants
 from rtps_lite import room, wire
 from rtps_lite.discovery import EndpointQos

@@ -12,7 +12,7 @@ from cartwheel.bridges.ros2.zenoh import take_query
 from cartwheel.bridges.ros2.zenoh_tokens import published
 from cartwheel.errors import GraphError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
-from cartwheel.messages.ros2_types import ros2_service
+from cartwheel.messages.ros2.types import ros2_service
 
 _TYPE = ros2_service("std_srvs/srv/SetBool")
 _KEY = (

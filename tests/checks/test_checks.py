@@ -15,7 +15,7 @@ from cartwheel.checks.project.baseline import write
 from cartwheel.checks.project.selection import codes_matching
 from cartwheel.checks.project.workspace import descriptions
 from cartwheel.codes import command, devices, robot
-from cartwheel.description import xml
+from cartwheel.description.elements import xml
 from cartwheel.errors import CartwheelError, UnknownNameError
 
 LINK = """  <link name="{name}">

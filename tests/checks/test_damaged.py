@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from cartwheel.checks.checking import check
 from cartwheel.description.convert import to_urdf
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.errors import CartwheelError
 
 CART = share() / "robots" / "rosbots_description" / "urdf" / "rosbots.xacro"

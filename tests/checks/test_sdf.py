@@ -12,7 +12,7 @@ from tests.coded import raises
 
 from cartwheel.checks.checking import check
 from cartwheel.codes import code_named, files
-from cartwheel.description.shipped import shipped_descriptions
+from cartwheel.description.files.named_files import shipped_descriptions
 from cartwheel.errors import DescriptionError
 
 

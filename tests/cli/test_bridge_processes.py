@@ -131,7 +131,7 @@ import sys
 if "broken.urdf" in sys.argv:
     import time
     from pathlib import Path
-    from cartwheel.description import xml
+    from cartwheel.description.elements import xml
     read = xml.read_bytes
     def held(path, *more, **options):
         end = time.monotonic() + 60

@@ -16,7 +16,7 @@ from cartwheel.codes.command import (
     USAGE,
     WORLD_NOT_FOUND,
 )
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.errors import CartwheelError
 
 EMPTY = str(share() / "worlds" / "empty.world")

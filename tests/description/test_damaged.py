@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from cartwheel.description import load_text
 from cartwheel.description.convert import to_urdf
+from cartwheel.description.files.package_folders import share
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
-from cartwheel.description.package_folders import share
 from cartwheel.errors import CartwheelError
 
 CART = share() / "robots" / "rosbots_description" / "urdf" / "rosbots.xacro"
@@ -68,7 +68,7 @@ def test_deleted_and_doubled_parts(data, text, pattern):
 @bounded
 @given(st.data(), st.integers(0, 10_000))
 def test_whole_elements_gone_doubled_and_moved(data, seed):
-    from cartwheel.description import xml
+    from cartwheel.description.elements import xml
     from cartwheel.description.xml_text import write_xml
 
     root = xml.parse(URDF)

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from cartwheel.description.packages import Packages
+from cartwheel.description.elements.xml import Node, parse
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.sdf import read_sdf
 from cartwheel.description.urdf import read_urdf
-from cartwheel.description.xml import Node, parse
 from cartwheel.errors import DescriptionError
 
 MESH = """solid s

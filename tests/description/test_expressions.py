@@ -15,10 +15,11 @@ from cartwheel.codes.files import (
     XACRO_INVALID,
     XACRO_NAME_UNKNOWN,
 )
-from cartwheel.description import load_text, xml
+from cartwheel.description import load_text
+from cartwheel.description.elements import xml
 from cartwheel.description.expressions import budget as bounds
 from cartwheel.description.expressions import syntax
-from cartwheel.description.packages import Packages
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.xacro import expand
 from cartwheel.errors import DescriptionError
 

@@ -18,8 +18,8 @@ from cartwheel.codes import world as world_codes
 from cartwheel.codes.robot import MASS_NOT_POSITIVE
 from cartwheel.codes.tags import NAME_TAKEN, VALUE_INVALID
 from cartwheel.description import load_text
+from cartwheel.description.elements.node import Node
 from cartwheel.description.model import WorldDescription
-from cartwheel.description.node import Node
 from cartwheel.errors import (
     CartwheelError,
     DivergedError,
@@ -27,7 +27,7 @@ from cartwheel.errors import (
     PluginError,
     WorldError,
 )
-from cartwheel.simulation.guard import Guard
+from cartwheel.simulation.dynamics.divergence import Guard
 
 _VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "nan", "inf", "-inf", "1e9", "1e-9")
 _NUMBER = re.compile(r'(?<=[>"\s])-?\d+\.?\d*(?:[eE][-+]?\d+)?(?=[<"\s])')

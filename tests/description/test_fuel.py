@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cartwheel.description import fuel
+from cartwheel.description.files import fuel
 
 HOST = "https://fuel.gazebosim.org/1.0"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cartwheel.description import load
-from cartwheel.description.installed import source_of
+from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.model import RobotDescription
 
 LISTS = """

@@ -9,9 +9,9 @@ from tests.coded import named, placed, raises
 
 from cartwheel.codes import files
 from cartwheel.description import load, load_robot, load_text, load_world
+from cartwheel.description.files.named_files import find_description, shipped_descriptions
+from cartwheel.description.files.package_folders import share
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.package_folders import share
-from cartwheel.description.shipped import find_description, shipped_descriptions
 from cartwheel.errors import DescriptionError
 
 BODY = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'

@@ -2,7 +2,11 @@
 
 import pytest
 
-from cartwheel.description.materials import gazebo_material, material_names, unknown_material
+from cartwheel.description.appearance.materials import (
+    gazebo_material,
+    material_names,
+    unknown_material,
+)
 from cartwheel.errors import Origin
 
 

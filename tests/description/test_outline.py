@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cartwheel.description.model import Polyline
-from cartwheel.description.outline import convex_pieces, solid
+from cartwheel.description.shapes.outline import convex_pieces, solid
 
 SQUARE = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0))
 HOLE = ((1.0, 1.0), (3.0, 1.0), (3.0, 3.0), (1.0, 3.0))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from tests.message_packages import write_package
 
-from cartwheel.description.package_files import SimulationPackages
+from cartwheel.description.files.package_files import SimulationPackages
 
 FILES = {"msg/One.msg": "int8 x\n"}
 

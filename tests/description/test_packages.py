@@ -6,9 +6,9 @@ import pytest
 from tests.coded import named, raises
 
 from cartwheel.codes import files
-from cartwheel.description import package_folders
-from cartwheel.description.package_folders import share
-from cartwheel.description.packages import Packages
+from cartwheel.description.files import package_folders
+from cartwheel.description.files.package_folders import share
+from cartwheel.description.files.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
 
 HERE = Origin(file="robot.urdf", line=3)

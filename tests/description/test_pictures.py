@@ -14,9 +14,9 @@ from tests.coded import coded, raises
 import cartwheel as cw
 from cartwheel.codes import files
 from cartwheel.description import load_text
+from cartwheel.description.appearance.images import MOST_PIXELS, thumbnail
 from cartwheel.description.model import Heightmap
-from cartwheel.description.pictures import MOST_PIXELS, thumbnail
-from cartwheel.description.terrain import TerrainError, heights_of
+from cartwheel.description.shapes.terrain import TerrainError, heights_of
 from cartwheel.errors import CartwheelError
 
 RAMP = np.tile(np.arange(0, 256, 4, dtype=np.uint8), (64, 1))

@@ -9,8 +9,8 @@ from tests.coded import raises
 
 from cartwheel.codes import files
 from cartwheel.description import load
+from cartwheel.description.files.readable_files import Reach, is_inside
 from cartwheel.description.loading import load_plain, open_description
-from cartwheel.description.reach import Reach, is_inside
 
 NS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 PART = f'<robot {NS}><link name="part"/></robot>'
@@ -95,7 +95,7 @@ def test_workspace_and_packages_are_read(workspace, path, expected):
     ],
 )
 def test_files_elsewhere_are_refused(workspace, path, monkeypatch):
-    monkeypatch.setattr("cartwheel.description.package_folders.MAX_LEVELS_UP", 2)
+    monkeypatch.setattr("cartwheel.description.files.package_folders.MAX_LEVELS_UP", 2)
     with raises(files.FILE_NOT_ALLOWED):
         word(workspace, path.format(workspace))
     include = f'<xacro:include filename="{path.format(workspace)}"/>'
@@ -105,7 +105,7 @@ def test_files_elsewhere_are_refused(workspace, path, monkeypatch):
 
 @pytest.mark.parametrize("pattern", ["/etc/*", "{0}/beside/*.xacro", "../folder/*.xacro"])
 def test_wildcards_stay_inside(workspace, pattern, monkeypatch):
-    monkeypatch.setattr("cartwheel.description.package_folders.MAX_LEVELS_UP", 2)
+    monkeypatch.setattr("cartwheel.description.files.package_folders.MAX_LEVELS_UP", 2)
     with raises(files.FILE_NOT_ALLOWED):
         loaded(workspace, f'<xacro:include filename="{pattern.format(workspace)}"/>')
     with raises(files.FILE_NOT_ALLOWED):
@@ -114,7 +114,7 @@ def test_wildcards_stay_inside(workspace, pattern, monkeypatch):
 
 
 def test_files_that_arguments_name_are_read(workspace, monkeypatch):
-    monkeypatch.setattr("cartwheel.description.package_folders.MAX_LEVELS_UP", 2)
+    monkeypatch.setattr("cartwheel.description.files.package_folders.MAX_LEVELS_UP", 2)
     file = str(workspace / "beside/a.yaml")
     assert word(workspace, "$(arg file)", file=file) == "beside"
     assert word(workspace, "$(arg file)/a.yaml", file=str(workspace / "beside")) == "beside"

@@ -12,9 +12,9 @@ from cartwheel.checks.checking import check
 from cartwheel.codes.files import MESH_UNREADABLE
 from cartwheel.corpus.finding import robots_in
 from cartwheel.description import load
+from cartwheel.description.files.regular_files import read_regular, read_regular_text
 from cartwheel.description.meshes import load_mesh, mesh_notes
 from cartwheel.description.model import Mesh
-from cartwheel.description.regular import read_regular, read_regular_text
 
 OBJ = "mtllib {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 

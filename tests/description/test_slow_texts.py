@@ -11,7 +11,10 @@ from cartwheel.checks.checking import check
 from cartwheel.codes.files import XML_MALFORMED
 from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.corpus import finding
-from cartwheel.description import installed, load, load_text, missing, numbers, xml
+from cartwheel.description import load, load_text
+from cartwheel.description.elements import numbers, xml
+from cartwheel.description.files import install_rules as installed
+from cartwheel.description.files import missing_packages as missing
 from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import CartwheelError, suggestion
 

@@ -7,7 +7,7 @@ from tests.coded import raises
 
 from cartwheel.codes.files import PICTURE_UNREADABLE
 from cartwheel.description.model import Heightmap
-from cartwheel.description.terrain import heights_of
+from cartwheel.description.shapes.terrain import heights_of
 
 
 def test_the_brightest_pixel_is_as_high_as_the_size_says(tmp_path):

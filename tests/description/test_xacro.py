@@ -11,8 +11,9 @@ import pytest
 from tests.coded import named, placed, raises
 
 from cartwheel.codes import files
-from cartwheel.description import load_text, xml
-from cartwheel.description.packages import Packages
+from cartwheel.description import load_text
+from cartwheel.description.elements import xml
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.xacro import expand
 from cartwheel.errors import DescriptionError
 

@@ -4,7 +4,7 @@ import pytest
 from tests.coded import named, placed, raises
 
 from cartwheel.codes import files, tags
-from cartwheel.description import numbers, xml
+from cartwheel.description.elements import numbers, xml
 from cartwheel.description.model import Element
 from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Pose

@@ -7,7 +7,7 @@ from tests.coded import raises
 
 from cartwheel.codes import files
 from cartwheel.description import load_plain
-from cartwheel.description.reach import Reach
+from cartwheel.description.files.readable_files import Reach
 from cartwheel.gazebo.ros2_api import Ros2Api
 
 from .conftest import SDF, URDF, Gazebo

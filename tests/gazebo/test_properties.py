@@ -160,7 +160,7 @@ def test_a_heavier_box_presses_harder(make, gazebo):
 
 
 def contacts(api):
-    from cartwheel.simulation.contacts import read_contacts
+    from cartwheel.simulation.sensing.contacts import read_contacts
 
     api.simulation.refresh()
     return read_contacts(api.simulation.model, api.simulation.data, {"cube::link::collision"})

@@ -22,12 +22,12 @@ from cartwheel.codes.graph import (
 )
 from cartwheel.errors import Diagnostic, GraphError, UnknownNameError
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, message_class, to_dict, zero
-from cartwheel.messages.library import BUNDLED, TypeLibrary
+from cartwheel.messages.library.library import BUNDLED, TypeLibrary
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1, ros1_service, ros1_type
-from cartwheel.messages.ros2 import ros2_definition, ros2_hash
-from cartwheel.messages.ros2_types import ros2_service
+from cartwheel.messages.ros2.definitions import ros2_definition, ros2_hash
+from cartwheel.messages.ros2.type_descriptions import type_description
+from cartwheel.messages.ros2.types import ros2_service
 from cartwheel.messages.store import finding_with, store
-from cartwheel.messages.type_description import type_description
 
 
 class Folders:

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from cartwheel.messages import encode_cdr
-from cartwheel.messages.parameters import FIELDS, listed, parameter_type, parameter_value
+from cartwheel.messages.ros2.parameters import FIELDS, listed, parameter_type, parameter_value
 
 NAMES = ["a", "a.b", "a.b.c", "ab.c", "d.e.f.g"]
 

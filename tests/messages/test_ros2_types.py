@@ -17,10 +17,10 @@ from cartwheel.messages import (
     to_dict,
 )
 from cartwheel.messages.ros1 import ros1_service
-from cartwheel.messages.ros2 import ros2_definition
-from cartwheel.messages.ros2_types import dds_name, ros2_service, ros2_type
+from cartwheel.messages.ros2.definitions import ros2_definition
+from cartwheel.messages.ros2.types import dds_name, ros2_service, ros2_type
+from cartwheel.messages.ros2.versions import older_versions
 from cartwheel.messages.store import ROS2_DEFINITIONS, definitions, parsed_definitions
-from cartwheel.messages.versions import older_versions
 
 MESSAGES = {
     "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",

@@ -9,8 +9,8 @@ import pytest
 
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import encode_cdr
-from cartwheel.messages.ros2_types import ros2_hash_of, ros2_service, ros2_type
-from cartwheel.messages.type_description import type_description
+from cartwheel.messages.ros2.type_descriptions import type_description
+from cartwheel.messages.ros2.types import ros2_hash_of, ros2_service, ros2_type
 
 
 def hashed(value: Any) -> Any:

@@ -124,7 +124,7 @@ def test_an_installed_cartwheel_runs_in_an_empty_folder(installed: Path, tmp_pat
 
 
 def test_an_installed_cartwheel_finds_what_it_ships(installed: Path, tmp_path: Path) -> None:
-    show = "from cartwheel.description.package_folders import share; print(share())"
+    show = "from cartwheel.description.files.package_folders import share; print(share())"
     share = Path(run([str(installed / "python"), "-c", show], tmp_path).strip())
     assert share.is_relative_to(installed.parent)
     assert (share / "robots" / "rosbots_description" / "package.xml").is_file()

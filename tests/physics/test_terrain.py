@@ -76,7 +76,7 @@ def test_all_parts_of_a_polyline_report_as_their_collision(make):
     world = make.world(ring, *stones)
     world.run(0.5)
     world.session.simulation.refresh()
-    from cartwheel.simulation.contacts import read_contacts
+    from cartwheel.simulation.sensing.contacts import read_contacts
 
     simulation = world.session.simulation
     found = read_contacts(simulation.model, simulation.data, ["ring::l::c"])

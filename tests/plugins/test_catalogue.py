@@ -85,7 +85,7 @@ def test_only_what_is_named_is_imported():
             "-c",
             "import sys; from cartwheel.dialects.catalogue import plugin_named;"
             "assert plugin_named('libgazebo_ros_imu.so');"
-            "print('cartwheel.dialects.classic.imu' in sys.modules);"
+            "print('cartwheel.dialects.classic.sensors.imu' in sys.modules);"
             "print('cartwheel.dialects.makers.hector_gps' in sys.modules)",
         ],
         capture_output=True,

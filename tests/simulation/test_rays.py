@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from cartwheel.geometry import Pose, quat_from_rpy
-from cartwheel.simulation.rays import RayHandle
+from cartwheel.simulation.sensing.rays import RayHandle
 
 COLLISIONS = np.array([0, 0, 0, 0, 1, 0], dtype=np.uint8)
 EYE = """<model name="eye"><static>true</static><pose>{x} {y} 0.7 0 0 0</pose><link name="link"/>
@@ -19,8 +19,9 @@ EYE = """<model name="eye"><static>true</static><pose>{x} {y} 0.7 0 0 0</pose><l
 def way(request, monkeypatch):
     """How the rays of a bundle are cast; which one is taken depends on their number."""
     sorts = request.param == "the nearest shapes first"
-    monkeypatch.setattr("cartwheel.simulation.rays._WORTH_SORTING", 0 if sorts else math.inf)
-    monkeypatch.setattr("cartwheel.simulation.rays._FIRST_SHAPES", 2)
+    rays = "cartwheel.simulation.sensing.rays"
+    monkeypatch.setattr(f"{rays}._WORTH_SORTING", 0 if sorts else math.inf)
+    monkeypatch.setattr(f"{rays}._FIRST_SHAPES", 2)
 
 
 def handle(world, directions, *, maximum=50.0, minimum=0.0):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from cartwheel.description import load_robot, load_world
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.geometry import Pose, matrix_from_quat
 from cartwheel.session import Session
 from cartwheel.viewer import Viewer

@@ -7,7 +7,7 @@ import pytest
 
 import cartwheel.viewer
 from cartwheel.description import load_robot, load_text, load_world
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.geometry import Pose
 from cartwheel.session import Session
 from cartwheel.simulation.pacing import Pacer

@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 import pytest
 
+from cartwheel.description.files.package_folders import share
 from cartwheel.description.model import WorldDescription
-from cartwheel.description.package_folders import share
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.session import Session
-from cartwheel.simulation.naming import free_name
-from cartwheel.simulation.space import Space
+from cartwheel.simulation.models.occupied_space import Space
+from cartwheel.simulation.models.unique_names import free_name
 from cartwheel.viewer import Viewer
 from cartwheel.viewer.panels.insert import InsertPanel, Size, free_place, palette
 

@@ -9,7 +9,7 @@ from tests.coded import coded
 import cartwheel as cw
 from cartwheel.codes.world import MODELS_OVERLAP
 from cartwheel.description import load_robot, load_world
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 
 WORLDS = sorted(path.stem for path in (share() / "worlds").glob("*.world"))
 

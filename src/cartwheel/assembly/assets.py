@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
-from cartwheel.description.package_folders import belongs_to
-from cartwheel.description.packages import Packages
+from cartwheel.description.files.package_folders import belongs_to
+from cartwheel.description.files.packages import Packages
 from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:

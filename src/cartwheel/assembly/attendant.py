@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 from cartwheel.assembly.turns import Turns
-from cartwheel.simulation.running import Run
+from cartwheel.simulation.run_state import Run
 
 _LOOK = 0.1
 """Interval in s at which `close` is checked while another thread uses the simulation."""

@@ -20,7 +20,7 @@ from cartwheel.assembly.observer import Observer
 from cartwheel.assembly.processes import Kind
 from cartwheel.assembly.recording import RecordingOptions, check_recordings
 from cartwheel.assembly.turns import Turns
-from cartwheel.description.reach import run_folders
+from cartwheel.description.files.readable_files import run_folders
 from cartwheel.errors import Diagnostic
 from cartwheel.forks import keep_object
 from cartwheel.gate.access import Access, refused_page

@@ -17,9 +17,9 @@ from cartwheel.checks.rules import RULES
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.tags import DEFAULT_USED
+from cartwheel.description.elements.node import Node
 from cartwheel.description.loading import Opened, open_description, understand
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.node import Node
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 REPORTED = tuple(

@@ -8,8 +8,8 @@ from pathlib import Path
 from cartwheel.checks.controller_files import ControlFile
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Element
-from cartwheel.description.packages import Packages
 from cartwheel.dialects.ros_control.suggestion import files_for
 from cartwheel.errors import DescriptionError, Diagnostic
 

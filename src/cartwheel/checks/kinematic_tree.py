@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from cartwheel.checks import nodes
 from cartwheel.checks.subject import Subject
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 

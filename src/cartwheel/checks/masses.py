@@ -10,10 +10,10 @@ from cartwheel.checks import nodes
 from cartwheel.checks.kinematic_tree import ends, inbound_joints, link_names
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
+from cartwheel.description.elements.node import Node
 from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Box, Collision, Inertial, Link, Visual
-from cartwheel.description.node import Node
-from cartwheel.description.sdf.inertia import inertial_of
+from cartwheel.description.sdf.links.inertia import inertial_of
 from cartwheel.description.solids import as_collision, bounds
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose, Vec3

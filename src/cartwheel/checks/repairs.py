@@ -17,8 +17,8 @@ from cartwheel.checks.kinematic_tree import (
     rings,
 )
 from cartwheel.checks.masses import moments_of
+from cartwheel.description.elements.node import Node
 from cartwheel.description.inertia import impossibility
-from cartwheel.description.node import Node
 
 _PLAIN = {"ixx": "1", "iyy": "1", "izz": "1"}
 

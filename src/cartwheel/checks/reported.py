@@ -14,7 +14,7 @@ from cartwheel.checks.rule import limited
 from cartwheel.checks.subject import ABSENT, Subject
 from cartwheel.codes import codes_of, devices, files
 from cartwheel.codes import tags as codes
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic
 
 _ELSEWHERE = frozenset({*codes_of("robot"), devices.CONTACT_COLLISION_UNKNOWN})

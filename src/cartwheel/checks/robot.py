@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from cartwheel.checks import nodes, plugin_tags
+from cartwheel.description.elements.node import Node
 from cartwheel.description.model import (
     Collision,
     Element,
@@ -18,7 +19,6 @@ from cartwheel.description.model import (
     Sensor,
     Visual,
 )
-from cartwheel.description.node import Node
 from cartwheel.description.solids import Floats, Solid, bounds, solid_of
 from cartwheel.dialects.tag_roles import wheels
 from cartwheel.errors import Origin

@@ -11,10 +11,10 @@ from cartwheel.checks import nodes
 from cartwheel.checks.controller_files import ControlFile
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.files import FILE_MISSING, FILE_ON_NETWORK
-from cartwheel.description import xml
+from cartwheel.description.elements import xml
+from cartwheel.description.elements.node import Node
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.node import Node
-from cartwheel.description.packages import Packages
 from cartwheel.errors import Diagnostic, Origin
 
 ABSENT = frozenset({FILE_MISSING, FILE_ON_NETWORK})

@@ -130,8 +130,8 @@ def _lines_of(file: str) -> Sequence[str]:
 @lru_cache(maxsize=4)
 def _lines_of_state(file: str, _changed_ns: int, _size: int) -> Sequence[str]:
     """The lines as counted by the XML parser; cached, because a file may have many findings."""
-    from cartwheel.description import xml
-    from cartwheel.description.regular import read_regular_text
+    from cartwheel.description.elements import xml
+    from cartwheel.description.files.regular_files import read_regular_text
 
     try:
         return read_regular_text(Path(file), xml.MAX_BYTES).split("\n")

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from cartwheel.errors import Origin
-from cartwheel.messages.definition_parsing import parse_definition
 from cartwheel.messages.learnt import needed, register
+from cartwheel.messages.library.parsing import parse_definition
 
 
 def packed_types(name: str) -> list[dict[str, Any]]:

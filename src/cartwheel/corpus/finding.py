@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from cartwheel.description.files.named_files import find_description
+from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.loading import open_description, understand
-from cartwheel.description.regular import read_regular_text
-from cartwheel.description.shipped import find_description
 from cartwheel.errors import DescriptionError
 
 _SUFFIXES = (".xacro", ".urdf", ".sdf")

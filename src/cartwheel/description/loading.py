@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from cartwheel.codes import files as codes
-from cartwheel.description import xml
+from cartwheel.description.elements import xml
+from cartwheel.description.elements.xml import Node
+from cartwheel.description.files.named_files import find_description
+from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.readable_files import Reach
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.packages import Packages
-from cartwheel.description.plain import refuse_xacro, require_files
-from cartwheel.description.reach import Reach
-from cartwheel.description.shipped import find_description
-from cartwheel.description.xml import Node
+from cartwheel.description.received_text import refuse_xacro, require_files
 from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.description.packages import Packages
-from cartwheel.description.xml import Node
+from cartwheel.description.elements.xml import Node
+from cartwheel.description.files.packages import Packages
 
 _WITH_FILES = ("mesh", "texture")
 

@@ -27,7 +27,7 @@ from cartwheel.errors import (
     meant_one,
 )
 from cartwheel.simulation import Part
-from cartwheel.simulation.resident import Behaviour
+from cartwheel.simulation.models.resident import Behaviour
 
 _Faults = tuple[type[CartwheelError], ...]
 _ANY: _Faults = (CartwheelError,)

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from typing import Any, TypeVar, get_args, get_origin
 
 from cartwheel.codes import devices
+from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element
-from cartwheel.description.numbers import LARGEST
 from cartwheel.dialects.tag_roles import JOINT_ROLES, Role, TagRole
 from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
 

@@ -12,7 +12,7 @@ from cartwheel.dialects.gz.sensor_tags import SYSTEMS
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.errors import CartwheelError, Diagnostic, fault
 from cartwheel.simulation import Part
-from cartwheel.simulation.resident import Behaviour
+from cartwheel.simulation.models.resident import Behaviour
 
 BUILT_IN = {
     *SYSTEMS,

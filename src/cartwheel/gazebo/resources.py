@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any, Literal
 from urllib.parse import unquote
 
-from cartwheel.description import xml
-from cartwheel.description.packages import Packages
-from cartwheel.description.reach import Reach
-from cartwheel.description.shipped import SUFFIXES, find_description, shipped_descriptions
+from cartwheel.description.elements import xml
+from cartwheel.description.files.named_files import SUFFIXES, find_description, shipped_descriptions
+from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.readable_files import Reach
 from cartwheel.errors import DescriptionError, one_line
 from cartwheel.gazebo.entity_info import has_tags
 from cartwheel.gazebo.requests import pose_message

@@ -14,10 +14,10 @@ from urllib.parse import unquote
 
 from cartwheel.codes.graph import ENTITY_NAME_TAKEN, GRAPH_CLOSED, SPAWN_INVALID
 from cartwheel.description import load, load_plain
+from cartwheel.description.files.named_files import find_description
+from cartwheel.description.files.packages import Packages
+from cartwheel.description.files.readable_files import Reach
 from cartwheel.description.model import Light, RobotDescription, WorldDescription
-from cartwheel.description.packages import Packages
-from cartwheel.description.reach import Reach
-from cartwheel.description.shipped import find_description
 from cartwheel.errors import CartwheelError, DescriptionError, WorldError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import Answer, Offer, pose
@@ -25,7 +25,7 @@ from cartwheel.geometry import Pose
 from cartwheel.session import Session
 from cartwheel.simulation import RunState
 from cartwheel.simulation.limits import number
-from cartwheel.simulation.naming import free_name
+from cartwheel.simulation.models.unique_names import free_name
 
 T = TypeVar("T")
 _ASIDE = r"(?:\s|<\?(?:(?!\?>).)*\?>|<!--(?:(?!-->).)*-->)*"

@@ -9,7 +9,7 @@ from cartwheel.graph.action import Action, Goal, GoalState
 from cartwheel.graph.graph import Graph
 from cartwheel.graph.topic import Publisher, Subscription
 from cartwheel.messages import header, message_class, recast, stamp
-from cartwheel.messages.ros2_types import ros2_name
+from cartwheel.messages.ros2.types import ros2_name
 
 STATUS_RATE = 5.0
 """Minimum publish rate of goal states in Hz."""

@@ -40,7 +40,7 @@ from cartwheel.graph.topic import (
 )
 from cartwheel.graph.transforms import StaticTransforms
 from cartwheel.messages import CdrCache
-from cartwheel.messages.library import TypeLibrary
+from cartwheel.messages.library.library import TypeLibrary
 
 
 class Graph:

@@ -1,10 +1,10 @@
 """ROS messages in memory: classes, names, fields, and their external formats."""
 
-from cartwheel.messages.cdr_writing import encode_cdr
+from cartwheel.messages.cdr.encoding import CdrCache, decode_cdr
+from cartwheel.messages.cdr.writing import encode_cdr
 from cartwheel.messages.common import header, stamp
 from cartwheel.messages.convert import from_dict, from_flat, recast, to_dict, zero
 from cartwheel.messages.echo import to_yaml
-from cartwheel.messages.encoding import CdrCache, decode_cdr
 from cartwheel.messages.store import message_class, service_classes, store, type_name
 from cartwheel.messages.times import nanoseconds
 

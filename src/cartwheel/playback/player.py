@@ -15,7 +15,7 @@ from cartwheel.errors import CartwheelError, Diagnostic, RecordingError
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.graph import Graph, Publisher
 from cartwheel.playback.scene import STATE, STRING, PlayedScene
-from cartwheel.simulation.running import Run
+from cartwheel.simulation.run_state import Run
 from cartwheel.simulation.snapshot import RunState, Scene, Snapshot
 
 _LOOK_BACK_NS = 2_000_000_000

@@ -11,9 +11,9 @@ import numpy as np
 
 from cartwheel.codes.recording import RECORDED_ROBOT_NOT_SHOWN
 from cartwheel.description import load_plain
+from cartwheel.description.files.readable_files import Reach, run_folders
 from cartwheel.description.kinematics import joint_positions, link_poses
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.reach import Reach, run_folders
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose, to_wxyz
 from cartwheel.simulation.snapshot import PlacedModel, RunState, Scene, Snapshot

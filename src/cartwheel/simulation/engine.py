@@ -12,10 +12,10 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
-from cartwheel.simulation.bouncing import Bounces
 from cartwheel.simulation.clock import Task, to_ns
-from cartwheel.simulation.directions import Directions
-from cartwheel.simulation.rendering import Renderer
+from cartwheel.simulation.dynamics.friction_directions import Directions
+from cartwheel.simulation.dynamics.restitution import Bounces
+from cartwheel.simulation.sensing.rendering import Renderer
 from cartwheel.world.build import step_of
 from cartwheel.world.contact import Bounce
 from cartwheel.world.entry import ModelEntry, scoped

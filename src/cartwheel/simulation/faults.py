@@ -7,8 +7,8 @@ from cartwheel.codes import world as world_codes
 from cartwheel.errors import Diagnostic, Once, PluginError, SimulationError, fault
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.engine import Engine
-from cartwheel.simulation.population import Population
-from cartwheel.simulation.resident import place, title
+from cartwheel.simulation.models.population import Population
+from cartwheel.simulation.models.resident import place, title
 
 _FAULTS = 100
 """Maximum number of reported errors in subscribers and commands."""

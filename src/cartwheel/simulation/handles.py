@@ -24,10 +24,10 @@ from cartwheel.geometry import (
     quat_multiply,
     rotate,
 )
-from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
-from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
-from cartwheel.simulation.servo import ServoHandle
-from cartwheel.simulation.slipping import SlipHandle
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
+from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle, SurroundingsHandle
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
 from cartwheel.world.entry import ROTOR, Motor, scoped
 
 _OBJ = mujoco.mjtObj

@@ -12,18 +12,18 @@ import numpy as np
 from cartwheel.description.model import WorldDescription
 from cartwheel.geometry import Pose
 from cartwheel.simulation.clock import NANOSECONDS, SLOWEST, Task
-from cartwheel.simulation.contacts import read_contacts
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import (
     CameraHandle,
     Handle,
     MotorHandle,
 )
-from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
-from cartwheel.simulation.rays import RayHandle
-from cartwheel.simulation.rendering import Depth, Image
 from cartwheel.simulation.requests import Requests
-from cartwheel.simulation.servo import ServoHandle
+from cartwheel.simulation.sensing.contacts import read_contacts
+from cartwheel.simulation.sensing.rays import RayHandle
+from cartwheel.simulation.sensing.rendering import Depth, Image
 from cartwheel.simulation.snapshot import Contact
 from cartwheel.world.entry import ModelEntry, scoped
 

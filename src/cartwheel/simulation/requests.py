@@ -19,8 +19,11 @@ from cartwheel.errors import (
     UnknownNameError,
 )
 from cartwheel.geometry import Array, Pose
-from cartwheel.simulation.attaching import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.clock import Task, always
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
+from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle, SurroundingsHandle
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import (
     CameraHandle,
@@ -30,10 +33,7 @@ from cartwheel.simulation.handles import (
     LinkHandle,
     MotorHandle,
 )
-from cartwheel.simulation.pushing import BodyDriveHandle, WrenchHandle
-from cartwheel.simulation.rays import RayHandle
-from cartwheel.simulation.servo import ServoHandle
-from cartwheel.simulation.slipping import SlipHandle
+from cartwheel.simulation.sensing.rays import RayHandle
 from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, scoped
 from cartwheel.world.tyres import axle_of
 

@@ -8,14 +8,14 @@ from typing import Any
 
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, DivergedError
-from cartwheel.simulation.adjusting import adjust
 from cartwheel.simulation.clock import Task, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
 from cartwheel.simulation.limits import check_steps
-from cartwheel.simulation.models import Models
-from cartwheel.simulation.resident import Attach
+from cartwheel.simulation.models.models import Models
+from cartwheel.simulation.models.resident import Attach
 from cartwheel.simulation.snapshot import RunState, Snapshot
+from cartwheel.simulation.world_changes import adjust
 
 
 class Simulation(Models):

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description import outline
+from cartwheel.description.appearance.images import PictureError, thumbnail
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
     Box,
@@ -32,9 +32,9 @@ from cartwheel.description.model import (
     Visual,
 )
 from cartwheel.description.paint import Paint, paint_of
-from cartwheel.description.pictures import PictureError, thumbnail
-from cartwheel.description.terrain import heights_of
-from cartwheel.description.wrapping import scaled, wrapped
+from cartwheel.description.shapes import outline
+from cartwheel.description.shapes.terrain import heights_of
+from cartwheel.description.shapes.texture_coordinates import scaled, wrapped
 from cartwheel.geometry import Pose, matrix_from_quat, quat_between
 
 Floats = NDArray[np.float32]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.description.pictures import thumbnail
+from cartwheel.description.appearance.images import thumbnail
 from cartwheel.viewer.shapes import Surface
 
 _LARGEST = 1024

@@ -10,7 +10,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.description import meshes, outline
+from cartwheel.description import meshes
+from cartwheel.description.appearance.images import PictureError, thumbnail
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -24,8 +25,8 @@ from cartwheel.description.model import (
     Shape,
     Sphere,
 )
-from cartwheel.description.pictures import PictureError, thumbnail
-from cartwheel.description.terrain import heights_of
+from cartwheel.description.shapes import outline
+from cartwheel.description.shapes.terrain import heights_of
 from cartwheel.errors import Origin
 from cartwheel.geometry import Array, Pose, quat_between, to_wxyz
 

@@ -10,7 +10,7 @@ import mujoco
 from cartwheel.description import meshes
 from cartwheel.description.model import Material, Mesh, Rgba, Visual
 from cartwheel.description.paint import Paint, paint_of
-from cartwheel.description.wrapping import scaled, wrapped
+from cartwheel.description.shapes.texture_coordinates import scaled, wrapped
 from cartwheel.world.shapes import Assets, place, pose_arguments
 
 VISUAL_GROUP = 1

@@ -15,7 +15,7 @@ from cartwheel.description.meshes import load_mesh, loading, standing_parts, sub
 from cartwheel.description.meshes.polygons import triangulate
 from cartwheel.description.meshes.standing import standing_pieces
 from cartwheel.description.model import Mesh, Polyline
-from cartwheel.description.outline import OutlineError, convex_pieces, solid
+from cartwheel.description.shapes.outline import OutlineError, convex_pieces, solid
 
 RANDOM = np.random.default_rng(1)
 

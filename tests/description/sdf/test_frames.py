@@ -8,9 +8,9 @@ import pytest
 from tests.coded import named, raises
 
 from cartwheel.codes import tags
-from cartwheel.description.packages import Packages
+from cartwheel.description.elements.xml import parse
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.sdf import read_sdf
-from cartwheel.description.xml import parse
 from cartwheel.errors import DescriptionError
 
 QUARTER = math.pi / 2

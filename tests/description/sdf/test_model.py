@@ -12,9 +12,9 @@ from cartwheel.codes import files, tags
 from cartwheel.codes.robot import INERTIA_IMPOSSIBLE
 from cartwheel.description import load_text
 from cartwheel.description import model as m
-from cartwheel.description.packages import Packages
+from cartwheel.description.elements.xml import parse
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.sdf import read_sdf
-from cartwheel.description.xml import parse
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose
 

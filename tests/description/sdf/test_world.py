@@ -14,9 +14,9 @@ from tests.coded import named, raises
 from cartwheel.codes import files, tags
 from cartwheel.description import load_world
 from cartwheel.description import model as m
-from cartwheel.description.packages import Packages
+from cartwheel.description.elements.xml import parse, read_file
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.sdf import read_sdf
-from cartwheel.description.xml import parse, read_file
 from cartwheel.errors import CartwheelError, DescriptionError
 from cartwheel.geometry import Pose
 

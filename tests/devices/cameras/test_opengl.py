@@ -32,7 +32,7 @@ def test_memory_does_not_grow_with_images(make):
 
 
 def test_a_machine_without_opengl_says_so_once_and_drives_on(make, rosbots, monkeypatch):
-    from cartwheel.simulation import offscreen
+    from cartwheel.simulation.sensing import opengl as offscreen
 
     real = importlib.import_module
 

@@ -8,7 +8,7 @@ from tests.coded import coded
 
 from cartwheel.codes import devices
 from cartwheel.geometry import Pose
-from cartwheel.simulation.contacts import read_contacts
+from cartwheel.simulation.sensing.contacts import read_contacts
 
 COMMAND = "/part2_cmr/cmd_vel"
 G, RADIUS, TORQUE = 9.8, 0.26, 20.0

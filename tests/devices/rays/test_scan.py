@@ -161,7 +161,7 @@ def test_scans_come_at_the_rate_with_stamps_of_simulation_time(make):
 
 
 def test_nobody_listens_and_nothing_is_measured(make, monkeypatch):
-    from cartwheel.simulation.rays import RayHandle
+    from cartwheel.simulation.sensing.rays import RayHandle
 
     casts = []
     measure = RayHandle.cast

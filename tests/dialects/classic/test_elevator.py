@@ -4,7 +4,7 @@ import pytest
 
 from cartwheel.codes import running
 from cartwheel.description import load_world
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.geometry import Pose
 
 FLOOR, SILL = 3.0, 0.1

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
-from cartwheel.messages.ros2 import ros2_definition
-from cartwheel.messages.ros2_types import ros2_name
+from cartwheel.messages.ros2.definitions import ros2_definition
+from cartwheel.messages.ros2.types import ros2_name
 
 Encoding = Literal["cdr", "ros1"]
 

@@ -22,7 +22,7 @@ from cartwheel.messages import (
     type_name,
 )
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1
-from cartwheel.messages.ros2_types import ros2_name
+from cartwheel.messages.ros2.types import ros2_name
 
 ENCODINGS = ["json", "cdr", "ros1"]
 """Encodings of messages that clients may send. Lichtblick uses the first. JSON allows omitted

@@ -15,8 +15,8 @@ from cartwheel.messages import decode_cdr, store
 from cartwheel.messages.fields import FILLER
 from cartwheel.messages.learnt import learnt, recorded, register
 from cartwheel.messages.ros1 import decode_ros1, ros1_type
-from cartwheel.messages.ros1_types import ros1_store
-from cartwheel.messages.ros2_types import twin_name
+from cartwheel.messages.ros1.types import ros1_store
+from cartwheel.messages.ros2.types import twin_name
 
 _LONGEST = 1 << 20
 """Maximum length in characters of a definition with all nested types."""

@@ -9,8 +9,8 @@ from typing import Any
 from cartwheel.bridges.recording.formats import Encoding
 from cartwheel.messages import encode_cdr, type_name
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
-from cartwheel.messages.ros2 import ros2_definition, ros2_hash
-from cartwheel.messages.ros2_types import ros2_name
+from cartwheel.messages.ros2.definitions import ros2_definition, ros2_hash
+from cartwheel.messages.ros2.types import ros2_name
 
 Pack = Callable[[Any], bytes]
 

@@ -28,7 +28,7 @@ from cartwheel.codes.wires import CALL_LIMIT, GOAL_REJECTED, MALFORMED_MESSAGE
 from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.graph import Goal, GoalState
 from cartwheel.messages import decode_cdr, encode_cdr, message_class, stamp, zero
-from cartwheel.messages.ros2_types import ros2_service, ros2_type
+from cartwheel.messages.ros2.types import ros2_service, ros2_type
 
 _STATUS = "action_msgs/msg/GoalStatusArray"
 _CANCEL = "action_msgs/srv/CancelGoal"

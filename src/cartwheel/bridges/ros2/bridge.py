@@ -42,7 +42,7 @@ from cartwheel.errors import (
 )
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages import decode_cdr
-from cartwheel.messages.ros2_types import is_ros1_only, ros2_service, ros2_type
+from cartwheel.messages.ros2.types import is_ros1_only, ros2_service, ros2_type
 
 READER = "ros2"
 """Node name of the bridge in the graph."""

@@ -29,7 +29,7 @@ from cartwheel.codes.wires import (
 )
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages import encode_cdr, message_class
-from cartwheel.messages.ros2_types import Ros2Type, ros2_type
+from cartwheel.messages.ros2.types import Ros2Type, ros2_type
 from rtps_lite import discovery, wire
 from rtps_lite.discovery import Endpoint, EndpointQos
 from rtps_lite.interface import DomainFullError, LimitWarning, UnknownHostError

@@ -9,7 +9,7 @@ from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import Middleware, Outlet, profile_of
 from cartwheel.errors import Diagnostic
 from cartwheel.messages import encode_cdr, message_class, stamp
-from cartwheel.messages.ros2_types import ros2_type
+from cartwheel.messages.ros2.types import ros2_type
 
 TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
 _LEVELS = {"info": 20, "warning": 30, "error": 40}

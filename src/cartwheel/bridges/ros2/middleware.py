@@ -9,7 +9,7 @@ from typing import Protocol
 from cartwheel.errors import GraphError
 from cartwheel.graph import Qos
 from cartwheel.messages import decode_cdr, encode_cdr
-from cartwheel.messages.ros2_types import Ros2Service, Ros2Type
+from cartwheel.messages.ros2.types import Ros2Service, Ros2Type
 
 Reply = Callable[[bytes], None]
 """Sends a response: CDR with encapsulation."""

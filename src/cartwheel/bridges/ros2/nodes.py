@@ -6,7 +6,7 @@ from cartwheel.bridges.ros2 import log, parameters
 from cartwheel.bridges.ros2.middleware import Closable, Middleware, profile_of
 from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE, get_type_description
-from cartwheel.messages.ros2_types import ros2_type
+from cartwheel.messages.ros2.types import ros2_type
 
 
 class OwnNode:

@@ -12,14 +12,14 @@ from cartwheel.bridges.ros2.middleware import Closable, Middleware, Outlet, prof
 from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
 from cartwheel.messages import encode_cdr, message_class, service_classes, stamp, zero
-from cartwheel.messages.parameters import (
+from cartwheel.messages.ros2.parameters import (
     FIELDS,
     NOT_SET,
     listed,
     parameter_type,
     parameter_value,
 )
-from cartwheel.messages.ros2_types import ros2_type
+from cartwheel.messages.ros2.types import ros2_type
 
 Value = bool | int | float | str
 Offer = Callable[[str, str, Callable[[Any], Any]], Closable]

@@ -13,8 +13,8 @@ from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.codes.wires import CALL_LIMIT, MALFORMED_MESSAGE
 from cartwheel.errors import Diagnostic, GraphError, one_line
 from cartwheel.messages import decode_cdr, encode_cdr, zero
-from cartwheel.messages.ros2_types import Ros2Service, ros2_service
-from cartwheel.messages.versions import OlderService, older_versions
+from cartwheel.messages.ros2.types import Ros2Service, ros2_service
+from cartwheel.messages.ros2.versions import OlderService, older_versions
 
 _MOST_CALLS = 32
 """Maximum number of simultaneous calls."""

@@ -7,8 +7,8 @@ from typing import Any
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import zero
-from cartwheel.messages.ros2_types import ros2_hash_of
-from cartwheel.messages.type_description import type_description
+from cartwheel.messages.ros2.type_descriptions import type_description
+from cartwheel.messages.ros2.types import ros2_hash_of
 
 TYPE = "type_description_interfaces/srv/GetTypeDescription"
 

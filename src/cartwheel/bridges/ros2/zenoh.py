@@ -23,7 +23,7 @@ from cartwheel.bridges.ros2.middleware import Answer, Profile, Served
 from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token, published
 from cartwheel.codes.wires import INCOMING_DROPPED, PACKAGE_MISSING, PEER_LIMIT, ZENOH_NOT_OPENED
 from cartwheel.errors import CartwheelError, Diagnostic
-from cartwheel.messages.ros2_types import Ros2Type
+from cartwheel.messages.ros2.types import Ros2Type
 
 PORT = 7447
 """Port of the Zenoh router. If no router responds there, the session listens on it."""

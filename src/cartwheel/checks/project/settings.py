@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.codes import command
-from cartwheel.description.regular import read_regular_text
+from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.errors import CartwheelError, Origin, meant
 
 _MAX_BYTES = 1_000_000

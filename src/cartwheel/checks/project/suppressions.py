@@ -14,8 +14,8 @@ from pathlib import Path
 
 from cartwheel.checks.project.selection import codes_matching
 from cartwheel.codes import command
-from cartwheel.description import xml
-from cartwheel.description.regular import read_regular_text
+from cartwheel.description.elements import xml
+from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.errors import Code, Diagnostic, Origin, UnknownNameError
 
 _IN_XML = re.compile(r"<!--\s*cartwheel:\s*ignore\b")

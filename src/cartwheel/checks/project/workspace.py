@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from cartwheel.description import xml
-from cartwheel.description.node import Node
-from cartwheel.description.package_folders import IGNORE_MARKERS
+from cartwheel.description.elements import xml
+from cartwheel.description.elements.node import Node
+from cartwheel.description.files.package_folders import IGNORE_MARKERS
 
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".world")
 MOST = 5000

@@ -12,7 +12,7 @@ from typing import Any
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.codes.command import NO_ROBOTS
 from cartwheel.corpus import Verdict, robots_in, try_robot
-from cartwheel.description.xml import shown_path
+from cartwheel.description.elements.xml import shown_path
 from cartwheel.errors import CartwheelError
 
 SCHEMA = 1

@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from cartwheel.codes.command import WORLD_NOT_FOUND
-from cartwheel.description.package_folders import share
+from cartwheel.description.files.package_folders import share
 from cartwheel.errors import CartwheelError, meant_one
 
 _LEVELS = 4

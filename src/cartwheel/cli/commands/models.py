@@ -26,7 +26,7 @@ def spawn(
     """Spawns a file. The simulation's process reads the description."""
     with connect(sim) as client:
         # Paths are relative to the user's folder, not the simulation's.
-        from cartwheel.description.shipped import find_description
+        from cartwheel.description.files.named_files import find_description
 
         path = find_description(file, package_path).absolute()
         answer = client.request(

@@ -20,7 +20,7 @@ from cartwheel.cli.commands.options import Options
 from cartwheel.cli.commands.report import Report
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.control import running
-from cartwheel.description.reach import run_folders
+from cartwheel.description.files.readable_files import run_folders
 from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
 from cartwheel.messages.store import finding_with

@@ -10,10 +10,10 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from cartwheel.description.appearance.images import FORMATS, check_size
+from cartwheel.description.files.regular_files import read_regular
 from cartwheel.description.meshes.submesh import MOST_BYTES, Submesh, build_submesh
 from cartwheel.description.model import Rgba
-from cartwheel.description.pictures import FORMATS, check_size
-from cartwheel.description.regular import read_regular
 
 
 def read_with_trimesh(path: Path, data: bytes, _notes: list[str]) -> list[Submesh]:

@@ -19,6 +19,7 @@ import numpy as np
 
 from cartwheel.codes.files import FILE_MISSING
 from cartwheel.description import model
+from cartwheel.description.files.regular_files import read_regular
 from cartwheel.description.meshes.dae import read_dae
 from cartwheel.description.meshes.generic import read_with_trimesh
 from cartwheel.description.meshes.obj import read_obj
@@ -34,7 +35,6 @@ from cartwheel.description.meshes.submesh import (
     scale_submesh,
     unique_rows,
 )
-from cartwheel.description.regular import read_regular
 from cartwheel.errors import Origin, meant, suggestion
 
 __all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]

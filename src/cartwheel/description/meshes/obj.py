@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.meshes.corners import weld
 from cartwheel.description.meshes.submesh import Submesh
 from cartwheel.description.model import Rgba
-from cartwheel.description.regular import read_regular_text
 
 _IGNORED = frozenset({"s", "g", "l", "p", "vp", "#", "mg"})
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.description.outline import Edge, OutlineError, fill
+from cartwheel.description.shapes.outline import Edge, OutlineError, fill
 
 Points = NDArray[np.float64]
 Faces = NDArray[np.int64]

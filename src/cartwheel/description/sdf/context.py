@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 from cartwheel.codes import tags as codes
 from cartwheel.codes.files import SDF_VERSION
-from cartwheel.description.numbers import LARGEST, position
+from cartwheel.description.elements.numbers import LARGEST, position
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, meant, suggestion
 from cartwheel.geometry import Pose, Quat, quat_normalize
 
 if TYPE_CHECKING:
+    from cartwheel.description.elements.xml import Node
+    from cartwheel.description.files.packages import Packages
     from cartwheel.description.model import Rgba
-    from cartwheel.description.packages import Packages
-    from cartwheel.description.xml import Node
 
 Version = tuple[int, int]
 OLDEST: Version = (1, 0)

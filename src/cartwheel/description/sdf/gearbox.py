@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cartwheel.codes.tags import ELEMENT_LEFT_OUT
-from cartwheel.description import numbers
+from cartwheel.description.elements import numbers
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Joint, Mimic
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.sdf.frames import WORLD, Frames
-from cartwheel.description.xml import Node
 from cartwheel.geometry import Quat, rotate
 
 

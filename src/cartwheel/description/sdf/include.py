@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cartwheel.codes import files, tags
-from cartwheel.description import fuel
+from cartwheel.description.elements.xml import Node, read_file
+from cartwheel.description.files import fuel
 from cartwheel.description.losses import loss
 from cartwheel.description.model import PluginTag
 from cartwheel.description.sdf.context import MAX_INCLUDES, MODERN, Context, read_version
 from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.sensors import read_plugins
-from cartwheel.description.xml import Node, read_file
 from cartwheel.errors import DescriptionError, Origin
 
 

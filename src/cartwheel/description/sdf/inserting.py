@@ -6,13 +6,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
+from cartwheel.description.elements.xml import Node
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Joint, Link, Sensor
-from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.context import Context, Version
 from cartwheel.description.sdf.frames import Frames
 from cartwheel.description.sdf.gearbox import mesh_gears
 from cartwheel.description.sdf.joint import GEARBOX, add_joint, read_joint, read_joint_sensors
-from cartwheel.description.sdf.link import read_link
+from cartwheel.description.sdf.links.link import read_link
 from cartwheel.description.sdf.parts import (
     add_frame,
     attach,
@@ -21,7 +22,6 @@ from cartwheel.description.sdf.parts import (
     judge,
     left_out,
 )
-from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, Diagnostic
 
 INSERTED = ("link", "joint", "frame")

@@ -6,12 +6,12 @@ import math
 from dataclasses import replace
 
 from cartwheel.codes import robot, tags
-from cartwheel.description import numbers
+from cartwheel.description.elements import numbers
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.sensors import read_sensor
-from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, Value, meant, suggestion
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 

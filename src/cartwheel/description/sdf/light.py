@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Literal
 
 from cartwheel.codes.tags import TYPE_UNKNOWN
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Light
 from cartwheel.description.sdf.context import read_rgba, require_name
-from cartwheel.description.xml import Node
 from cartwheel.geometry import Pose
 
 Kind = Literal["directional", "point", "spot"]

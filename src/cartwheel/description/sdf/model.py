@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from cartwheel.codes import files, tags
+from cartwheel.description.elements.xml import Node, unread
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Element, Joint, Sensor
 from cartwheel.description.sdf.context import (
@@ -26,11 +27,10 @@ from cartwheel.description.sdf.joint import (
     read_joint,
     read_joint_sensors,
 )
-from cartwheel.description.sdf.link import read_link
+from cartwheel.description.sdf.links.link import read_link
 from cartwheel.description.sdf.parts import add_frame, attach, check_mimic, left_out
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.unplaced import Model, name_apart
-from cartwheel.description.xml import Node, unread
 from cartwheel.errors import DescriptionError, meant, suggestion
 
 MAX_NESTING = 32

@@ -5,7 +5,7 @@ Source: sdformat's ``sdf/1.2/1_0.convert`` and the descriptions of these version
 
 from __future__ import annotations
 
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 
 _RANGE = ("samples", "resolution", "min_angle", "max_angle")
 _RANGES = dict.fromkeys(("horizontal", "vertical"), _RANGE)

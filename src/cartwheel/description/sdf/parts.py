@@ -6,13 +6,13 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from cartwheel.codes.robot import MIMIC_UNKNOWN
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Joint, Link, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import Frames
-from cartwheel.description.sdf.inertia import judged_inertia
 from cartwheel.description.sdf.joint import joint_frame
-from cartwheel.description.xml import Node
+from cartwheel.description.sdf.links.inertia import judged_inertia
 from cartwheel.errors import DescriptionError, meant, suggestion
 
 

@@ -12,15 +12,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from cartwheel.codes import files, tags
+from cartwheel.description.elements.xml import Node, unread
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.context import MODERN, NEWEST, Context, read_version
 from cartwheel.description.sdf.harmless import HARMLESS
 from cartwheel.description.sdf.model import read_model
 from cartwheel.description.sdf.oldest import as_modern
 from cartwheel.description.sdf.unplaced import Model
-from cartwheel.description.sdf.world import read_world
-from cartwheel.description.xml import Node, unread
+from cartwheel.description.sdf.worlds.world import read_world
 from cartwheel.errors import DescriptionError, Diagnostic
 
 __all__ = ["read_sdf"]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cartwheel.description.elements.xml import needs_xacro, read_bytes
 from cartwheel.description.sdf.context import read_pose, reference_of
 from cartwheel.description.sdf.include import Included
 from cartwheel.description.sdf.parts import frames_of
 from cartwheel.description.sdf.unplaced import Model
 from cartwheel.description.urdf import read_urdf
-from cartwheel.description.xml import needs_xacro, read_bytes
 from cartwheel.description.xml_text import write_xml
 
 

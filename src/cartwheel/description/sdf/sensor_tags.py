@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cartwheel.description.xml import Node
+from cartwheel.description.elements.xml import Node
 
 
 def _tags(*names: str, **below: Any) -> dict[str, Any]:

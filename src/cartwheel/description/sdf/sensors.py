@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from cartwheel.codes.tags import TYPE_UNKNOWN
+from cartwheel.description.elements.numbers import LARGEST, within
+from cartwheel.description.elements.xml import Node, copied, to_element
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
-from cartwheel.description.numbers import LARGEST, within
 from cartwheel.description.sdf.context import read_pose
 from cartwheel.description.sdf.sensor_tags import mark_known
-from cartwheel.description.xml import Node, copied, to_element
 from cartwheel.geometry import Pose
 
 MOST_PIXELS = 7680 * 4320

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cartwheel.codes import tags as codes
+from cartwheel.description.appearance.materials import gazebo_material, unknown_material
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
-from cartwheel.description.materials import gazebo_material, unknown_material
 from cartwheel.description.model import Light, Link, Material, Sensor, Visual
 from cartwheel.description.sdf.context import Context, not_simulated, read_pose
 from cartwheel.description.sdf.light import read_light
-from cartwheel.description.sdf.material import read_material
+from cartwheel.description.sdf.links.material import read_material
+from cartwheel.description.sdf.links.surface import not_negative, read_surface
 from cartwheel.description.sdf.sensors import read_sensor
-from cartwheel.description.sdf.surface import not_negative, read_surface
 from cartwheel.description.urdf.link import UrdfContext
-from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 LINK_TAGS = (

@@ -11,6 +11,7 @@ from typing import Any
 
 from cartwheel.codes import robot as robot_codes
 from cartwheel.codes import tags as codes
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Joint, Link, PluginTag
 from cartwheel.description.sdf.inserting import INSERTED
 from cartwheel.description.sdf.sensors import read_plugin, read_sensor
@@ -21,7 +22,6 @@ from cartwheel.description.urdf.gazebo_link_tags import (
     warn_idle,
 )
 from cartwheel.description.urdf.link import UrdfContext
-from cartwheel.description.xml import Node
 from cartwheel.errors import meant, suggestion
 
 JOINT_TAGS = (

@@ -6,10 +6,10 @@ import math
 from collections.abc import Collection, Iterable
 
 from cartwheel.codes import robot, tags
-from cartwheel.description import numbers
+from cartwheel.description.elements import numbers
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
 from cartwheel.description.urdf.link import UrdfContext, read_origin
-from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, meant, suggestion
 from cartwheel.geometry import Pose, Vec3
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from cartwheel.codes import robot, tags
-from cartwheel.description import numbers
+from cartwheel.description.elements import numbers
+from cartwheel.description.elements.xml import Node
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
 from cartwheel.description.losses import loss
 from cartwheel.description.meshes import load_mesh
@@ -23,8 +25,6 @@ from cartwheel.description.model import (
     Sphere,
     Visual,
 )
-from cartwheel.description.packages import Packages
-from cartwheel.description.xml import Node
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, meant, suggestion
 from cartwheel.geometry import Pose
 

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 from cartwheel.codes import files, robot
 from cartwheel.codes import tags as tag_codes
+from cartwheel.description.elements.xml import Node, to_element, unread
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Inertial, Link, RobotDescription
-from cartwheel.description.packages import Packages
 from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
 from cartwheel.description.sdf.inserting import insert
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
@@ -28,7 +29,6 @@ from cartwheel.description.urdf.link import (
     read_materials,
 )
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
-from cartwheel.description.xml import Node, to_element, unread
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose
 

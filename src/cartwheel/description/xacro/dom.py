@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from xml.dom import minidom
 
 from cartwheel.codes import files as codes
-from cartwheel.description.xml import Node
+from cartwheel.description.elements.xml import Node
 from cartwheel.errors import DescriptionError, Origin
 
 _PART_SIZE = 200

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cartwheel.codes import files as codes
-from cartwheel.description import numbers
-from cartwheel.description.xml import near_files
+from cartwheel.description.elements import numbers
+from cartwheel.description.elements.xml import near_files
 from cartwheel.errors import Code, DescriptionError, Origin, Value, meant, suggestion
 
 

@@ -8,15 +8,15 @@ from types import ModuleType
 from typing import Any
 
 from cartwheel.codes import files as codes
-from cartwheel.description import xml
+from cartwheel.description.elements import xml
+from cartwheel.description.elements.xml import Node
 from cartwheel.description.expressions import Budget
-from cartwheel.description.packages import Packages
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.xacro.dom import Document, DomBuilder, Element, clone, size_of, to_node
 from cartwheel.description.xacro.errors import Failure, code_of, explain
 from cartwheel.description.xacro.module import fresh_xacro
 from cartwheel.description.xacro.replacements import replace_functions
 from cartwheel.description.xacro.unprefixed import PREFIX, prefixed
-from cartwheel.description.xml import Node
 from cartwheel.errors import (
     CartwheelError,
     DescriptionError,

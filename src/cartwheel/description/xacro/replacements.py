@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel import yaml_text
 from cartwheel.codes import files as codes
-from cartwheel.description import xml
+from cartwheel.description.elements import xml
 from cartwheel.description.expressions import Evaluator, ExpressionError
-from cartwheel.description.installed import source_of
+from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.xacro.dom import Document, Element, replace_node
 from cartwheel.description.xacro.symbols import eval_extension_of, read_yaml, symbols_of
 from cartwheel.description.xacro.unprefixed import PREFIX, call_prefixed

@@ -9,7 +9,7 @@ from typing import Any
 
 from cartwheel import yaml_text
 from cartwheel.codes.files import YAML_MALFORMED
-from cartwheel.description import xml
+from cartwheel.description.elements import xml
 from cartwheel.description.expressions import BUILTINS, MATH, Evaluator, Function
 from cartwheel.errors import DescriptionError, Origin
 

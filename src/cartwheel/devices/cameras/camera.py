@@ -11,7 +11,7 @@ from cartwheel.devices.cameras.depth_camera import DepthConfig, DepthImager
 from cartwheel.devices.cameras.imager import Imager, ImagerConfig
 from cartwheel.errors import GraphError
 from cartwheel.geometry import Pose
-from cartwheel.simulation.offscreen import NoOpenGLError
+from cartwheel.simulation.sensing.opengl import NoOpenGLError
 
 _IDLE_RATE = 1.0
 """Rate at which a triggered camera checks its trigger, Hz."""

@@ -15,7 +15,7 @@ from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
 from cartwheel.devices.drives.steering import angle_of_turn, rim_factors, wheel_angles
 from cartwheel.devices.elementwise import Number, clamp, copysign
 from cartwheel.messages import message_class
-from cartwheel.simulation.servo import ServoHandle
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 
 _FIRST_PERIOD = 0.01
 """Duration of the first time step, in which the limits apply, s."""

@@ -14,7 +14,7 @@ from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.devices.elementwise import Number, cos, sin
 from cartwheel.geometry import Vec3
-from cartwheel.simulation.pushing import BodyDriveHandle
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 
 Velocity = tuple[Number, Number, Number]
 """Forward and sideways velocity, m/s, and yaw rate, rad/s; or distances, m, and a rotation, rad."""

@@ -9,7 +9,7 @@ from cartwheel.codes import running, world
 from cartwheel.component import Component, Scope
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import message_class
-from cartwheel.simulation.attaching import AttachmentHandle
+from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle
 
 Place = tuple[str, str]
 """Names of a model and a link."""

@@ -15,8 +15,8 @@ from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.devices.joints.trajectory import next_point
 from cartwheel.devices.periodic import Elapsed
 from cartwheel.messages import header, message_class, nanoseconds, zero
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.handles import JointHandle
-from cartwheel.simulation.servo import ServoHandle
 
 _TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 

@@ -13,8 +13,8 @@ from cartwheel.devices.elementwise import Number, atan2, where
 from cartwheel.errors import Origin
 from cartwheel.graph import ReconfigureParameter
 from cartwheel.messages import message_class
+from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
 from cartwheel.simulation.handles import JointHandle
-from cartwheel.simulation.slipping import SlipHandle
 
 _MESSAGE = "gazebo_msgs/msg/WheelSlip"
 _DIRECTIONS = ("lateral", "longitudinal")

@@ -12,7 +12,7 @@ from cartwheel.component import Component, Scope
 from cartwheel.devices.elementwise import Number, clamp
 from cartwheel.errors import Origin
 from cartwheel.geometry import Array, Vec3, rotate
-from cartwheel.simulation.attaching import AttachmentHandle
+from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle
 from cartwheel.simulation.handles import LinkHandle
 
 

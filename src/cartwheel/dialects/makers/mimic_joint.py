@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices
+from cartwheel.description.elements.numbers import MOST_RATIO
 from cartwheel.description.model import Mimic
-from cartwheel.description.numbers import MOST_RATIO
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cartwheel.messages import message_class, zero
-from cartwheel.messages.parameters import FIELDS, listed, parameter_value
+from cartwheel.messages.ros2.parameters import FIELDS, listed, parameter_value
 
 _PACKAGE = "rcl_interfaces"
 Serve = Callable[[str, str, Callable[[Any], Any]], Any]

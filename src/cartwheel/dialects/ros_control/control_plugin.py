@@ -19,7 +19,7 @@ from cartwheel.dialects.ros_control.robot import ControlledRobot, RobotSensor
 from cartwheel.dialects.sdf.force_torque import read_joint_load
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.errors import CartwheelError
-from cartwheel.simulation.pushing import BodyDriveHandle
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 
 
 class ControlPlugin(Plugin[Any]):

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from cartwheel.codes import devices
+from cartwheel.description.elements.numbers import LARGEST, MOST_RATIO
 from cartwheel.description.model import Element, RobotDescription
-from cartwheel.description.numbers import LARGEST, MOST_RATIO
 from cartwheel.dialects.tags import invalid
 from cartwheel.errors import Code, Diagnostic, Origin, Value
 from cartwheel.simulation.limits import FARTHEST

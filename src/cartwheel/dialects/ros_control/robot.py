@@ -12,7 +12,7 @@ from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.errors import CartwheelError, Code, Origin, Value
-from cartwheel.simulation.pushing import BodyDriveHandle
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,7 +9,7 @@ from operator import getitem
 from typing import Any
 
 from cartwheel.codes import devices
-from cartwheel.description.numbers import LARGEST
+from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.dialects.tags import shown
 from cartwheel.errors import Code, Origin, PluginError, Value, meant_one
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from cartwheel import yaml_text
 from cartwheel.codes import devices
-from cartwheel.description.packages import Packages
+from cartwheel.description.files.packages import Packages
 from cartwheel.errors import CartwheelError, Origin, PluginError
 
 _CALL = re.compile(r"\$\(\s*([\w-]+)((?:\s[^()]*)?)\)")

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 
 from cartwheel.codes import devices
+from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element
-from cartwheel.description.numbers import LARGEST
 from cartwheel.devices.noise import Noise
 from cartwheel.dialects.tags import number
 from cartwheel.errors import Diagnostic, PluginError

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from cartwheel.codes.recording import UPLOAD_REFUSED
+from cartwheel.description.files.package_folders import share
+from cartwheel.description.files.readable_files import Reach
 from cartwheel.description.model import RobotDescription
-from cartwheel.description.package_folders import share
-from cartwheel.description.reach import Reach
 from cartwheel.errors import CartwheelError, DescriptionError, Origin
 from cartwheel.geometry import Pose, quat_from_rpy
-from cartwheel.simulation.naming import free_name
-from cartwheel.simulation.space import Space
+from cartwheel.simulation.models.occupied_space import Space
+from cartwheel.simulation.models.unique_names import free_name
 from cartwheel.viewer.model_view import bounds, footprint
 from cartwheel.viewer.panels.base import Panel
 from cartwheel.viewer.seat import Seat

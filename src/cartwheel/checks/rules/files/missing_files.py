@@ -11,7 +11,7 @@ from cartwheel.checks import nodes, spelling
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import ABSENT, Subject
 from cartwheel.codes import files as files_codes
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 from cartwheel.errors import DescriptionError, Diagnostic
 
 _PACKAGE = re.compile(r"(?:package://|model://|\$\(find )([\w.-]+)")

@@ -12,8 +12,8 @@ from cartwheel.checks import nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import files as files_codes
-from cartwheel.description import xml
-from cartwheel.description.node import Node
+from cartwheel.description.elements import xml
+from cartwheel.description.elements.node import Node
 from cartwheel.description.xacro.unprefixed import PREFIX
 from cartwheel.errors import Diagnostic
 

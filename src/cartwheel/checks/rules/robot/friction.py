@@ -10,8 +10,8 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.elements.node import Node
 from cartwheel.description.model import Link
-from cartwheel.description.node import Node
 from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01

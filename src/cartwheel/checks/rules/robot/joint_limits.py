@@ -9,7 +9,7 @@ from cartwheel.checks.kinematic_tree import joints_with_types
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic
 
 _LIMITED = ("revolute", "prismatic")

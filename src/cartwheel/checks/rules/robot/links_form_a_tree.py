@@ -16,7 +16,7 @@ from cartwheel.checks.kinematic_tree import (
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic
 
 

@@ -20,8 +20,8 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.elements.node import Node
 from cartwheel.description.model import Inertial, Link
-from cartwheel.description.node import Node
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic
 

@@ -10,7 +10,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST, is_converted
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic
 
 _ADDED = 4 * math.pi

@@ -9,7 +9,7 @@ from cartwheel.checks.reported import diagnostics_of, has_place
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import tags as codes
-from cartwheel.description.node import Node
+from cartwheel.description.elements.node import Node
 from cartwheel.errors import Diagnostic
 
 

@@ -1,0 +1,1 @@
+"""Named materials, and image files."""

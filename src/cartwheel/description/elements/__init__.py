@@ -1,0 +1,1 @@
+"""Elements of XML, with file and line, and the numbers in them."""

@@ -1,0 +1,186 @@
+"""The folders on the disk that contain packages, by the name in package.xml."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import chain
+from pathlib import Path
+
+from cartwheel.description.files.readable_files import is_common
+
+MAX_ENTRIES = 500
+"""A folder with more entries is not a workspace; only these are examined."""
+MAX_CRAWLED = 20_000
+"""Maximum number of folders to search below one root."""
+MAX_LEVELS_UP = 5
+"""Number of levels above a file or its package at which a workspace may begin."""
+IGNORE_MARKERS = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
+"""Files that exclude a folder from the search for packages."""
+_SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
+_NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
+_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
+
+
+def share() -> Path:
+    """The folder with the built-in ``robots``, ``worlds`` and ``models``.
+
+    The repository's root in a checkout, ``cartwheel/share`` in an installed package.
+    """
+    package = Path(__file__).resolve().parents[2]
+    installed = package / "share"
+    return installed if installed.is_dir() else package.parent.parent
+
+
+def around(folder: Path) -> list[Path]:
+    """The folder and those above it, nearest first, that may belong to its workspace."""
+    parents = [folder, *folder.parents]
+    levels = MAX_LEVELS_UP
+    for index, parent in enumerate(parents):
+        if (parent / "package.xml").is_file():
+            levels = max(levels, index + MAX_LEVELS_UP)
+    chosen = []
+    for parent in parents[:levels]:
+        # Shared folders are slow to read, and folders for temporary files contain anyone's
+        # files.
+        if is_common(parent):
+            break
+        chosen.append(parent)
+    return chosen or parents[:1]
+
+
+def package_above(folder: Path) -> Path | None:
+    """The package that contains a folder."""
+    near = [folder, *folder.parents][:MAX_LEVELS_UP]
+    return next((each for each in near if is_file(each / "package.xml")), None)
+
+
+def package_in(root: Path, name: str) -> Path | None:
+    """The first package with this name in the workspace at `root`."""
+    return next(packages_in(root, name), None)
+
+
+def packages_in(root: Path, name: str) -> Iterator[Path]:
+    """All packages with this name in the workspace at `root`, nearest first."""
+    return (folder for folder in chain((root,), _nested(root)) if package_name(folder) == name)
+
+
+def package_below(root: Path, name: str) -> Path | None:
+    """The package with this name at any depth; packages do not contain other packages."""
+    level = [root]
+    looked = 0
+    while level and looked < MAX_CRAWLED:
+        below = []
+        for folder in level:
+            for each in folders_in(folder):
+                looked += 1
+                declared = package_name(each)
+                if declared == name:
+                    return each
+                if declared is None:
+                    below.append(each)
+        level = below
+    return None
+
+
+def _nested(root: Path) -> Iterator[Path]:
+    """The folders in which a package of the workspace at `root` may be, nearest first."""
+    first = list(folders_in(root))
+    yield from first
+    for folder in first:
+        if package_name(folder) is not None:
+            continue
+        second = list(folders_in(folder))
+        yield from second
+        if folder.name in ("src", "install", "share"):
+            for inner in second:
+                if package_name(inner) is None:
+                    yield from folders_in(inner)
+                    yield from folders_in(inner / "share")
+
+
+def names_in(root: Path) -> Iterator[str]:
+    """The names of the packages in the workspace at `root`."""
+    for folder in (root, *_nested(root)):
+        found = package_name(folder)
+        if found is not None:
+            yield found
+
+
+def belongs_to(path: Path, home: Path) -> bool:
+    """Whether a file is in the folder of a package or model, after resolving links.
+
+    Links in an installed package may lead to its source, which has the same name.
+    """
+    real, home = path.resolve(), home.resolve()
+    if real.is_relative_to(home):
+        return True
+    source = next((each for each in real.parents if is_file(each / "package.xml")), None)
+    return source is not None and package_name(source) == package_name(home)
+
+
+def package_name(folder: Path) -> str | None:
+    """The name in the folder's package.xml; None if there is no package.xml."""
+    manifest = folder / "package.xml"
+    try:
+        changed = manifest.stat().st_mtime_ns
+    except (OSError, ValueError):
+        return None
+    return _declared_name(manifest, changed)
+
+
+@lru_cache(maxsize=4096)
+def _declared_name(manifest: Path, _changed: int) -> str | None:
+    if not is_file(manifest):
+        return None
+    try:
+        with manifest.open("rb") as file:
+            match = _NAME.search(_COMMENT.sub(b"", file.read(16384)))
+    except OSError:
+        return None
+    return match[1].decode("utf-8", "replace") if match else manifest.parent.name
+
+
+def folders_in(folder: Path) -> tuple[Path, ...]:
+    """The subfolders, except those that cannot contain packages."""
+    try:
+        changed = folder.stat().st_mtime_ns
+    except (OSError, ValueError):
+        return ()
+    return _listing(folder, changed)
+
+
+@lru_cache(maxsize=4096)
+def _listing(folder: Path, _changed: int) -> tuple[Path, ...]:
+    names = []
+    try:
+        with os.scandir(folder) as entries:
+            for count, entry in enumerate(entries):
+                if count >= MAX_ENTRIES:
+                    break
+                if entry.name in IGNORE_MARKERS:
+                    return ()
+                hidden = entry.name.startswith(".") or entry.name in _SKIPPED
+                if not hidden and entry.is_dir():
+                    names.append(entry.name)
+    except OSError:
+        return ()
+    return tuple(folder / name for name in sorted(names))
+
+
+def is_file(path: Path) -> bool:
+    """Whether a file exists; False for paths that cannot exist or may not be read."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def is_dir(path: Path) -> bool:
+    """Whether a folder exists; False for paths that cannot exist or may not be read."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False

@@ -1,0 +1,185 @@
+"""The search for packages and Gazebo models: near the description, then in the environment."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+from cartwheel.description.elements import numbers
+from cartwheel.description.files.missing_packages import Advice, advice, also_missing
+from cartwheel.description.files.package_folders import (
+    around,
+    folders_in,
+    is_dir,
+    names_in,
+    package_below,
+    package_in,
+    packages_in,
+    share,
+)
+
+_ROS1 = "ROS_PACKAGE_PATH"
+_PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
+_MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
+
+
+class PackageSearch:
+    """Finds packages and models by name. Packages that were found are remembered.
+
+    Args:
+        file: The description; None uses the current folder.
+        package_path: Additional folders to search first.
+        environment: Environment variables.
+    """
+
+    def __init__(
+        self, file: Path | None, package_path: Sequence[Path], environment: Mapping[str, str]
+    ) -> None:
+        self.file = file
+        self.package_path = tuple(package_path)
+        self.environment = environment
+        self._packages: dict[str, Path | None] = {}
+        self._package_advice: dict[str, Advice] = {}
+        self._model_advice: dict[str, Advice] = {}
+        """By model name: a world may refer to a model many times."""
+
+    @property
+    def folder(self) -> Path:
+        """The description's folder."""
+        return self.file.parent if self.file is not None else Path.cwd()
+
+    def package(self, name: str) -> Path | None:
+        """The folder of a package; None if it was not found."""
+        if name not in self._packages:
+            self._packages[name] = self._search(name)
+        return self._packages[name]
+
+    def all_named(self, name: str) -> list[Path]:
+        """The folders of all packages with a name, in search order."""
+        first = self.package(name)
+        if first is None:
+            return []
+        found = [first]
+        for roots in (self.package_path, self._ancestors(), self.environment_roots()):
+            for root in roots:
+                found += packages_in(root, name)
+        return list(dict.fromkeys(found))
+
+    def model(self, name: str) -> Path | None:
+        """The folder of a model, or of a package with this name; None if it was not found."""
+        if not _is_plain(name):
+            return None
+        for folder in self.model_folders():
+            if is_dir(folder / name):
+                return folder / name
+        return self.package(name)
+
+    def model_folders(self) -> list[Path]:
+        """The folders that are searched for Gazebo models, in order."""
+        folders = list(self.package_path)
+        for folder in self._ancestors():
+            folders += [folder, folder / "models"]
+        for variable in _MODELS:
+            folders += self.paths(variable)
+        folders += [Path("~/.gazebo/models").expanduser(), share() / "models", share() / "robots"]
+        return list(dict.fromkeys(folder for folder in folders if is_dir(folder)))
+
+    def environment_roots(self) -> Iterator[Path]:
+        """The folders in the environment variables of ROS 1, ROS 2 and Gazebo."""
+        yield from self.paths(_ROS1)
+        for variable in _PREFIXES:
+            for prefix in self.paths(variable):
+                yield prefix / "share"
+        for variable in _MODELS:
+            yield from self.paths(variable)
+
+    def paths(self, variable: str) -> list[Path]:
+        """The folders in an environment variable."""
+        value = self.environment.get(variable, "")
+        return [Path(part).expanduser() for part in value.split(os.pathsep) if part]
+
+    def package_advice(self, name: str) -> Advice:
+        """What to do about a package that was not found; the hint lists the searched folders."""
+        if name not in self._package_advice:
+            self._package_advice[name] = self._advise_on_package(name)
+        return self._package_advice[name]
+
+    def model_advice(self, name: str) -> Advice:
+        """What to do about a model that was not found; the hint lists the searched folders."""
+        if name not in self._model_advice:
+            self._model_advice[name] = self._advise_on_model(name)
+        return self._model_advice[name]
+
+    def _search(self, name: str) -> Path | None:
+        if not _is_plain(name):
+            return None
+        searches: tuple[Callable[[], Iterator[Path]], ...] = (
+            lambda: iter(self.package_path),
+            lambda: iter(self._ancestors()),
+            self.environment_roots,
+            lambda: iter((share() / "robots", share() / "models")),
+        )
+        for roots in searches:
+            for root in roots():
+                found = package_in(root, name)
+                if found is not None:
+                    return found
+        for root in self._crawled():
+            found = package_below(root, name)
+            if found is not None:
+                return found
+        # A folder with the right name but without package.xml may be a description copied out of
+        # its workspace: second choice, but better than failing.
+        for roots in searches:
+            for root in roots():
+                for bare in (root, root / name):
+                    if bare.name == name and is_dir(bare):
+                        return bare
+        return None
+
+    def _crawled(self) -> Iterator[Path]:
+        """The folders that ROS searches recursively for packages."""
+        yield from self.package_path
+        for parent in self._ancestors():
+            if parent.name == "src" or (parent / ".git").exists():
+                yield parent
+            elif (parent / "src").is_dir():
+                yield parent / "src"
+        yield from self.paths(_ROS1)
+
+    def _ancestors(self) -> list[Path]:
+        """The folders above the file, nearest first, that may be a workspace."""
+        return around(self.folder)
+
+    def _advise_on_package(self, name: str) -> Advice:
+        roots = [*self.package_path, *self._ancestors(), *self.environment_roots()]
+        known = {found for root in (*roots, share() / "robots") for found in names_in(root)}
+        near = numbers.likely(name, known, 0.85)
+        hint = f'Did you mean "{near}"? ' if near else ""
+        others = () if near else also_missing([self.file] if self.file else [], name, self.package)
+        text = (
+            f"{hint}Searched: {listed([*roots, share() / 'robots'])}. "
+            f"Source its workspace, or add its folder to the package path."
+            f" {advice(name, others, self.environment)}"
+        )
+        return Advice(near or "", text, others)
+
+    def _advise_on_model(self, name: str) -> Advice:
+        folders = self.model_folders()
+        near = numbers.likely(name, {entry.name for each in folders for entry in folders_in(each)})
+        hint = f'Did you mean "{near}"? ' if near else ""
+        hint += "Searched: " + listed(folders)
+        hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
+        return Advice(near or "", hint)
+
+
+def _is_plain(name: str) -> bool:
+    return bool(name) and name not in (".", "..") and "/" not in name and "\0" not in name
+
+
+def listed(paths: Iterable[Path]) -> str:
+    """The first six paths and the number of the others, for a hint."""
+    shown = list(dict.fromkeys(str(path) for path in paths))
+    more = f", and {len(shown) - 6} more" if len(shown) > 6 else ""
+    return (", ".join(shown[:6]) or "nowhere") + more

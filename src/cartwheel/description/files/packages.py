@@ -1,0 +1,320 @@
+"""Resolves references in descriptions: packages, models, meshes and built-in files.
+
+Packages are first searched near the file that refers to them, so that no workspace must be sourced.
+Then the environment variables of ROS 1, ROS 2 and Gazebo are used.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import NoReturn
+from urllib.parse import unquote
+
+from cartwheel.codes import files as codes
+from cartwheel.codes.tags import VALUE_INVALID
+from cartwheel.description.elements import numbers
+from cartwheel.description.files import fuel
+from cartwheel.description.files.install_rules import source_of
+from cartwheel.description.files.missing_packages import Advice
+from cartwheel.description.files.package_folders import (
+    around,
+    is_dir,
+    is_file,
+    package_above,
+    package_name,
+    share,
+)
+from cartwheel.description.files.package_search import PackageSearch, listed
+from cartwheel.description.files.readable_files import (
+    NAME_IT,
+    Reach,
+    is_below,
+    is_inside,
+    is_named,
+    real,
+)
+from cartwheel.errors import DescriptionError, Origin
+
+_RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
+FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
+
+
+class Packages:
+    """Resolves the URIs in one description.
+
+    Args:
+        file: The description; the workspace around it is searched first. None for a text without a
+            file, which uses the current folder.
+        package_path: Additional folders to search first: packages, folders with packages, or
+            folders with models.
+        environment: For tests; `os.environ` otherwise.
+        reach: Files that a description received over the network may read; None for a file from the
+            user.
+        arguments: Values of the user's arguments, which may be file names.
+    """
+
+    def __init__(
+        self,
+        file: Path | None = None,
+        package_path: Sequence[Path] = (),
+        environment: Mapping[str, str] | None = None,
+        *,
+        reach: Reach | None = None,
+        arguments: Iterable[str] = (),
+    ) -> None:
+        self.reach = reach
+        self._arguments = tuple(arguments)
+        self.file = file.absolute() if file is not None else None
+        self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
+        self._environment = os.environ if environment is None else environment
+        self._search = PackageSearch(self.file, self.package_path, self._environment)
+
+    @property
+    def folder(self) -> Path:
+        """The description's folder, to which relative paths refer."""
+        return self._search.folder
+
+    def find(self, name: str, origin: Origin | None = None) -> Path:
+        """The folder of a package: its source, or its ``share`` if it is installed.
+
+        Raises:
+            DescriptionError: The package was not found; the hint lists the searched folders.
+        """
+        found = self._search.package(name)
+        if found is None:
+            message = f'the package "{name}" was not found'
+            raise _missing("package", name, message, origin, self._search.package_advice(name))
+        return found
+
+    def all_named(self, name: str) -> list[Path]:
+        """The folders of all packages with a name, in search order."""
+        return self._search.all_named(name)
+
+    def find_model(self, name: str, origin: Origin | None = None) -> Path:
+        """The folder of a Gazebo model, or of a package with this name.
+
+        Raises:
+            DescriptionError: Neither was found; the hint lists the searched folders.
+        """
+        found = self._search.model(name)
+        if found is None:
+            message = f'the model "{name}" was not found'
+            raise _missing("model", name, message, origin, self._search.model_advice(name))
+        return found
+
+    def resolve(
+        self, uri: str, origin: Origin | None = None, *, what: str = "file", folder: bool = False
+    ) -> Path:
+        """The existing file or model folder for a URI.
+
+        Args:
+            uri: ``package://``, ``model://``, ``file://``, ``$(find pkg)/…``, an absolute path, or
+                a path relative to the description.
+            origin: Origin of the URI.
+            what: What it is, for the error.
+            folder: Whether a folder is also accepted, as for an included model.
+
+        Raises:
+            DescriptionError: The file was not found; the hint lists the searched folders.
+        """
+        candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
+        for path in candidates:
+            for each in dict.fromkeys((path, Path(unquote(str(path))))):
+                # Without permission to read a file, its existence is not revealed.
+                if self.reach is not None and not self.may_read(each):
+                    continue
+                if is_file(each) or (folder and each == path and is_dir(each)):
+                    return each
+        if self.reach is not None and not any(map(self.may_read, candidates)):
+            self._refuse(f'the {what} "{uri}"', origin)
+        allowed = (each for each in candidates if self.reach is None or self.may_read(each))
+        if any(map(_is_special, allowed)):
+            raise DescriptionError(
+                f'the {what} "{uri}" is not a regular file',
+                code=codes.FILE_UNREADABLE,
+                origin=origin,
+                values={"kind": what, "name": uri},
+            )
+        raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
+
+    def model_folders(self) -> list[Path]:
+        """The folders that are searched for Gazebo models, in order."""
+        return self._search.model_folders()
+
+    def may_read(self, path: Path) -> bool:
+        """Whether the description may read a file: one in its workspace or in a package.
+
+        A description received over the network may read files in packages and models, and those in
+        `reach`.
+        """
+        if any(is_inside(path, root) for root in self._trusted()):
+            return True
+        if any(is_below(path, root) for root in self._own) or self._in_package(path):
+            return True
+        return self.reach is None and is_named(path, self._arguments, self.folder)
+
+    @cached_property
+    def _own(self) -> tuple[Path, ...]:
+        """Folders that it may read, except through links to other locations."""
+        if self.reach is not None:
+            return self.reach.folders
+        file = real(self.file) if self.file is not None else None
+        folders = [self.folder, *([file.parent] if file is not None else [])]
+        return tuple(dict.fromkeys(root for each in folders for root in self._workspace(each)))
+
+    def require(self, path: Path, what: str, origin: Origin | None = None) -> None:
+        """Rejects a file that the description may not read.
+
+        Raises:
+            DescriptionError: The file may not be read; the hint says which files may.
+        """
+        if not self.may_read(path):
+            self._refuse(f'{what} "{path}"', origin)
+
+    def _refuse(self, what: str, origin: Origin | None) -> NoReturn:
+        raise DescriptionError(
+            f"{what} is outside the folders that the description may read",
+            code=codes.FILE_NOT_ALLOWED,
+            values={"name": what},
+            origin=origin,
+            hint=self.reach.hint if self.reach is not None else NAME_IT,
+        )
+
+    def _trusted(self) -> Iterator[Path]:
+        """Folders that the user specified in options and variables."""
+        yield from self.package_path
+        yield from self._search.environment_roots()
+        for variable in _RESOURCES:
+            yield from self._search.paths(variable)
+        yield from (Path("~/.gazebo/models").expanduser(), *fuel.caches(self._environment))
+        yield from (share() / each for each in ("models", "robots", "worlds"))
+
+    def _workspace(self, folder: Path) -> list[Path]:
+        """The folders around a file that it may read."""
+        return [
+            each
+            for each in around(folder)
+            if each == folder
+            or each.parent != Path(each.anchor)
+            or any((each / name).exists() for name in ("src", "package.xml"))
+        ]
+
+    def _in_package(self, path: Path) -> bool:
+        """Whether a file is in a package that is found by its name."""
+        file = real(path)
+        if file is None:
+            return False
+        for folder in file.parents:
+            name = package_name(folder)
+            if name is not None:
+                known = self._search.package(name)
+                return known is not None and real(known) == folder and is_below(path, folder)
+        return False
+
+    def _candidates(self, uri: str, origin: Origin | None) -> Iterator[Path]:
+        uri = FIND.sub(lambda match: str(self.find(match[1], origin)), uri)
+        scheme, separator, rest = uri.partition("://")
+        if not separator:
+            yield from self._relative(uri, origin)
+            return
+        if scheme in ("http", "https"):
+            downloaded = fuel.cached(uri, self._environment)
+            if downloaded is not None:
+                yield downloaded
+                return
+            raise DescriptionError(
+                f'"{uri}" is on the network and is not downloaded',
+                code=codes.FILE_ON_NETWORK,
+                values={"kind": "file", "name": uri},
+                origin=origin,
+                hint="Download it, and refer to it with model:// or package://.",
+            )
+        if scheme == "file":
+            yield from self._relative(rest, origin)
+            return
+        name, _, path = rest.partition("/")
+        if scheme not in ("package", "model"):
+            raise DescriptionError(
+                f'"{uri}" has the unknown scheme "{scheme}"',
+                code=VALUE_INVALID,
+                values={"name": uri},
+                origin=origin,
+                hint="Use a package://, model:// or file:// URI.",
+            )
+        if not name:
+            raise DescriptionError(
+                f'"{uri}" does not contain the name of a {scheme}',
+                code=VALUE_INVALID,
+                values={"name": uri},
+                origin=origin,
+            )
+        found = self.find(name, origin) if scheme == "package" else self.find_model(name, origin)
+        yield found / path
+        if path:
+            yield source_of(found / path)
+
+    def _relative(self, path: str, origin: Origin | None) -> Iterator[Path]:
+        if not path:
+            raise DescriptionError("the file name is empty", code=VALUE_INVALID, origin=origin)
+        given = Path(path)
+        if given.is_absolute():
+            yield given
+            return
+        folders = [self.folder]
+        if origin is not None and not origin.file.startswith("<"):
+            folders.insert(0, Path(origin.file).absolute().parent)
+        # A package with gazebo_media_path exports is itself in GAZEBO_RESOURCE_PATH.
+        above = [root for root in map(package_above, folders) if root is not None]
+        for variable in _RESOURCES:
+            folders += self._search.paths(variable)
+        folders += above
+        yield from dict.fromkeys(folder / given for folder in (*folders, *self.package_path))
+
+
+def _is_special(path: Path) -> bool:
+    """Whether it is a folder, pipe, socket or device."""
+    try:
+        return path.exists() and not path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _missing(
+    kind: str, name: str, message: str, origin: Origin | None, advice: Advice
+) -> DescriptionError:
+    """The error for a file, package or model that does not exist.
+
+    Args:
+        kind: What it is.
+        name: The name in the file.
+        message: The error's message.
+        origin: The element with the name.
+        advice: What to do.
+    """
+    more = {"others": advice.others} if advice.others else {}
+    return DescriptionError(
+        message,
+        code=codes.FILE_MISSING,
+        origin=origin,
+        hint=advice.hint,
+        values={"kind": kind, "name": name, "meant": advice.meant, **more},
+    )
+
+
+def _absent(candidates: Sequence[Path]) -> Advice:
+    """The likely file name, and a hint with the searched locations."""
+    for path in candidates:
+        try:
+            names = [
+                entry.name for _, entry in zip(range(2000), path.parent.iterdir(), strict=False)
+            ]
+        except (OSError, ValueError):
+            continue
+        near = numbers.likely(path.name, names)
+        if near:
+            return Advice(near, f'Did you mean "{near}"? Searched: {listed(candidates)}.')
+    return Advice("", f"Searched: {listed(candidates)}.")

@@ -1,0 +1,1 @@
+"""SDF's ``<link>`` and its contents."""

@@ -1,0 +1,1 @@
+"""SDF's ``<world>`` and its contents."""

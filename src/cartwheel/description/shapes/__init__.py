@@ -1,0 +1,1 @@
+"""Polylines, heightmaps and texture coordinates."""

@@ -1,0 +1,1 @@
+"""Plugins of Gazebo Classic that apply forces."""

@@ -1,0 +1,1 @@
+"""Sensors and publishers of Gazebo Classic."""

@@ -1,0 +1,1 @@
+"""CDR, ROS 2's binary format."""

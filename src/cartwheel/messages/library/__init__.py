@@ -1,0 +1,1 @@
+"""Message types from the definitions in ROS packages."""

@@ -1,0 +1,1 @@
+"""ROS 2's definitions, names and hashes of message types."""

@@ -1,0 +1,265 @@
+"""Names and hashes of types in ROS 2 middlewares."""
+
+from __future__ import annotations
+
+import functools
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
+from cartwheel.errors import UnknownNameError
+from cartwheel.messages.learnt import learnt, learnt_since
+from cartwheel.messages.ros2.hashes import rihs01
+from cartwheel.messages.store import (
+    FIRST,
+    TWIN,
+    learning,
+    service_classes,
+    service_name,
+    store,
+    type_name,
+)
+
+_ROS1_ONLY = frozenset(
+    {
+        "controller_manager_msgs",
+        "control_msgs",
+        "dynamic_reconfigure",
+        "hector_gazebo_plugins",
+        "roscpp",
+    }
+)
+"""Packages that do not exist in ROS 2, or whose definitions here exist only in ROS 1."""
+_ROS1_TYPES = frozenset(
+    {
+        "rosgraph_msgs/msg/Log",
+        "gazebo_msgs/msg/ODEJointProperties",
+        "gazebo_msgs/srv/SetJointProperties",
+        "gazebo_msgs/srv/SetLightProperties",
+    }
+)
+_PART = re.compile(r"_(Request|Response|Event)\Z")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ros2Type:
+    """A message type in ROS 2."""
+
+    name: str
+    """``pkg/msg/Name``."""
+    dds: str
+    """``pkg::msg::dds_::Name_``."""
+    hash: str
+    """``RIHS01_…``."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ros2Service:
+    """A service type in ROS 2."""
+
+    name: str
+    """``pkg/srv/Name``."""
+    dds: str
+    """``pkg::srv::dds_::Name_``."""
+    hash: str
+    request: str
+    """Type of the request in the graph."""
+    response: str
+    request_hash: str
+    response_hash: str
+
+    @property
+    def dds_request(self) -> str:
+        """DDS type of requests."""
+        return f"{self.dds}Request_"
+
+    @property
+    def dds_response(self) -> str:
+        """DDS type of responses."""
+        return f"{self.dds}Response_"
+
+
+@functools.cache
+def ros2_type(name: str) -> Ros2Type:
+    """ROS 2 names and hash of a message type.
+
+    Raises:
+        UnknownNameError: ROS 2 does not have this type.
+    """
+    full = type_name(name)
+    known = store().fielddefs
+    if full not in known or is_ros1_only(full):
+        raise UnknownNameError("ROS 2 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
+    real = ros2_name(full)
+    return Ros2Type(name=real, dds=dds_name(real), hash=rihs01(_hash_store().fielddefs, real))
+
+
+@functools.cache
+def ros2_service(name: str) -> Ros2Service:
+    """ROS 2 names and hashes of a service type ``pkg/srv/Name`` or ``pkg/Name``.
+
+    The services of an action are service types as well: ``pkg/action/Name_SendGoal``.
+
+    Raises:
+        UnknownNameError: ROS 2 does not have this type.
+    """
+    full = service_name(name)
+    if is_ros1_only(full):
+        raise UnknownNameError("ROS 2 service type", name, (), code=MESSAGE_TYPE_UNKNOWN)
+    request, response = (each.__msgtype__ for each in service_classes(full))
+    real = ros2_name(full)
+    made = _hash_store(first=_is_first(full))
+    if real not in made.fielddefs:
+        made.fielddefs |= _whole(real)
+    return Ros2Service(
+        name=real,
+        dds=dds_name(real),
+        hash=rihs01(made.fielddefs, real),
+        request=request,
+        response=response,
+        request_hash=rihs01(made.fielddefs, f"{real}_Request"),
+        response_hash=rihs01(made.fielddefs, f"{real}_Response"),
+    )
+
+
+def ros2_hash_of(name: str) -> str:
+    """Hash of a message or service type with this ROS 2 name.
+
+    Raises:
+        UnknownNameError: ROS 2 does not have this type.
+    """
+    fields_of(name)
+    return rihs01(_hash_store().fielddefs, name)
+
+
+def fields_of(name: str) -> list[tuple[str, Any]]:
+    """Fields of a message or service type with this ROS 2 name, as ROS 2 hashes them.
+
+    Raises:
+        UnknownNameError: ROS 2 does not have this type.
+    """
+    known = _hash_store().fielddefs
+    if name not in known and "/msg/" not in name:
+        service = _PART.sub("", name)
+        twin = twin_name(service)
+        ros2_service(twin if f"{twin}_Request" in store().fielddefs else service)
+    if name not in known:
+        raise UnknownNameError("ROS 2 type", name, known, code=MESSAGE_TYPE_UNKNOWN)
+    from rosbags.interfaces import Nodetype
+
+    # rosidl adds this field to a type without fields.
+    nothing = ("structure_needs_at_least_one_member", (Nodetype.BASE, ("uint8", 0)))
+    return list(known[name][1]) or [nothing]
+
+
+def ros2_name(name: str) -> str:
+    """ROS 2 name of a type in the graph: the suffix of the package name is removed."""
+    package, slash, rest = name.partition("/")
+    return f"{package.removesuffix(TWIN).removesuffix(FIRST)}{slash}{rest}"
+
+
+def twin_name(name: str) -> str:
+    """The graph's name of a ROS 2 type whose package contains different types in ROS 1."""
+    package, slash, rest = name.partition("/")
+    return f"{package}{TWIN}{slash}{rest}"
+
+
+def is_ros1_only(name: str) -> bool:
+    """Whether a type does not exist in ROS 2."""
+    if learnt(name) is not None:
+        return False
+    return name.partition("/")[0] in _ROS1_ONLY or _PART.sub("", name) in _ROS1_TYPES
+
+
+def dds_name(name: str) -> str:
+    """``pkg/msg/Name`` as ``pkg::msg::dds_::Name_``."""
+    package, kind, last = name.split("/")
+    return f"{package}::{kind}::dds_::{last}_"
+
+
+def _is_first(name: str) -> bool:
+    """Whether a type in the graph is the first of two versions."""
+    return name.partition("/")[0].endswith(FIRST)
+
+
+def _hash_store(*, first: bool = False) -> Any:
+    stores, added = _hash_stores()
+    with learning:
+        for each in learnt_since(len(added)):
+            added.append(each.name)
+            constants, kinds = each.fielddefs(hashed=True)
+            described = [(field, _hashed(kind)) for field, kind in kinds]
+            for made in stores:
+                made.fielddefs.setdefault(each.name, (constants, described))
+    return stores[first]
+
+
+@functools.cache
+def _hash_stores() -> tuple[tuple[Any, Any], list[str]]:
+    """Stores without and with the first versions of types, and the types that were added."""
+    return (_made_hash_store(first=False), _made_hash_store(first=True)), []
+
+
+def _made_hash_store(*, first: bool) -> Any:
+    """Typestore with only ROS 2 types, under their ROS 2 names and with ``uint8`` for ``char``.
+
+    ROS 2 computes its hashes from these types.
+
+    Args:
+        first: Whether types with two versions are stored in their first version.
+    """
+    from rosbags.typesys import Stores, get_typestore
+
+    made = get_typestore(Stores.ROS2_JAZZY)
+    made.fielddefs = {
+        ros2_name(name): (constants, [(field, _hashed(kind)) for field, kind in fields])
+        # First versions come last, and so replace the newer versions.
+        for name, (constants, fields) in sorted(
+            store().fielddefs.items(), key=lambda item: _is_first(item[0])
+        )
+        if not is_ros1_only(name) and (first or not _is_first(name)) and learnt(name) is None
+    }
+    return made
+
+
+def _hashed(kind: Any) -> Any:
+    from rosbags.interfaces import Nodetype
+
+    node, value = kind
+    if node == Nodetype.BASE:
+        return (node, ("uint8", 0)) if value[0] == "char" else kind
+    if node == Nodetype.NAME:
+        return (node, ros2_name(value))
+    return node, (_hashed(value[0]), value[1])
+
+
+def _whole(full: str) -> dict[str, Any]:
+    """A service as a single type, which ROS 2 hashes. Source: rosidl, REP 2016."""
+    from rosbags.interfaces import Nodetype
+
+    def one(name: str) -> Any:
+        return (Nodetype.NAME, name)
+
+    def at_most_one(name: str) -> Any:
+        return (Nodetype.SEQUENCE, (one(name), 1))
+
+    event, request, response = (f"{full}_{part}" for part in ("Event", "Request", "Response"))
+    return {
+        event: (
+            [],
+            [
+                ("info", one("service_msgs/msg/ServiceEventInfo")),
+                ("request", at_most_one(request)),
+                ("response", at_most_one(response)),
+            ],
+        ),
+        full: (
+            [],
+            [
+                ("request_message", one(request)),
+                ("response_message", one(response)),
+                ("event_message", one(event)),
+            ],
+        ),
+    }

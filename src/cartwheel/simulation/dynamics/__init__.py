@@ -1,0 +1,1 @@
+"""Physics that Cartwheel adds to MuJoCo's step."""

@@ -1,0 +1,1 @@
+"""The models in a simulation: spawning, deleting, placement, forces."""

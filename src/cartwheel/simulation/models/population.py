@@ -1,0 +1,258 @@
+"""The models in a simulation: their plugins and tasks, and the compilation of all models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from cartwheel.codes import world as world_codes
+from cartwheel.description.model import RobotDescription
+from cartwheel.errors import Origin, UnknownNameError, WorldError
+from cartwheel.geometry import Pose
+from cartwheel.simulation.clock import Schedule, Task, to_ns
+from cartwheel.simulation.divergence_watch import Watch
+from cartwheel.simulation.dynamics.separation import Separation, overlap
+from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.models.forces import Forces
+from cartwheel.simulation.models.placement import with_mimics
+from cartwheel.simulation.models.resident import Attach, Resident, world_resident
+from cartwheel.simulation.models.unique_names import free_name
+from cartwheel.simulation.observer import Observer
+from cartwheel.simulation.part import Part
+from cartwheel.world import build, unreadable, unused
+from cartwheel.world.build import step_of
+from cartwheel.world.entry import ModelEntry
+
+
+class Population:
+    """The models in a world, the world's own plugins, and the schedule of all their tasks.
+
+    Args:
+        engine: The engine that simulates the models.
+        forces: Forces on links and joints; bound again after each compilation.
+        attach: Creates a model's plugins.
+    """
+
+    def __init__(self, engine: Engine, forces: Forces, attach: Attach) -> None:
+        self._engine = engine
+        self._forces = forces
+        self.attach = attach
+        self.watch = Watch(engine)
+        self.separation = Separation()
+        self.house = world_resident(engine)
+        """The world's own plugins."""
+        self.residents: dict[str, Resident] = {}
+        """By model name, in spawn order."""
+        self.world_tasks: list[Task] = []
+        """Tasks that belong to no model and no plugin."""
+        self.schedule = Schedule()
+        self._version = 0
+
+    def start(self, attach_world: Attach) -> None:
+        """Creates the world's plugins and compiles the world without models.
+
+        Raises:
+            PluginError: A plugin's parameters are invalid.
+            WorldError: The world cannot be built.
+        """
+        self._engine.on_tasks.append(self.gather_tasks)
+        self._engine.on_entries.append(self.compile)
+        self.house.behaviours = attach_world(self.house.part)
+        self.compile()
+        self.house.part.spawned = True
+        for diagnostic in self.house.part.diagnostics:
+            self._engine.report(diagnostic)
+
+    def everyone(self) -> tuple[Resident, ...]:
+        """The world's own resident, followed by the models in spawn order."""
+        return (self.house, *self.residents.values())
+
+    def resident(self, name: str) -> Resident:
+        """A model.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        if name not in self.residents:
+            raise UnknownNameError("model", name, self.residents, code=world_codes.UNKNOWN_MODEL)
+        return self.residents[name]
+
+    def owner_of(self, plugin: object) -> Resident | None:
+        """The model or world that a plugin belongs to; None if the plugin is disabled."""
+        return next((each for each in self.everyone() if plugin in each.behaviours), None)
+
+    def add_all(self, descriptions: Sequence[RobotDescription]) -> None:
+        """Spawns the world's models together: compiling one takes as long as compiling all.
+
+        Raises:
+            WorldError: Two models have the same name, or a model cannot be built.
+            PluginError: A plugin's parameters are invalid.
+        """
+        for description in descriptions:
+            self.residents[description.name] = self.admit(description, description.name)
+        self.compile()
+        self.take_positions(self.residents.values())
+        for index, description in enumerate(descriptions):
+            self.welcome(description.name, before=descriptions[index + 1 :])
+
+    def admit(
+        self,
+        description: RobotDescription,
+        name: str,
+        pose: Pose | None = None,
+        namespace: str = "",
+        frame_prefix: str = "",
+    ) -> Resident:
+        """Creates a model with its plugins, to be compiled afterwards.
+
+        Args:
+            description: The model's description.
+            name: Name in this world.
+            pose: Pose of the root link in the world; None for the description's pose.
+            namespace: Default namespace of topics and services.
+            frame_prefix: Prefix of frame names.
+
+        Raises:
+            WorldError: The name is in use, empty or contains "::".
+            PluginError: A plugin's parameters are invalid.
+        """
+        if not name or "::" in name:
+            raise WorldError(
+                f'the name of a model must not be empty or contain "::" (got "{name}")',
+                code=world_codes.MODEL_NAME_INVALID,
+                values={"name": name},
+            )
+        if name in self.residents:
+            free = free_name(name, self.residents)
+            raise WorldError(
+                f'a model named "{name}" is already in the world',
+                code=world_codes.MODEL_NAME_TAKEN,
+                origin=description.origin,
+                hint=f'Give it another name with --model, such as "{free}".',
+                values={"name": name, "free": free},
+            )
+        entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
+        part = Part(self._engine, entry, namespace=namespace, frame_prefix=frame_prefix)
+        resident = Resident(entry, part)
+        try:
+            resident.behaviours = self.attach(resident.part)
+        except Exception:
+            resident.close()
+            raise
+        return resident
+
+    def compile(self, residents: dict[str, Resident] | None = None) -> None:
+        """Compiles the models and keeps the state of existing ones.
+
+        Args:
+            residents: The new set of models; None compiles the current set again.
+
+        Raises:
+            WorldError: The world cannot be built; nothing has changed.
+        """
+        engine = self._engine
+        residents = self.residents if residents is None else residents
+        entries = [resident.entry for resident in residents.values()]
+        built = build(engine.world, [self.house.entry, *entries])
+        engine.replace(built.model, built.alignments, built.bounces)
+        step_ns = to_ns(step_of(engine.world))
+        if step_ns != engine.step_ns:
+            engine.set_step(step_ns)
+        self.residents = residents
+        engine.entries = entries
+        self.watch.bind(engine.model, engine.data)
+        self._forces.bind()
+        for resident in self.everyone():
+            for handle in resident.part.handles:
+                handle.bind(engine.model, engine.data)
+        self.gather_tasks()
+        engine.forward()
+        self.separation.resume(engine.model, engine.data)
+        self.observe()
+
+    def observe(self) -> None:
+        """Creates a new observer and scene version after a change of the models or lights."""
+        self._version += 1
+        entries = [resident.entry for resident in self.residents.values()]
+        self.observer = Observer(self._engine, entries, self._version)
+
+    def gather_tasks(self) -> None:
+        """Creates a new schedule after tasks or the step length changed."""
+        tasks = [task for resident in self.everyone() for task in resident.part.tasks]
+        self.schedule = Schedule(
+            [*self.world_tasks, *tasks],
+            step_ns=self._engine.step_ns,
+            origin_ns=self._engine.origin_ns,
+        )
+
+    def take_positions(self, residents: Iterable[Resident]) -> None:
+        """Sets joints to the initial positions in their descriptions."""
+        stated = [each.entry for each in residents if each.entry.description.joint_positions]
+        for entry in stated:
+            positions = dict(entry.description.joint_positions)
+            for joint, position in with_mimics(entry.description, positions).items():
+                self._engine.set_joint(self._engine.joint_id(entry.name, joint), position)
+        if stated:
+            self._engine.forward()
+
+    def return_to_start(self) -> None:
+        """Compiles models that are fixed to the world at their spawn poses again."""
+        moved = [each for each in self.residents.values() if each.entry.pose != each.start]
+        for resident in moved:
+            resident.entry.pose = resident.start
+        if moved:
+            self.compile()
+
+    def welcome(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
+        """Reports the diagnostics of a model that was just compiled; see `separate`."""
+        resident = self.residents[name]
+        resident.part.spawned = True
+        description = resident.entry.description
+        notes = (*description.diagnostics, *resident.part.diagnostics)
+        for diagnostic in (*notes, *unused(description), *unreadable(description)):
+            self._engine.report(diagnostic)
+        self.separate(name, before=before)
+
+    def separate(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
+        """Starts to separate a model from the models that it overlaps, and reports the overlaps.
+
+        Args:
+            name: Model name.
+            before: Models spawned later, for which overlaps with this model are reported.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        engine = self._engine
+        entry = self.resident(name).entry
+        description = entry.description
+        roots = {
+            int(engine.model.body_rootid[engine.body_id(name, link.name)])
+            for link in description.links
+        }
+        overlaps = list(self.separation.begin(engine.model, engine.data, roots))
+        if overlaps:
+            later = {other.name for other in before}
+            overlaps = [each for each in overlaps if each[0].partition("::")[0] not in later]
+        if overlaps:
+            height = engine.model_pose(entry).z
+            engine.report(overlap(name, height, overlaps, origin=description.origin))
+
+    def close(self) -> None:
+        """Closes all plugins, and then the engine."""
+        for resident in self.everyone():
+            resident.close()
+        self._engine.close()
+        for resident in self.everyone():
+            resident.forget()
+        self.schedule = Schedule()
+        self.world_tasks.clear()
+        self.attach = lambda _: []
+
+    def origin_of(self, body: str) -> Origin | None:
+        """The origin of a body's link, or of its model."""
+        for name, resident in self.residents.items():
+            if body.startswith(f"{name}::"):
+                description = resident.entry.description
+                link = description.link(body.removeprefix(f"{name}::"))
+                return link.origin if link is not None else description.origin
+        return None

@@ -1,0 +1,1 @@
+"""What sensors measure in a compiled model: images, ray distances, contacts."""

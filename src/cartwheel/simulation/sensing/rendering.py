@@ -1,0 +1,253 @@
+"""Camera images from MuJoCo's renderer, without a display or a GPU.
+
+Without a GPU, shadows and multisampling cause most of the cost, so images have neither. The
+colours and depths of an RGB-D camera come from one rendering.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import weakref
+from collections.abc import Iterator
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from cartwheel.simulation.handles import CameraHandle
+from cartwheel.simulation.sensing.opengl import OffscreenContext
+from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
+
+_WALL = 0.99
+"""Distance of the background wall, as a fraction of the far distance."""
+_FULL = 255
+
+_PIXEL = np.dtype((np.void, 3))
+"""Three bytes as one value: numpy applies masks to such values many times faster."""
+
+Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
+Depth = np.ndarray[tuple[int, int], np.dtype[np.float32]]
+
+
+class Renderer:
+    """Renders camera images. OpenGL is opened at the first image.
+
+    Any thread may render, one at a time: the context is current only while an image is rendered.
+    """
+
+    def __init__(self) -> None:
+        self._model: Any = None
+        self._background: Any = np.zeros(3, dtype=np.uint8)
+        self._opaque: Any = None
+        self._gl: OffscreenContext | None = None
+        self._context: Any = None
+        self._scene: Any = None
+        self._size = (0, 0)
+        self._option = mujoco.MjvOption()
+        self._option.geomgroup[:] = 0
+        self._option.geomgroup[VISUAL_GROUP] = 1
+        self._camera = mujoco.MjvCamera()
+        self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+        self._perturb = mujoco.MjvPerturb()
+
+    def bind(self, model: Any) -> None:
+        """Sets the model to render."""
+        self._model = model
+        self._background = _background(model)
+        self._opaque = _opaque(model)
+        self._drop_scene()
+
+    def close(self) -> None:
+        """Frees all resources."""
+        self._drop_scene()
+        self._model = None
+        if self._gl is not None:
+            self._gl.free()
+            self._gl = None
+
+    def render(self, data: Any, camera: CameraHandle) -> Image:
+        """An image from a camera in the bound model, shape (height, width, 3), RGB.
+
+        Raises:
+            NoOpenGLError: OpenGL is missing; the hint says what to install.
+            ForkedError: This process was forked from a process that had opened OpenGL.
+        """
+        pixels, _ = self._draw(data, camera)
+        return np.ascontiguousarray(pixels[::-1])
+
+    def render_with_depth(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+        """The image, and the depth of each pixel: m, shape (height, width).
+
+        Depths are along the camera's axis, not along the pixel's ray; inf where nothing is visible.
+
+        Raises:
+            NoOpenGLError: OpenGL is missing; the hint says what to install.
+            ForkedError: This process was forked from a process that had opened OpenGL.
+        """
+        pixels, buffer = self._draw(data, camera)
+        lens = camera.intrinsics
+        # The buffer contains near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far
+        # plane.
+        with np.errstate(divide="ignore"):
+            depths = np.float32(lens.near * lens.far) / (
+                np.float32(lens.near) + buffer[::-1] * np.float32(lens.far - lens.near)
+            )
+        depths[buffer[::-1] == 0] = np.inf
+        return np.ascontiguousarray(pixels[::-1]), depths
+
+    def _draw(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+        """Pixels and the depth buffer, both with the lowest row first."""
+        with self._opened(camera.intrinsics.width, camera.intrinsics.height):
+            return self._draw_in_context(data, camera)
+
+    def _draw_in_context(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+        lens = camera.intrinsics
+        self._prepare(lens.width, lens.height)
+        self._camera.fixedcamid = camera.id
+        pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
+        buffer = np.empty((lens.height, lens.width), dtype=np.float32)
+        self._show(data, camera)
+        self._shoot(pixels, buffer)
+        # The background, where nothing was drawn.
+        empty = buffer == 0
+        if self._opaque is None:
+            pixels.reshape(-1).view(_PIXEL)[empty.ravel()] = self._background.view(_PIXEL)[0]
+        else:
+            share = self._transmitted(data, camera)[empty].astype(np.uint16)
+            seen = pixels[empty] + share * self._background // _FULL
+            pixels[empty] = np.minimum(seen, _FULL)
+        return pixels, buffer
+
+    def _show(self, data: Any, camera: CameraHandle, hidden: Any = None) -> None:
+        """Adds the visible geoms in front of the camera to the scene.
+
+        The engine also draws geoms behind the camera, so they are omitted here.
+
+        Args:
+            data: Data of the bound model.
+            camera: The camera.
+            hidden: Mask of geoms to omit, shape (ngeom,).
+        """
+        lens, groups = camera.intrinsics, self._model.geom_group
+        saved = groups.copy()
+        try:
+            groups[_out_of_view(self._model, data, camera)] = HIDDEN_GROUP
+            if hidden is not None:
+                groups[hidden] = HIDDEN_GROUP
+            mujoco.mjv_updateScene(
+                self._model,
+                data,
+                self._option,
+                self._perturb,
+                self._camera,
+                mujoco.mjtCatBit.mjCAT_ALL.value,
+                self._scene,
+            )
+        finally:
+            groups[:] = saved
+        # Cameras have individual clip planes, but MuJoCo has one pair for all. The other frustum
+        # values apply at the near plane.
+        half = lens.near * math.tan(lens.horizontal_fov / 2) * lens.height / lens.width
+        for view in self._scene.camera:
+            view.frustum_near, view.frustum_far = lens.near, lens.far
+            view.frustum_bottom, view.frustum_top = -half, half
+            view.frustum_center = 0.0
+
+    def _shoot(self, pixels: Image, buffer: Depth | None) -> None:
+        """Draws the scene and reads the image, and the depth buffer if one is given."""
+        viewport = mujoco.MjrRect(0, 0, pixels.shape[1], pixels.shape[0])
+        mujoco.mjr_render(viewport, self._scene, self._context)
+        mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
+
+    def _transmitted(self, data: Any, camera: CameraHandle) -> Image:
+        """The fraction of the background visible through transparent geoms, from 0 to 255.
+
+        Transparent geoms leave no depth, and the engine draws them in front of black. Here they are
+        drawn alone in black, in front of a white wall.
+        """
+        self._show(data, camera, hidden=self._opaque)
+        scene, lens = self._scene, camera.intrinsics
+        for index in range(scene.ngeom):
+            scene.geoms[index].rgba[:3] = 0.0
+            scene.geoms[index].emission = 0.0
+        axes = data.cam_xmat[camera.id]
+        away = _WALL * lens.far
+        wide = lens.far * math.tan(lens.horizontal_fov / 2)
+        wall = scene.geoms[scene.ngeom]
+        mujoco.mjv_initGeom(
+            wall,
+            mujoco.mjtGeom.mjGEOM_BOX,
+            np.array([wide, wide * lens.height / lens.width, (1 - _WALL) / 2 * away]),
+            data.cam_xpos[camera.id] - away * axes.reshape(3, 3)[:, 2],
+            axes,
+            np.ones(4, dtype=np.float32),
+        )
+        wall.emission = 1.0
+        scene.ngeom += 1
+        shares = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
+        self._shoot(shares, None)
+        return shares
+
+    @contextlib.contextmanager
+    def _opened(self, width: int, height: int) -> Iterator[None]:
+        """Opens the context if needed and makes it current on this thread."""
+        if self._gl is None:
+            self._gl = OffscreenContext(width, height)
+            # A script may exit without closing its world. Free the context before Python unloads
+            # OpenGL's modules.
+            weakref.finalize(self, self._gl.free)
+        with self._gl.current():
+            yield
+
+    def _prepare(self, width: int, height: int) -> None:
+        if self._scene is None:
+            self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 100)
+            flags = self._scene.flags
+            # The engine draws its sky as a dome at 0.7 of the far distance, which hides farther
+            # geoms.
+            for flag in ("SHADOW", "REFLECTION", "FOG", "HAZE", "SKYBOX"):
+                flags[getattr(mujoco.mjtRndFlag, f"mjRND_{flag}")] = 0
+            self._context = mujoco.MjrContext(self._model, mujoco.mjtFontScale.mjFONTSCALE_50)
+            # Zero is the far end, where floating-point values have the highest resolution.
+            self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
+            self._size = (self._context.offWidth, self._context.offHeight)
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
+        if width > self._size[0] or height > self._size[1]:
+            self._size = (max(width, self._size[0]), max(height, self._size[1]))
+            mujoco.mjr_resizeOffscreen(*self._size, self._context)
+
+    def _drop_scene(self) -> None:
+        if self._context is not None and self._gl is not None:
+            self._gl.release(self._context)
+        self._context = self._scene = None
+
+
+def _background(model: Any) -> Any:
+    """The colour of the model's sky, shape (3,)."""
+    for index in range(model.ntex):
+        if model.tex_type[index] == mujoco.mjtTexture.mjTEXTURE_SKYBOX:
+            start = model.tex_adr[index]
+            return np.ascontiguousarray(model.tex_data[start : start + 3])
+    return np.zeros(3, dtype=np.uint8)
+
+
+def _out_of_view(model: Any, data: Any, camera: CameraHandle) -> Any:
+    """Mask of geoms whose bounding spheres are completely out of view, shape (ngeom,)."""
+    lens = camera.intrinsics
+    radius = model.geom_rbound
+    axes = data.cam_xmat[camera.id].reshape(3, 3)
+    right, up, back = ((data.geom_xpos - data.cam_xpos[camera.id]) @ axes).T
+    wide = math.tan(lens.horizontal_fov / 2)
+    high = wide * lens.height / lens.width
+    out = (-back + radius < lens.near) | (-back - radius > lens.far)
+    out |= np.abs(right) + wide * back > radius * math.hypot(1.0, wide)
+    out |= np.abs(up) + high * back > radius * math.hypot(1.0, high)
+    # An infinite plane has no bounding sphere.
+    return out & (radius > 0)
+
+
+def _opaque(model: Any) -> Any:
+    """Mask of opaque visuals, shape (ngeom,); None if all are opaque."""
+    transparent = (model.geom_group == VISUAL_GROUP) & (model.geom_rgba[:, 3] < 1)
+    return ~transparent if transparent.any() else None
