@@ -117,17 +117,20 @@ class Page:
                 job = self._jobs.get(timeout=_BEAT if self.clients else None)
             except queue.Empty:
                 job = None
-            self._beat(time.monotonic())
-            if job is None:
-                continue
-            function, self._client = job
-            try:
-                function()
-            except CartwheelError as error:
-                self.show_error(error)
-            except Exception as error:  # noqa: BLE001 - a fault here must not take the page away
-                _log.exception("the viewer failed")
-                self.show(VIEWER_FAULT.because("unexpected error in the viewer", error))
+            self._execute(lambda: self._beat(time.monotonic()), None)
+            if job is not None:
+                self._execute(*job)
+
+    def _execute(self, function: Callable[[], object], client: int | None) -> None:
+        """Calls a function for a browser, and shows its errors there."""
+        self._client = client
+        try:
+            function()
+        except CartwheelError as error:
+            self.show_error(error)
+        except Exception as error:  # noqa: BLE001 - a fault here must not take the page away
+            _log.exception("the viewer failed")
+            self.show(VIEWER_FAULT.because("unexpected error in the viewer", error))
 
     def wake(self) -> None:
         """Wakes `run` to check whether to stop."""

@@ -8,6 +8,7 @@ for.
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable, Coroutine
 from typing import Any
 
@@ -90,6 +91,8 @@ def watch_connections(
 ) -> None:
     """Calls functions for each connection, before viser handles its messages.
 
+    Any thread can send messages to these connections.
+
     Args:
         server: The viser server.
         attach: Called with a new connection.
@@ -97,8 +100,34 @@ def watch_connections(
         failed: Handles exceptions in the server's event loop.
     """
     websockets = server._websock_server
+    _wake_on(websockets._server_thread, websockets)
+    # Before viser waits for messages to the new browser.
+    websockets.on_client_connect(lambda made: _wake_on(websockets._server_thread, made))
     websockets.on_client_connect(attach)
     websockets.on_client_disconnect(detach)
     websockets._background_event_loop.set_exception_handler(failed)
     # Browsers that connected before this point must reconnect.
     websockets.disconnect_all_clients()
+
+
+class _ThreadEvent(asyncio.Event):
+    """An event that takes effect only if its loop's thread sets it.
+
+    viser's `AsyncMessageBuffer.push` sets its event on the calling thread, and then posts the same
+    call to the loop. The first call would wake the waiting tasks from the wrong thread: while it
+    iterates over them, the loop removes and adds tasks, and the call raises a RuntimeError. The
+    posted call is sufficient.
+    """
+
+    def __init__(self, thread: threading.Thread) -> None:
+        super().__init__()
+        self._thread = thread.ident
+
+    def set(self) -> None:
+        if threading.get_ident() == self._thread:
+            super().set()
+
+
+def _wake_on(thread: threading.Thread, receiver: Any) -> None:
+    """Lets only the event loop's thread wake the tasks that send messages to browsers."""
+    receiver.get_message_buffer().message_event = _ThreadEvent(thread)
