@@ -63,6 +63,7 @@ class JointActuator:
         self.joint = name
         """Name in the description."""
         self.type = joint.type if joint is not None else ""
+        self._continuous = self.type == "continuous"
         self.limits = config.limits
         self.state: JointHandle = part.joint(name, origin=origin)
         self.pids = {config.pid[0]: Pid(config.pid[1])} if config.pid is not None else {}
@@ -107,7 +108,9 @@ class JointActuator:
 
     def error(self, target: float) -> float:
         """Returns the position error for a target in rad or m; see `position_error`."""
-        error: float = position_error(target, self.position, continuous=self.type == "continuous")
+        if not self._continuous:
+            return target - self.state.position
+        error: float = position_error(target, self.state.position, continuous=True)
         return error
 
     def activate(self, command: str) -> None:
@@ -212,7 +215,7 @@ class JointActuator:
             self._servo.command_effort(command.effort, damping=command.damping)
 
     def _write_effort(self) -> None:
-        command = DampedEffort(self.command, self._damping)
-        command = limited_effort(self.limits, command, self.position, self.velocity)
+        command, state = DampedEffort(self.command, self._damping), self.state
+        effort, damping = limited_effort(self.limits, command, state.position, state.velocity)
         assert self._servo is not None
-        self._servo.command_effort(command.effort, damping=command.damping)
+        self._servo.command_effort(effort, damping=damping)

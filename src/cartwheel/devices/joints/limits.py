@@ -69,8 +69,8 @@ def limited_effort(
         position: Position of the joint, rad or m.
         velocity: Velocity of the joint, rad/s or m/s.
     """
-    damping = command.damping
-    effort = clamp(command.effort, -limits.effort, limits.effort)
+    effort, damping = command
+    effort = clamp(effort, -limits.effort, limits.effort)
     if limits.soft is not None:
         # Acts as a damper toward the bound, which the physics integrates implicitly.
         gain, output = limits.soft.k_velocity, effort - damping * velocity
@@ -82,7 +82,10 @@ def limited_effort(
     # Beyond a limit, only efforts that move the joint back are applied.
     below = (position < limits.lower) | (velocity < -limits.velocity)
     above = (position > limits.upper) | (velocity > limits.velocity)
-    if anywhere(below | above):
+    outside = below | above
+    if outside is not False and anywhere(outside):
         back = where(above, minimum(effort, 0.0), effort)
         effort = where(below, maximum(effort, 0.0), back)
-    return DampedEffort(effort, damping)
+    # Most commands are within the limits, and a new object takes as long as the comparisons above.
+    unchanged = effort is command.effort and damping is command.damping
+    return command if unchanged else DampedEffort(effort, damping)

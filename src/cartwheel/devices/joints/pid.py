@@ -112,7 +112,7 @@ def position_effort(
     """
     effort = gains.p * error + integral_term(gains, integral) + gains.d * rate
     stiff = gains.p * seconds * seconds * lightness > _STIFF
-    if not anywhere(stiff):
+    if stiff is False or not anywhere(stiff):
         return DampedEffort(effort, gains.d)
     return DampedEffort(
         where(stiff, effort + gains.p * seconds * rate, effort),
@@ -154,6 +154,7 @@ class Pid:
 
     def __init__(self, gains: PidGains) -> None:
         self.gains = gains
+        self._is_limited = (gains.u_min, gains.u_max) != (-math.inf, math.inf)
         self.reset()
 
     def reset(self) -> None:
@@ -201,6 +202,8 @@ class Pid:
 
     def limited(self, command: DampedEffort, velocity: float) -> DampedEffort:
         """Applies the output limits to an effort at a velocity in rad/s or m/s."""
+        if not self._is_limited:
+            return command
         output = command.at(velocity)
         clamped = min(max(output, self.gains.u_min), self.gains.u_max)
         return command if clamped == output else DampedEffort(clamped)

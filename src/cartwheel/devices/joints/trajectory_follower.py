@@ -95,32 +95,40 @@ class TrajectoryFollower:
         if self._next is not None and time_ns >= self._next.start_ns:
             self._current, self._next = self._next, None
         desired = self._current.at(time_ns)
-        errors = [
-            (joint.error(desired.position[index]), desired.velocity[index] - joint.velocity)
-            for index, joint in enumerate(self._joints)
-        ]
+        errors = []
+        by_position, control = self._config.interface == "position", self._control
         for index, joint in enumerate(self._joints):
-            if self._config.interface == "position":
-                joint.command, joint.rate = desired.position[index], desired.velocity[index]
+            position, rate = desired.position[index], desired.velocity[index]
+            error, velocity = joint.error(position), joint.velocity
+            errors.append((error, rate - velocity))
+            if by_position:
+                joint.command, joint.rate = position, rate
             else:
-                self._control(index, desired, errors[index][0], seconds)
+                control(index, desired, error, velocity, seconds)
         return Tracking(desired, errors)
 
-    def _control(self, index: int, desired: State, error: float, seconds: float) -> None:
-        """Commands a joint by its PID controller."""
+    def _control(
+        self, index: int, desired: State, error: float, velocity: float, seconds: float
+    ) -> None:
+        """Commands a joint by its PID controller.
+
+        Args:
+            index: Index of the joint.
+            desired: Desired state of all joints.
+            error: Position error, rad or m.
+            velocity: Velocity of the joint, rad/s or m/s.
+            seconds: Time since the last call, s.
+        """
+        target, rate = desired.position[index], desired.velocity[index]
         joint, pid = self._joints[index], self._pids[index]
-        velocity = desired.velocity[index]
         by_effort = self._config.interface == "effort"
-        command = pid.position(
-            error,
-            seconds,
-            target=desired.position[index],
-            rate=velocity,
-            lightness=joint.lightness if by_effort else 0.0,
-        )
-        command = pid.limited(command, joint.velocity)
-        forward = self._config.feedforward[index] * velocity
-        if by_effort:
+        lightness = joint.lightness if by_effort else 0.0
+        command = pid.position(error, seconds, target=target, rate=rate, lightness=lightness)
+        command = pid.limited(command, velocity)
+        forward = self._config.feedforward[index] * rate
+        if not by_effort:
+            joint.command = command.at(velocity) + forward
+        elif forward:
             joint.set_effort(DampedEffort(command.effort + forward, command.damping))
         else:
-            joint.command = command.at(joint.velocity) + forward
+            joint.set_effort(command)
