@@ -22,6 +22,7 @@ from cartwheel.graph.topic import Subscription
 from cartwheel.messages import message_class, stamp
 from cartwheel.messages.library.library import TypeLibrary
 from cartwheel.messages.store import finding_with
+from cartwheel.options import STRICT
 from cartwheel.simulation import Part, Simulation
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.models.resident import Behaviour
@@ -227,7 +228,7 @@ class Session:
                     diagnostic.message,
                     code=diagnostic.code,
                     origin=diagnostic.origin,
-                    hint=f"{hint}--strict makes every warning an error.",
+                    hint=f"{hint}{STRICT.given()} makes every warning an error.",
                     values=diagnostic.values,
                     mark=diagnostic.mark,
                 )

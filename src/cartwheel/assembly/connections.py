@@ -270,7 +270,7 @@ class _ReportingObserver(Observer):
         self._report(diagnostic)
 
     def page_refused(self, origin: str) -> None:
-        self._report(refused_page("the viewer", origin))
+        self._report(refused_page("the web interface", origin))
 
     def _report(self, diagnostic: Diagnostic) -> None:
         if self.session is not None:

@@ -9,6 +9,7 @@ from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.control import running
 from cartwheel.errors import CartwheelError, ControlError
 from cartwheel.gate.listening import bound
+from cartwheel.options import PORT
 
 _NEAR = 50
 
@@ -24,12 +25,12 @@ def refuse_taken(host: str, port: int) -> None:
         return
     if problem.errno not in (errno.EADDRINUSE, None):
         raise CartwheelError(
-            f"the viewer cannot listen on {host}:{port}: {problem.strerror}",
+            f"the web interface cannot listen on {host}:{port}: {problem.strerror}",
             code=ADDRESS_UNAVAILABLE,
             values={"host": host, "port": port},
         )
     free = next((p for p in range(port + 1, min(port + _NEAR, 65536)) if not _problem(host, p)), 0)
-    other = f"Use a different port: --port {free}"
+    other = f"Use a different port: {PORT.given(free)}"
     for entry in running():
         if entry.port == port:
             raise CartwheelError(

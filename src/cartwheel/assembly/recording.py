@@ -12,6 +12,7 @@ from cartwheel.assembly.observer import Observer
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.codes.recording import RECORDING_BROKE_OFF
 from cartwheel.errors import CartwheelError, ControlError, RecordingError, UnknownNameError
+from cartwheel.options import RECORD
 
 if TYPE_CHECKING:
     from cartwheel.bridges.apart.process import BridgeProcess
@@ -46,7 +47,7 @@ def check_recordings(paths: Sequence[Path], options: RecordingOptions) -> None:
         place = path.absolute()
         if place in found:
             raise RecordingError(
-                f'--record specifies "{path}" twice',
+                f'{RECORD} specifies "{path}" twice',
                 code=OPTIONS_CONFLICT,
                 values={"path": str(path)},
             )

@@ -14,11 +14,13 @@ import traceback
 from cartwheel.cli import gazebo, interrupts
 from cartwheel.codes.command import FILE_TOO_DEEP, INTERNAL_FAULT, SYSTEM_LIMIT
 from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.options import Caller, set_caller
 
 
 def main() -> None:
     """The entry point of ``cartwheel``."""
     _open_streams()
+    set_caller(Caller.COMMAND_LINE)
     interrupts.install()
     status = run()
     if status not in (0, 130) and interrupts.came():

@@ -69,7 +69,7 @@ PLAYBACK_READ_ONLY = Code(
 RECORDED_ROBOT_NOT_SHOWN = Code(
     "CW919", "recorded-robot-not-shown", "warning", "a recorded robot cannot be shown"
 )
-VIEWER_NOT_STARTED = Code("CW920", "viewer-not-started", "error", "the viewer did not start")
+VIEWER_NOT_STARTED = Code("CW920", "viewer-not-started", "error", "the web interface did not start")
 UPLOAD_REFUSED = Code(
     "CW921", "upload-refused", "error", "a file that was uploaded to the web interface was rejected"
 )

@@ -12,6 +12,7 @@ from urllib.parse import parse_qsl, urlencode
 from cartwheel.codes.wires import ADDRESS_UNAVAILABLE, ORIGIN_INVALID, PAGE_REFUSED
 from cartwheel.errors import ControlError, Diagnostic
 from cartwheel.gate.listening import is_loopback, resolve
+from cartwheel.options import ALLOW_ORIGIN, HOST
 
 PARAMETER = "token"
 """Query parameter that contains the token."""
@@ -74,7 +75,7 @@ class Access:
             _, (address, _) = resolve(host, 0)
         except (OSError, UnicodeError) as error:
             raise ControlError(
-                f"--host {host} cannot be used: {error}",
+                f"{HOST.given(host)} cannot be used: {error}",
                 code=ADDRESS_UNAVAILABLE,
                 values={"host": host},
             ) from error
@@ -118,11 +119,11 @@ class Access:
             return Refusal(
                 status=403,
                 text=f"This server does not accept the host name {asked.host}. To allow it: "
-                f"--allow-origin http://{asked.host}",
+                f"{ALLOW_ORIGIN.given(f'http://{asked.host}')}",
             )
         origin = asked.origin
         if origin is not None and not self._admits(origin.lower(), host, apps):
-            remedy = "" if origin in _NOBODY else f" To allow them: --allow-origin {origin}"
+            remedy = "" if origin in _NOBODY else f" To allow them: {ALLOW_ORIGIN.given(origin)}"
             return Refusal(
                 status=403,
                 text=f"Web pages from the origin {origin} may not connect.{remedy}",
@@ -177,7 +178,7 @@ def refused_page(title: str, origin: str) -> Diagnostic:
         title: Name of the server.
         origin: Origin of the page, safe to print.
     """
-    hint = "" if origin in _NOBODY else f"To allow it: --allow-origin {origin}"
+    hint = "" if origin in _NOBODY else f"To allow it: {ALLOW_ORIGIN.given(origin)}"
     message = f"{title} rejected a web page from the origin {origin or '(empty)'}"
     return PAGE_REFUSED.diagnostic(message, hint=hint, values={"server": title, "origin": origin})
 
@@ -234,7 +235,7 @@ def _normal_origin(text: str) -> str:
     match = _ORIGIN.fullmatch(text.strip().lower())
     if match is None or bool(match["authority"]) == (match["scheme"] == "file"):
         raise ControlError(
-            f'"{text}" is not a valid origin for --allow-origin',
+            f'"{text}" is not a valid origin for {ALLOW_ORIGIN}',
             code=ORIGIN_INVALID,
             hint=(
                 "Expected SCHEME://HOST or SCHEME://HOST:PORT, such as https://robots.example.org."

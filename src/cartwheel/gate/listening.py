@@ -7,6 +7,7 @@ import socket
 
 from cartwheel.codes.wires import ADDRESS_UNAVAILABLE
 from cartwheel.errors import ControlError
+from cartwheel.options import Option
 
 BACKLOG = 128
 """Maximum number of connections that wait to be accepted."""
@@ -36,14 +37,14 @@ def resolve(host: str, port: int) -> tuple[socket.AddressFamily, tuple[str, int]
     return family, (str(address[0]), port)
 
 
-def listen(host: str, port: int, *, title: str, option: str) -> socket.socket:
+def listen(host: str, port: int, *, title: str, option: Option) -> socket.socket:
     """Creates a non-blocking listening socket.
 
     Args:
         host: Name or address; empty for all addresses of this computer.
         port: 0 chooses a free port.
         title: Name of the server, for errors.
-        option: Command-line option that sets the port, for errors.
+        option: Option that sets the port, for errors.
 
     Raises:
         ControlError: The address is not available.
@@ -54,7 +55,8 @@ def listen(host: str, port: int, *, title: str, option: str) -> socket.socket:
         raise ControlError(
             f"{title} cannot listen on {host}:{port}: {error}",
             code=ADDRESS_UNAVAILABLE,
-            hint=f"Another program may be using the port. Choose a different port with {option}.",
+            hint="Another program may be using the port. Choose a different port: "
+            f"{option.given(port + 1 if port < 65535 else 0)}",
             values={"server": title, "host": host, "port": port},
         ) from error
     made.setblocking(False)

@@ -16,6 +16,7 @@ from cartwheel.description.kinematics import joint_positions, link_poses
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose, to_wxyz
+from cartwheel.options import PACKAGE_PATH
 from cartwheel.simulation.snapshot import PlacedModel, RunState, Scene, Snapshot
 
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
@@ -23,7 +24,6 @@ JOINTS = "sensor_msgs/msg/JointState"
 STRING = "std_msgs/msg/String"
 STATE = frozenset({TRANSFORMS, JOINTS})
 """Message types that change the displayed scene."""
-_FIX = "Add its folder: --package-path FOLDER."
 
 
 @dataclass(slots=True)
@@ -79,7 +79,10 @@ class PlayedScene:
                 text,
                 file=f"<{topic}>",
                 package_path=self._package_path,
-                reach=Reach(folders=tuple(run_folders(())), hint=_FIX),
+                reach=Reach(
+                    folders=tuple(run_folders(())),
+                    hint=f"Add its folder: {PACKAGE_PATH.given('FOLDER')}",
+                ),
             )
         except CartwheelError as error:
             self.diagnostics.append(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.errors import Diagnostic, Once, PluginError, SimulationError, fault
+from cartwheel.options import STRICT
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.models.population import Population
@@ -104,7 +105,7 @@ class Faults:
                     diagnostic.message,
                     code=diagnostic.code,
                     origin=diagnostic.origin,
-                    hint="--strict stops the run at the first error.",
+                    hint=f"{STRICT.given()} stops the run at the first error.",
                     values=diagnostic.values,
                 )
             )

@@ -14,6 +14,7 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
 from cartwheel.geometry import Pose, to_wxyz
+from cartwheel.options import PORT
 from cartwheel.viewer.look import Look
 from cartwheel.viewer.model_view import ModelView, footprint
 from cartwheel.viewer.page import Page
@@ -61,7 +62,7 @@ class DescriptionViewer:
         self._description = description
         self._stopped = threading.Event()
         access = access or Access(host="127.0.0.1")
-        listener = listen(access.host, port, title="the viewer", option="--port")
+        listener = listen(access.host, port, title="the web interface", option=PORT)
         title = f"Cartwheel: {description.name}"
         self._page = Page(listener, access, title=title, refused=refused)
         self._seats: dict[int, Seat] = {}

@@ -129,8 +129,8 @@ class Page:
         except CartwheelError as error:
             self.show_error(error)
         except Exception as error:  # noqa: BLE001 - a fault here must not take the page away
-            _log.exception("the viewer failed")
-            self.show(VIEWER_FAULT.because("unexpected error in the viewer", error))
+            _log.exception("the web interface failed")
+            self.show(VIEWER_FAULT.because("unexpected error in the web interface", error))
 
     def wake(self) -> None:
         """Wakes `run` to check whether to stop."""

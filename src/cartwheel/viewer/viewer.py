@@ -11,6 +11,7 @@ from cartwheel.errors import ControlError
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
 from cartwheel.interfaces import RunningSession, SnapshotSource
+from cartwheel.options import PORT
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.page import Page
 from cartwheel.viewer.teleop import KEYS
@@ -49,7 +50,7 @@ class Viewer:
         refused: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._access = access or Access(host="127.0.0.1")
-        self._listener = listen(self._access.host, port, title="the viewer", option="--port")
+        self._listener = listen(self._access.host, port, title="the web interface", option=PORT)
         self._session = session
         self._make_desk = desk
         self._refused = refused
@@ -75,11 +76,11 @@ class Viewer:
             ControlError: The server did not start.
         """
         if not self._thread.is_alive() and not self._ready.is_set():
-            raise ControlError("the viewer has not been started", code=VIEWER_NOT_STARTED)
+            raise ControlError("the web interface has not been started", code=VIEWER_NOT_STARTED)
         self._ready.wait()
         if self._failure is not None:
             raise ControlError(
-                f"the viewer did not start: {self._failure}", code=VIEWER_NOT_STARTED
+                f"the web interface did not start: {self._failure}", code=VIEWER_NOT_STARTED
             ) from self._failure
         assert self._page is not None
         return self._page.url

@@ -15,6 +15,7 @@ from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
 from cartwheel.bridges.apart.ring import RingFiles, RingReader
 from cartwheel.codes.wires import BRIDGE_FAULT
+from cartwheel.options import Caller, set_caller
 
 WIRES = {
     "ros1": "Ros1Wire",
@@ -35,15 +36,17 @@ class Wire(Protocol):
         """Closes the bridge, and returns its results."""
 
 
-def main(kind: str, patient: str, link_file: str, ring_files: str) -> None:
+def main(kind: str, patient: str, caller: str, link_file: str, ring_files: str) -> None:
     """Runs a bridge until the simulation's process stops it, or exits.
 
     Args:
         kind: Key of `WIRES`.
         patient: Non-empty if no message may be dropped.
+        caller: Value of the `Caller` of the simulation's process.
         link_file: File descriptor of the link's socket.
         ring_files: File descriptors of the ring's reader.
     """
+    set_caller(Caller(caller))
     # A service manager may send these signals to all of its processes. The simulation's process
     # handles them, and this process ends after the simulation, when all messages are written.
     # A handler, because programs that a bridge starts would inherit ignored signals.

@@ -17,6 +17,7 @@ from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_FAULT, BRIDGE_SLOW
 from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Reporter
 from cartwheel.forks import keep_socket
 from cartwheel.graph import Graph
+from cartwheel.options import caller
 
 _START = 60.0
 """Timeout in s for the process to start and to connect."""
@@ -59,7 +60,7 @@ class BridgeProcess:
         self._process = subprocess.Popen(  # noqa: S603 - runs Python with this package
             [
                 *(sys.executable, "-c", _PROGRAM, json.dumps(sys.path)),
-                *(kind, patience, str(theirs.fileno()), str(their_files)),
+                *(kind, patience, caller().value, str(theirs.fileno()), str(their_files)),
             ],
             pass_fds=[theirs.fileno(), *their_files.numbers],
             stdin=subprocess.DEVNULL,

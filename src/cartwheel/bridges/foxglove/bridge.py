@@ -31,6 +31,7 @@ from cartwheel.errors import CartwheelError, Diagnostic, Reporter
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.gate.gate import Gate
 from cartwheel.gate.listening import hidden_host, listen
+from cartwheel.options import FOXGLOVE, FOXGLOVE_PORT
 
 PORT = 8765
 """Default port of Foxglove."""
@@ -148,7 +149,7 @@ class FoxgloveBridge:
         from foxglove.websocket import Capability
 
         self._listener = listen(
-            self._access.host, self._port, title="the Foxglove server", option="--foxglove-port"
+            self._access.host, self._port, title="the Foxglove server", option=FOXGLOVE_PORT
         )
         hidden = hidden_host()
         capabilities = [
@@ -350,7 +351,7 @@ def require() -> None:
         import foxglove  # noqa: F401
     except ImportError as error:
         raise CartwheelError(
-            f"--foxglove requires the package foxglove-sdk: {error}",
+            f"{FOXGLOVE} requires the package foxglove-sdk: {error}",
             code=PACKAGE_MISSING,
             hint='pip install "cartwheel[foxglove]"',
             values={"package": "foxglove-sdk", "extra": "foxglove"},

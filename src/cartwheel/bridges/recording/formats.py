@@ -13,6 +13,7 @@ from cartwheel.codes.recording import (
     RECORDING_NOT_WRITABLE,
 )
 from cartwheel.errors import RecordingError
+from cartwheel.options import OVERWRITE
 
 Encoding = Literal["ros1", "ros2"]
 """Encoding of the messages."""
@@ -111,7 +112,7 @@ def exists(path: Path) -> RecordingError:
     return RecordingError(
         f'"{path}" already exists',
         code=RECORDING_EXISTS,
-        hint="Pass --overwrite to replace it.",
+        hint=f"To replace it: {OVERWRITE.given()}",
         values={"path": str(path)},
     )
 

@@ -24,6 +24,7 @@ from cartwheel.bridges.ros2.zenoh_tokens import NodeToken, Token, published
 from cartwheel.codes.wires import INCOMING_DROPPED, PACKAGE_MISSING, PEER_LIMIT, ZENOH_NOT_OPENED
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.messages.ros2.types import Ros2Type
+from cartwheel.options import RMW
 
 PORT = 7447
 """Port of the Zenoh router. If no router responds there, the session listens on it."""
@@ -63,7 +64,7 @@ class Zenoh:
             import zenoh.ext
         except ImportError:
             raise CartwheelError(
-                "--rmw zenoh requires Zenoh, which is not installed",
+                f"{RMW.given('zenoh')} requires Zenoh, which is not installed",
                 code=PACKAGE_MISSING,
                 hint=_INSTALL,
                 values={"package": "eclipse-zenoh", "extra": "ros2"},

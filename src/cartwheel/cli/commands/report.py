@@ -111,7 +111,7 @@ class Report(Observer):
 
     def page_refused(self, origin: str) -> None:
         """Reports the origin of a refused web page."""
-        self.diagnostic(refused_page("the viewer", origin))
+        self.diagnostic(refused_page("the web interface", origin))
 
     def foxglove_served(self, url: str, access: Access) -> None:
         """Prints the address of the Foxglove server, and who can connect."""

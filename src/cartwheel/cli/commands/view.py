@@ -38,7 +38,7 @@ def view(
         description,
         access=access,
         port=port,
-        refused=lambda origin: print_diagnostic(refused_page("the viewer", origin)),
+        refused=lambda origin: print_diagnostic(refused_page("the web interface", origin)),
     )
     with interrupts.handled_by(stopped.set, status=0):
         viewer.start()

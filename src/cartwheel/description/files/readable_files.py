@@ -5,14 +5,22 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-ALLOW = "Allow its folder: start the simulation with --allow-path FOLDER."
+from cartwheel.options import ALLOW_PATH
+
 NAME_IT = (
-    "A description may read files in its workspace and in packages, and files passed on the "
-    "command line."
+    "A description may read files in its workspace and in packages, and files that you "
+    "specify yourself."
 )
+
+
+def _allow() -> str:
+    """The hint for clients of a simulation."""
+    return (
+        f"Start the simulation with {ALLOW_PATH.given('FOLDER')} to allow the folder of the file."
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -25,7 +33,7 @@ class Reach:
     folders: tuple[Path, ...] = ()
     environment: bool = True
     """Whether ``$(env …)`` returns the values of environment variables."""
-    hint: str = ALLOW
+    hint: str = field(default_factory=_allow)
 
 
 def real(path: Path) -> Path | None:

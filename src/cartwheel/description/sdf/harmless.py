@@ -85,7 +85,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("texture", "normal"): _TERRAIN,
     ("texture", "size"): _TERRAIN,
     ("torsional", "ode"): "torsional friction has no slip",
-    ("visual", "meta"): "the viewer has no layers",
+    ("visual", "meta"): "the web interface has no layers",
     ("visual", "visibility_flags"): "every camera sees every visual",
     ("world", "audio"): "audio is not supported",
     **{

@@ -13,6 +13,7 @@ from cartwheel.codes import files as codes
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import near_files
 from cartwheel.errors import Code, DescriptionError, Origin, Value, meant, suggestion
+from cartwheel.options import xacro_argument
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -86,7 +87,7 @@ def explain(failure: Failure) -> DescriptionError:
         hint, near = _meant(match[1], failure.arguments)
         message = f'the argument "{match[1]}" {"is not declared" if hint else "has no value"}'
         hint = hint or (
-            f"Set it on the command line, {match[1]}:=…, or in the file: <xacro:arg "
+            f"Pass {xacro_argument(match[1])}, or set a default in the file: <xacro:arg "
             f'name="{match[1]}" default="…"/>.'
         )
         code, values = _unknown("argument", match[1], near)

@@ -16,6 +16,7 @@ from cartwheel import yaml_text
 from cartwheel.codes import devices
 from cartwheel.description.files.packages import Packages
 from cartwheel.errors import CartwheelError, Origin, PluginError
+from cartwheel.options import xacro_argument
 
 _CALL = re.compile(r"\$\(\s*([\w-]+)((?:\s[^()]*)?)\)")
 
@@ -54,7 +55,7 @@ def substitute(content: Any, path: Path, arguments: Mapping[str, str]) -> Any:
                 f"{match[0]} has no value because the description has no argument of this name",
                 code=devices.CONTROLLERS_FILE_ARGUMENT,
                 origin=Origin(file=str(path)),
-                hint=f"Write the value into the file, or pass it with {name}:=…."
+                hint=f"Write the value into the file, or pass {xacro_argument(name)}."
                 if not arguments
                 else f"Arguments of the robot: {', '.join(sorted(arguments))}.",
                 values={"name": name},

@@ -47,6 +47,7 @@ from cartwheel.messages.store import (
     message_class,
     type_name,
 )
+from cartwheel.options import PACKAGE_PATH
 
 MOST_TYPES = 300
 """Maximum number of types that one type contains."""
@@ -240,7 +241,7 @@ class TypeLibrary:
                         outer,
                         f'the type "{field.type}" of the field "{field.name}" was not found',
                         field.line,
-                        hint="Add the folder of its package: --package-path FOLDER.",
+                        hint=f"Add the folder of its package: {PACKAGE_PATH.given('FOLDER')}",
                         name=field.type,
                     )
                 for each in found:

@@ -8,6 +8,7 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, UnknownNameError, WorldError
 from cartwheel.geometry import Pose
+from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
 from cartwheel.simulation.dynamics.separation import Separation, overlap
@@ -127,7 +128,7 @@ class Population:
                 f'a model named "{name}" is already in the world',
                 code=world_codes.MODEL_NAME_TAKEN,
                 origin=description.origin,
-                hint=f'Give it another name with --model, such as "{free}".',
+                hint=f"Choose another name, such as {NAME.given(free)}.",
                 values={"name": name, "free": free},
             )
         entry = ModelEntry(name=name, description=description, pose=pose or description.pose)
