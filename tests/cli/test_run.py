@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from tests.coded import raises
 
+from cartwheel import options
 from cartwheel.assembly import ports
 from cartwheel.assembly.ports import refuse_taken
 from cartwheel.codes.command import (
@@ -199,6 +200,7 @@ def test_a_port_of_another_program_is_said(program):
 
 @pytest.mark.wording
 def test_a_free_port_is_named_and_how_to_stop_a_simulation(monkeypatch):
+    monkeypatch.setattr(options, "_caller", options.Caller.COMMAND_LINE)
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         with raises(PORT_TAKEN) as caught:

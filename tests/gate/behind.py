@@ -14,6 +14,7 @@ from typing import Any
 from cartwheel.gate.access import Access
 from cartwheel.gate.gate import Gate
 from cartwheel.gate.listening import hidden_host, listen
+from cartwheel.options import PORT
 
 PATIENCE = 60.0
 PAGE = b"<html>page</html>"
@@ -83,7 +84,7 @@ class Gated:
         agrees = options.pop("agrees", True)
         self.access = access
         self.behind = Behind(agrees=agrees)
-        listener = listen(access.host, 0, title="a test", option="--port")
+        listener = listen(access.host, 0, title="a test", option=PORT)
         self.port: int = listener.getsockname()[1]
         self.refused: list[str] = []
         options.setdefault("refused", self.refused.append)

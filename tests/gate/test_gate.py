@@ -14,6 +14,7 @@ from cartwheel.codes.wires import ADDRESS_UNAVAILABLE, ORIGIN_INVALID
 from cartwheel.gate import gate as gate_module
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import hidden_host
+from cartwheel.options import PORT
 
 
 @pytest.fixture
@@ -71,7 +72,7 @@ def test_a_foreign_origin_is_refused(local: Gated, kind: str, origin: str) -> No
     make = local.head if kind == "page" else local.handshake
     answer = local.ask(make(f"Origin: {origin}"))
     assert status(answer) == 403
-    assert (b"--allow-origin" in answer) == (origin not in ("null", ""))
+    assert (b"allow_origin=" in answer) == (origin not in ("null", ""))
     assert local.behind.heard == []
     assert local.refused == [origin.lower()]
 
@@ -361,7 +362,7 @@ def test_a_taken_port_is_an_error_with_the_option() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with raises(ADDRESS_UNAVAILABLE, server="the page", port=port):
-            listen("127.0.0.1", port, title="the page", option="--port")
+            listen("127.0.0.1", port, title="the page", option=PORT)
 
 
 def test_servers_behind_cannot_be_guessed() -> None:

@@ -179,7 +179,7 @@ def test_odes_parameters_are_kept_and_that_is_said(falling):
 @pytest.mark.wording
 def test_odes_parameters_without_effect_are_named(falling):
     answer = change(falling, ode_config__sor_pgs_iters=300, ode_config__erp=0.5)
-    assert "sor_pgs_iters, erp: stored, but without effect" in answer.status_message
+    assert "sor_pgs_iters, erp: stored, but has no effect" in answer.status_message
 
 
 @pytest.mark.parametrize(

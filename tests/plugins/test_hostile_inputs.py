@@ -234,7 +234,7 @@ def test_a_push_that_diverges_takes_all_back_and_the_run_goes_on(pushed):
 @pytest.mark.wording
 def test_the_last_divergence_that_is_reported_says_so(pushed):
     told = coded(pushed, world_codes.SIMULATION_RECOVERED)
-    assert told[-1].hint.endswith("From now on, divergence is not reported.")
+    assert told[-1].hint.endswith("Further divergences are not reported.")
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_a_foreign_page_is_named_with_the_option_that_allows_it(simulation: Runn
         pass
     simulation.process.terminate()
     out, _ = simulation.process.communicate(timeout=60)
-    assert "the viewer rejected a web page from the origin http://evil.example" in out
+    assert "the web interface rejected a web page from the origin http://evil.example" in out
     assert "--allow-origin http://evil.example" in out
 
 

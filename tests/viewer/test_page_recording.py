@@ -103,7 +103,7 @@ def test_a_browser_that_falls_silent_disturbs_nobody(page, cinema, caplog):
     made._silent(number)
     made.post(done.set)
     assert done.wait(60.0)
-    assert "the viewer failed" not in caplog.messages
+    assert "the web interface failed" not in caplog.messages
 
 
 def _is_number(text):

@@ -8,6 +8,7 @@ import pytest
 
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
+from cartwheel.options import PORT
 from cartwheel.viewer import viser_internals
 from cartwheel.viewer.page import Page
 
@@ -22,7 +23,7 @@ BROWSERS = 3
 @pytest.fixture
 def page():
     made = Page(
-        listen("127.0.0.1", 0, title="the viewer", option="--port"),
+        listen("127.0.0.1", 0, title="a test", option=PORT),
         Access(host="127.0.0.1"),
         title="Test",
     )

@@ -141,7 +141,8 @@ class SimulationControls:
         """
         if time_ns > 0:
             raise CartwheelError(
-                "a simulation cannot seek; it can only be reset", code=SEEK_UNSUPPORTED
+                "a simulation cannot jump to a different time; it can only be reset to its start",
+                code=SEEK_UNSUPPORTED,
             )
         self._do(self._simulation.reset)
 

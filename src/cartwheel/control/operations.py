@@ -239,7 +239,8 @@ class Operations:
         with self._counting:
             if self._waiting >= _MOST_WAITING:
                 raise ControlError(
-                    f"{_MOST_WAITING} messages wait for the simulation, so this one is rejected",
+                    f"{_MOST_WAITING} messages are already waiting for the simulation, so this "
+                    "message is rejected",
                     code=CONTROL_LIMIT,
                     hint=self._hint,
                     values={"most": _MOST_WAITING},

@@ -76,7 +76,7 @@ def folder() -> Path:
         ) from error
     if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
         raise ControlError(
-            f"{chosen} belongs to another user",
+            f"another user owns {chosen}",
             code=CONTROL_FOLDER_UNUSABLE,
             hint="Set XDG_RUNTIME_DIR to a folder that you own.",
             values={"path": str(chosen)},

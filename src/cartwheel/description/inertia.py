@@ -71,9 +71,10 @@ def impossibility(moments: Vec3) -> tuple[str, str] | None:
         )
     if a + b < c * (1 - TOLERANCE):
         return (
-            f"no rigid body can have this inertia: of its principal moments {shown}, the two "
-            f"smaller add up to {a + b:.4g}, which is less than the largest",
-            "For a solid box, ixx = mass / 12 (y² + z²), and likewise for iyy and izz.",
+            f"no rigid body can have this inertia: its principal moments are {shown}, and the "
+            f"largest exceeds the sum of the other two, {a + b:.4g}",
+            "For a solid box with the sides x, y and z: ixx = mass (y² + z²) / 12, "
+            "iyy = mass (x² + z²) / 12, izz = mass (x² + y²) / 12.",
         )
     return None
 

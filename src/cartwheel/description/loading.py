@@ -18,9 +18,9 @@ from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 _OTHER_KINDS = {
-    "launch": ("a launch file", "Pass the description that it loads."),
+    "launch": ("a launch file", "Pass the description that the launch file loads."),
     "package": ("a package manifest", "Pass a description from the package."),
-    "COLLADA": ("a mesh", "Pass the description that uses it."),
+    "COLLADA": ("a mesh", "Pass the description that uses the mesh."),
     "model": ("a model.config, or a <model> without <sdf> around it", ""),
     "world": ("a <world> without <sdf> around it", ""),
     "mujoco": ("a MuJoCo model, not a ROS or Gazebo description", ""),
@@ -78,7 +78,7 @@ def load_robot(
             code=codes.WRONG_KIND,
             values={"kind": "world", "name": found.name},
             origin=found.origin,
-            hint="Load it as the world, and spawn robots into it.",
+            hint="Load the file as the world, and spawn robots into this world.",
         )
     return found
 

@@ -85,7 +85,8 @@ def _found(text: str, node: Node, packages: Packages) -> str:
 
 def _refuse(what: str, origin: Origin) -> NoReturn:
     raise DescriptionError(
-        f"the text contains {what}, but xacro in text received over the network is not expanded",
+        f"the description contains {what}, but Cartwheel does not expand xacro in descriptions "
+        "that it receives over the network",
         code=XACRO_NOT_EXPANDED,
         values={"name": what},
         origin=origin,

@@ -71,7 +71,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
                 place = "world" if plugin.for_world else "sensor"
                 part.report(
                     devices.PLUGIN_MISPLACED.diagnostic(
-                        f'plugin "{tag.filename}" has no effect here because it belongs inside a '
+                        f'plugin "{tag.filename}" has no effect here because it must be inside a '
                         f"<{place}>",
                         origin=tag.origin,
                         values={"name": tag.filename, "place": place},

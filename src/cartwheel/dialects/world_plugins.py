@@ -83,7 +83,7 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
         elif not plugin.for_world:
             part.report(
                 devices.PLUGIN_MISPLACED.diagnostic(
-                    f'plugin "{tag.filename}" has no effect here because it belongs inside a '
+                    f'plugin "{tag.filename}" has no effect here because it must be inside a '
                     "<model>",
                     origin=tag.origin,
                     values={"name": tag.filename, "place": "model"},

@@ -9,7 +9,10 @@ _LARGEST = 16 << 20
 """Maximum size in bytes of a binary message: a request with a complete robot description."""
 _ALL = 64 << 20
 """Maximum bytes of incomplete messages of all clients, which the server behind buffers."""
-_FULL = f"incomplete messages of all clients exceed {_ALL >> 20} MiB, and this one is the oldest"
+_FULL = (
+    f"the incomplete messages of all clients together exceed {_ALL >> 20} MiB, and this client's "
+    "is the oldest"
+)
 _TEXT, _CONTROL = 1, 8
 _LARGEST_CONTROL = 125
 """Source: RFC 6455, 5.5."""

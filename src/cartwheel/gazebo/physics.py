@@ -148,4 +148,4 @@ class Physics:
             self.on_change()
         if not unlike:
             return ()
-        return (f"{', '.join(unlike)}: stored, but without effect in MuJoCo",)
+        return (f"{', '.join(unlike)}: stored, but has no effect in MuJoCo",)

@@ -196,7 +196,9 @@ class Properties:
         }
         notes: tuple[str, ...] = ()
         if joint.type not in _JOINT_TYPES:
-            notes = (f"the response has no type number for a {joint.type} joint",)
+            notes = (
+                f"the field type is {_NO_TYPE}: Gazebo defines no number for a {joint.type} joint",
+            )
         return Answer("GetJointProperties: got properties", fields, notes)
 
     def set_joint_properties(self, request: Any) -> Answer:

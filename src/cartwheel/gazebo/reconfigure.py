@@ -11,7 +11,7 @@ from cartwheel.gazebo.physics import Physics
 from cartwheel.graph import Graph
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, Value
 
-_KEPT = "Stored and returned, but without effect in MuJoCo."
+_KEPT = "Stored and returned, but has no effect in MuJoCo."
 
 
 def _double(

@@ -70,11 +70,12 @@ def _is_known(one: Definition) -> bool:
     if known.same_as(one):
         return True
     raise GraphError(
-        f"{one.name} differs from its definition in {known.origin.file}, which this process "
-        "already uses",
+        f"the definition of {one.name} differs from the one in {known.origin.file}, which this "
+        "process already uses",
         code=MESSAGE_TYPE_IN_USE,
         origin=one.origin,
-        hint="Start a new process after a message type has changed, and for each workspace.",
+        hint="Use a separate process for each workspace, and start a new process after the "
+        "definition has changed.",
         values={"type": one.name, "file": one.origin.file, "other": known.origin.file},
     )
 

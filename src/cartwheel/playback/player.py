@@ -335,7 +335,7 @@ class Player(Run):
             name = self._recording.topics[number].name
             self._notes.append(
                 RECORDED_TOPIC_LEFT_OUT.because(
-                    f"{name} is not played from {message.time_ns / 1e9:.3f} s on",
+                    f"messages on {name} are not played after {message.time_ns / 1e9:.3f} s",
                     error,
                     values={"topic": name, "time": message.time_ns / 1e9},
                 )

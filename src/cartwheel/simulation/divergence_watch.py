@@ -68,7 +68,7 @@ class Watch:
         if self._recoveries > _RECOVERIES:
             return
         last = self._recoveries == _RECOVERIES
-        end = " From now on, divergence is not reported." if last else ""
+        end = " Further divergences are not reported." if last else ""
         self._engine.report(
             world_codes.SIMULATION_RECOVERED.diagnostic(
                 f"{error.message}; all models are reset to the poses at which they were spawned",

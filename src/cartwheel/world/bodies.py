@@ -143,8 +143,8 @@ class BodyBuilder:
         lost = [link for link in description.links if link.name not in bodies]
         if lost:
             raise WorldError(
-                f'link "{lost[0].name}" is part of a loop of joints that is not connected to any '
-                "other link",
+                f'link "{lost[0].name}" is part of a loop of joints, and no joint connects this '
+                "loop to the root of the model",
                 code=world_codes.LOOP_WITHOUT_ROOT,
                 origin=lost[0].origin,
                 values={"link": lost[0].name},

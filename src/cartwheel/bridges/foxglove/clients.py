@@ -137,14 +137,14 @@ class _Share:
         if len(self._sizes) + len(new) > _MOST or sum(self._sizes.values()) + size > _MOST_BYTES:
             raise _FullError(
                 f"{total.title} of a client",
-                f"a client may have at most {_MOST} {total.title} and {_MOST_BYTES >> 20} MiB of "
-                "text",
+                f"a client may have at most {_MOST} {total.title}, with at most "
+                f"{_MOST_BYTES >> 20} MiB of names and descriptions",
             )
         if total.count + len(new) > _ALL or total.size + size > _ALL_BYTES:
             raise _FullError(
                 f"{total.title} of all clients",
-                f"all clients together may have at most {_ALL} {total.title} and "
-                f"{_ALL_BYTES >> 20} MiB of text",
+                f"all clients together may have at most {_ALL} {total.title}, with at most "
+                f"{_ALL_BYTES >> 20} MiB of names and descriptions",
             )
         self._sizes.update(new)
         total.count += len(new)

@@ -143,8 +143,9 @@ class BlockRecording:
                 yield message
             if size > _MOST_WAITING:
                 raise RecordingError(
-                    f'"{self.path}" cannot be read: too many of its chunks overlap in time '
-                    f"({size >> 20} MiB at byte {block.position})",
+                    f'"{self.path}" cannot be read: its chunks contain messages from the same '
+                    f"time, and sorting them requires {size >> 20} MiB of memory at byte "
+                    f"{block.position} (limit: {_MOST_WAITING >> 20} MiB)",
                     code=RECORDING_DAMAGED,
                     values={"path": str(self.path), "byte": block.position, "overlap": size},
                 )

@@ -118,7 +118,8 @@ def pick(message: Any, path: str) -> Any:
         if part.isdecimal() and hasattr(value, "__len__") and not isinstance(value, str):
             if int(part) >= len(value):
                 raise GraphError(
-                    f'"{done}" has {len(value)} items, so "{path}" does not exist',
+                    f'"{path}" does not exist because "{done}" has only '
+                    f"{_many(len(value), 'element')}",
                     code=FIELD_UNKNOWN,
                     values={"field": path},
                 )

@@ -200,7 +200,7 @@ class _Scene:
                 if primitive is not None:
                     yield primitive
             elif element.tag in _NO_SURFACES:
-                self._note(f"the COLLADA <{element.tag}> are ignored")
+                self._note(f"the COLLADA elements <{element.tag}> are ignored")
 
     def _primitive(self, element: ET.Element) -> _Primitive | None:
         offsets: dict[str, tuple[int, str]] = {}

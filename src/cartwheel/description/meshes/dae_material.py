@@ -131,7 +131,8 @@ def _numbers(element: ET.Element, least: int) -> tuple[float, ...]:
     values = tuple(float(word) for word in (element.text or "").split())
     if len(values) < least or not all(abs(v) < 1e6 for v in values):
         raise ValueError(
-            f"a COLLADA <{element.tag}> must contain at least {least} numbers below 1000000"
+            f"the COLLADA element <{element.tag}> must contain at least {least} numbers, and the "
+            "absolute value of each must be below 1,000,000"
         )
     return values
 

@@ -174,7 +174,7 @@ def check_unique(kind: str, names: list[tuple[str, Origin]]) -> None:
                 f'the {kind} "{name}" is defined twice',
                 code=codes.NAME_TAKEN,
                 origin=origin,
-                hint=f"The first is at {seen[name]}.",
+                hint=f"The first definition is at {seen[name]}.",
                 values={"name": name},
             )
         seen[name] = origin

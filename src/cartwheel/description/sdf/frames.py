@@ -66,7 +66,7 @@ class Frames:
                 f'{kind} "{name}" has the same name as another {first.kind} in this {self.kind}',
                 code=codes.NAME_TAKEN,
                 origin=origin,
-                hint=f"The first is at {first.origin}.",
+                hint=f"The first definition is at {first.origin}.",
                 values={"name": name},
             )
         self._frames[name] = _Frame(kind, pose, relative_to, attached_to, origin)
@@ -105,7 +105,8 @@ class Frames:
             if name in ("", MODEL):
                 if self.default_link is None:
                     raise DescriptionError(
-                        f'{self.kind} "{self.name}" has no link to attach to',
+                        f'{self.kind} "{self.name}" has no link that a frame or joint can be '
+                        "attached to",
                         code=codes.MODEL_EMPTY,
                         origin=origin,
                         values={"name": self.name},

@@ -182,5 +182,5 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
         code=files.FILE_MISSING,
         origin=uri.origin,
         values={"kind": "model", "name": uri.text},
-        hint=f"The folder {folder} was found by its name.",
+        hint=f"The model was found in the folder {folder}.",
     )

@@ -117,7 +117,7 @@ def _whole(node: Node, ctx: Context) -> Model:
             lacking.message,
             code=lacking.code,
             origin=lacking.origin,
-            hint=f"As a result, the model could not be read: {error.message}.",
+            hint=f"For this reason, the model cannot be loaded: {error.message}.",
             values={**lacking.values, "without": error.values.get("name")},
         ) from error
 

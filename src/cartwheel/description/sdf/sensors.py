@@ -95,15 +95,16 @@ def read_camera(node: Node) -> CameraIntrinsics:
     if near < NEAREST or far > LARGEST:
         wrong = clip.child("near" if near < NEAREST else "far") if clip is not None else None
         raise (wrong or node).fail(
-            f"clip near must be at least {NEAREST:g} m and far at most {LARGEST:g} m "
+            f"<near> must be at least {NEAREST:g} m, and <far> at most {LARGEST:g} m "
             f"(got {near:g} and {far:g})"
         )
     if not near < far:
         wrong = clip.child("near") if clip is not None else None
-        raise (wrong or node).fail(f"clip near {near:g} must be below far {far:g}")
+        raise (wrong or node).fail(f"<near> must be below <far> (got {near:g} m and {far:g} m)")
     if not NARROWEST <= fov < 2 * math.pi:
         raise (node.child("horizontal_fov") or node).fail(
-            f"horizontal_fov {fov:g} must be between {NARROWEST:g} and {2 * math.pi:.4g} rad",
+            f"<horizontal_fov> must be between {NARROWEST:g} and {2 * math.pi:.4g} rad (got "
+            f"{fov:g})",
             f"If {fov:g} is in degrees, use {math.radians(fov):.4g}." if fov > 0 else None,
         )
     centre = node.find("distortion/center")

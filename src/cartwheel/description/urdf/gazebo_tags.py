@@ -255,7 +255,7 @@ def _warn_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext)
             child.mark()
             ctx.report(
                 codes.TAG_MISPLACED.diagnostic(
-                    f"<{child.tag}> has no effect because it belongs to a {kinds[0]}, but "
+                    f"<{child.tag}> has no effect because it applies only to {kinds[0]}s, but "
                     f'"{reference}" is a {kinds[1]}',
                     origin=child.origin,
                     values={"tag": child.tag, "needs": kinds[0], "reference": reference},

@@ -139,7 +139,7 @@ def _check_unique(kind: str, nodes: Sequence[Node]) -> None:
         if name in seen:
             raise node.fail(
                 f'the {kind} "{name}" is defined twice',
-                f"The first is at {seen[name]}.",
+                f"The first definition is at {seen[name]}.",
                 code=robot.DUPLICATE_NAME,
                 values={"name": name},
             )
@@ -153,7 +153,7 @@ def _warn_unprefixed(root: Node, ctx: UrdfContext) -> None:
             node.mark()
             ctx.report(
                 files.XACRO_PREFIX.diagnostic(
-                    f"<{tag}> without its prefix has no effect",
+                    f"<{tag}> has no effect because it lacks the prefix xacro:",
                     origin=node.origin,
                     hint=f"Use <xacro:{tag}>.",
                     values={"tag": tag, "meant": f"xacro:{tag}"},
@@ -186,7 +186,8 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
     if inertial.mass <= 0:
         ctx.report(
             robot.MASS_NOT_POSITIVE.diagnostic(
-                f'link "{name}" has the mass {inertial.mass:g}, so it becomes a frame without mass',
+                f'link "{name}" has a mass of {inertial.mass:g} kg, so it is simulated without a '
+                "mass",
                 origin=inertial.origin,
                 severity="info" if fixed and inertial.mass == 0 else "warning",
                 values={"link": name, "stated": inertial.mass},

@@ -77,7 +77,8 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
                 code=robot.MULTIPLE_PARENTS,
                 values={"link": joint.child, "joints": (other.name, joint.name)},
                 origin=joint.origin,
-                hint=f'The joint "{other.name}" is at {other.origin}. A URDF is a tree.',
+                hint=f'Joint "{other.name}" is defined at {other.origin}. In a URDF, each link '
+                "has at most one parent.",
             )
         inbound[joint.child] = joint
         children[joint.parent].append(joint)
@@ -87,7 +88,7 @@ def build_tree(links: Sequence[tuple[str, Origin]], joints: Sequence[Joint]) -> 
     if len(roots) > 1:
         names = ", ".join(f'"{name}"' for name, _ in roots)
         raise DescriptionError(
-            f"the links do not form a single tree: {names} have no joint to a parent",
+            f"the links do not form a single tree: no joint connects {names} to a parent",
             code=robot.MULTIPLE_ROOTS,
             values={"links": tuple(name for name, _ in roots)},
             origin=roots[1][1],

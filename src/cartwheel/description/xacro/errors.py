@@ -80,7 +80,7 @@ def explain(failure: Failure) -> DescriptionError:
         message = f'the property "{match[1]}" is not defined' + _expression(text)
         hint, near = _meant(match[1], [*failure.properties, *_FUNCTIONS])
         if match[1] in failure.arguments:
-            hint = f"It is an argument: use $(arg {match[1]})."
+            hint = f"{match[1]} is an argument: use $(arg {match[1]})."
         code, values = _unknown("property", match[1], near)
         values["expression"] = _evaluated(text)
     elif match := _ARGUMENT.search(text):

@@ -173,7 +173,8 @@ class Run:
         more = f" (and {number - 1} more in this file)" if number > 1 else ""
         self.diagnostics.append(
             codes.XACRO_PREFIX.diagnostic(
-                f"<{tag}> is read as <{PREFIX}{tag}>, but ROS has ignored it since Noetic{more}",
+                f"<{tag}> is read as <{PREFIX}{tag}>, but since Noetic, ROS ignores xacro elements "
+                f"without a prefix{more}",
                 origin=element.origin,
                 hint=f"Use <{PREFIX}{tag}>.",
                 values=values,

@@ -123,7 +123,7 @@ class TrajectoryReader:
         unknown = [name for name in names if name not in self._names]
         if unknown:
             raise InvalidTrajectoryError(
-                INVALID_JOINTS, f'joint "{unknown[0]}" does not belong to this controller'
+                INVALID_JOINTS, f'joint "{unknown[0]}" is not a joint of this controller'
             )
         missing = [name for name in self._names if name not in names]
         if missing and not self._rules.partial:

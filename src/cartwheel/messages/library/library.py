@@ -332,7 +332,7 @@ class TypeLibrary:
                 name = f"{other.package}/{kind}/{stem}"
                 self.report(
                     MESSAGE_DEFINITIONS_DIFFER.diagnostic(
-                        f"{name} is different in {other.path}, which is ignored",
+                        f"the definition of {name} in {other.path} is different, and is ignored",
                         origin=Origin(file=key),
                         hint="Build the workspace again, or remove one of the two packages.",
                         values={"type": name, "file": key, "other": str(other.path)},

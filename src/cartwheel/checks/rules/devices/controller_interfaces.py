@@ -95,7 +95,7 @@ def _unanswered(
             instead=f'<command_interface name="{claim.interface}"/>' if ros2 else text,
             place="element" if written else "inside",
             mark=element.text.strip() if written else joint,
-            hint=f"The controller is at {claim.controller.type.origin}.",
+            hint=f"The controller is defined at {claim.controller.type.origin}.",
         )
 
 

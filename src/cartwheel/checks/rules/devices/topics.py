@@ -44,7 +44,7 @@ def topic_twice(subject: Subject) -> Iterator[Diagnostic]:
                     instead=nodes.written(element.tag, {}, new),
                     place="element",
                     mark=element.text.strip(),
-                    hint=f"The other plugin is at {other.origin}.",
+                    hint=f"The other plugin is defined at {other.origin}.",
                 )
 
 

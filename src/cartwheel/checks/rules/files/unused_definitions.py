@@ -76,7 +76,7 @@ def property_twice(subject: Subject) -> Iterator[Diagnostic]:
                         values={"name": name, "value": first.attributes["value"]},
                         origin=first.origin,
                         mark=f'name="{name}"',
-                        hint=f"The next value is at {node.origin}. Remove one of the two "
+                        hint=f"The next definition is at {node.origin}. Remove one of the two "
                         "definitions.",
                     )
                 if value is not None and not node.children:

@@ -41,7 +41,7 @@ def two_parents(subject: Subject) -> Iterator[Diagnostic]:
                 origin=joint.origin,
                 mark=f'name="{nodes.name_of(joint)}"',
                 hint="Remove one of the joints, or give each joint a separate child link. Joint "
-                f'"{nodes.name_of(first)}" is at {first.origin}.',
+                f'"{nodes.name_of(first)}" is defined at {first.origin}.',
             )
         holders.setdefault(child, joint)
 

@@ -28,7 +28,7 @@ def name_twice(subject: Subject) -> Iterator[Diagnostic]:
             yield robot_codes.DUPLICATE_NAME.diagnostic(
                 message=f'two {tag}s have the name "{name}"',
                 values={"tag": tag, "name": name},
-                hint=f"The first is at {seen[name].origin}.",
+                hint=f"The first definition is at {seen[name].origin}.",
                 origin=node.origin,
                 instead=f'name="{new}"',
                 place="attribute",

@@ -33,7 +33,7 @@ def angle_degrees(subject: Subject) -> Iterator[Diagnostic]:
             xyz = " ".join(node.text.split()[:3])
             instead = nodes.written("pose", dict(node.attributes), f"{xyz} {radians}")
         yield robot_codes.ANGLE_IN_DEGREES.diagnostic(
-            message=f"the angles {text} are in radians: {max(values, key=abs):g} rad is "
+            message=f"the angles {text} are read as radians: {max(values, key=abs):g} rad is "
             f"{max(map(abs, values)) / 2 / math.pi:.3g} turns",
             values={"angles": values},
             hint="Are the angles in degrees?",

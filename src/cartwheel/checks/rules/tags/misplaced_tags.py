@@ -37,7 +37,7 @@ def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
             other = "joint" if needs == "link" else "link"
             message = f"{names} have no effect in a <gazebo> without a reference"
             if reference:
-                message = f"{names} have no effect because they belong to a {needs}, but "
+                message = f"{names} have no effect because they apply only to {needs}s, but "
                 message += f'"{reference}" is a {other}'
         yield codes.TAG_MISPLACED.diagnostic(
             message,

@@ -200,8 +200,9 @@ def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collis
         name = link.attributes.get("name", "")
         ctx.report(
             tags.DEFAULT_USED.diagnostic(
-                f'link "{name}" has no solid collision to compute its inertia from, so 1 kg and '
-                "1 kg m² are used",
+                f'the inertia of link "{name}" cannot be computed because the link has no '
+                "collision shape with a volume, so a mass of 1 kg and moments of inertia of 1 kg "
+                "m² are used",
                 origin=node.origin,
                 values={"link": name, "missing": "collision"},
             )

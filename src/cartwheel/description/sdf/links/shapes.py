@@ -155,14 +155,14 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
         )
         x, y, z = (max(side, _FLAT) for side in (x, y, z))
     if min(x, y, z) <= 0:
-        raise node.fail(f"every {tag} must be above 0 (got {node.text})")
+        raise node.fail(f"each component of <{tag}> must be above 0 (got {node.text})")
     return (x, y, z)
 
 
 def _warn_default(shape: Node, tag: str, ctx: Context) -> None:
     ctx.report(
         tags.DEFAULT_USED.diagnostic(
-            f"<{shape.tag}> has no <{tag}>, so the SDF default, 1 m, is used",
+            f"<{shape.tag}> has no <{tag}>, so the default in SDF, 1 m, is used",
             origin=shape.origin,
             values={"shape": shape.tag, "missing": tag},
         )
@@ -282,7 +282,7 @@ def _heightmap(node: Node, ctx: Context) -> Heightmap:
             hint="Save the heights as a greyscale PNG with the highest point in white.",
         )
     if min(size[:2]) <= 0 or size[2] == 0:
-        raise node.fail(f"every size of a heightmap must be above 0 (got {size})")
+        raise node.fail(f"each component of a heightmap's <size> must be above 0 (got {size})")
     shape = Heightmap(path=path, size=size, position=position, texture=texture)
     try:
         heights_of(shape, origin=uri.origin)
