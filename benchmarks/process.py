@@ -99,7 +99,7 @@ def _client(process: subprocess.Popen[bytes], topic: str) -> Subscription:
         # Look only at the folder until the process has registered.
         if any(Path(os.environ["XDG_RUNTIME_DIR"]).glob("cartwheel/*.json")):
             with contextlib.suppress(ControlError):
-                return ControlClient(find(process.pid)).subscribe(topic)
+                return ControlClient(find(str(process.pid))).subscribe(topic)
         time.sleep(0.002)
     raise TimeoutError("cartwheel run did not answer")
 

@@ -9,7 +9,6 @@ from tests.coded import raises
 
 from cartwheel.codes.command import (
     CONTROL_FOLDER_UNUSABLE,
-    OPTION_INVALID,
     SIMULATION_AMBIGUOUS,
     SIMULATION_NOT_RUNNING,
 )
@@ -27,27 +26,55 @@ def test_none(runtime_folder):
 
 
 def test_one_is_found_by_itself(server):
-    assert find() == find(os.getpid()) == server.entry
+    assert find() == find(str(os.getpid())) == find("test_world") == server.entry
+    assert server.entry.selector == str(os.getpid())
     server.announce(url="http://127.0.0.1:8080", port=8080)
     assert find().url == "http://127.0.0.1:8080"
     assert find().title == "nothing in test_world"
-    with raises(SIMULATION_NOT_RUNNING, pid=1):
-        find(1)
+    for selector in ("1", f"{os.getpid()}-2", "test", "-"):
+        with raises(SIMULATION_NOT_RUNNING, sim=selector):
+            find(selector)
 
 
 def test_of_several_one_must_be_named(server, session, monkeypatch):
     second = ControlServer(session, title="second", load=load)
     entry = json.loads(second.entry.path.with_suffix(".json").read_text())
     second.entry.path.with_suffix(".json").write_text(json.dumps({**entry, "pid": 17}))
-    with raises(SIMULATION_AMBIGUOUS, pids=(17, os.getpid())) as caught:
+    with raises(SIMULATION_AMBIGUOUS, sims=tuple(sorted(("17", str(os.getpid()))))) as caught:
         find()
     assert caught.value.hint
-    assert find(17).title == "second"
+    assert find("17").title == "second"
     monkeypatch.setenv("CARTWHEEL_SIM", "17")
     assert find().title == "second"
     monkeypatch.setenv("CARTWHEEL_SIM", "x")
-    with raises(OPTION_INVALID, option="CARTWHEEL_SIM", value="x"):
+    with raises(SIMULATION_NOT_RUNNING, sim="x"):
         find()
+    second.close()
+
+
+def test_several_simulations_of_one_process(server, session, monkeypatch):
+    second = ControlServer(session, title="second", load=load, world="yard")
+    third = ControlServer(session, title="third", load=load, world="17")
+    fourth = ControlServer(session, title="fourth", load=load, world="17")
+    pid = str(os.getpid())
+    numbers = tuple(f"{pid}-{count}" for count in (1, 2, 3, 4))
+    for selector, fitting in ((None, numbers), (pid, numbers), ("17", numbers[2:])):
+        with raises(SIMULATION_AMBIGUOUS, sims=fitting):
+            find(selector)
+    for number, selected in zip(numbers, (server, second, third, fourth), strict=True):
+        assert find(number).path == selected.entry.path
+        assert find(number).selector == number
+        assert str(find(number)).startswith(f"{number}: {selected.entry.title}")
+    assert find("test_world").path == server.entry.path
+    monkeypatch.setenv("CARTWHEEL_SIM", "yard")
+    assert find().path == second.entry.path
+    # A world keeps its number when another one ends.
+    third.close()
+    assert find("17").path == find(numbers[3]).path == fourth.entry.path
+    fourth.close()
+    server.close()
+    assert find(pid).path == find(numbers[1]).path == second.entry.path
+    assert find("yard").selector == pid
     second.close()
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal
 
+from cartwheel.assembly.names import world_title
 from cartwheel.assembly.observer import AtEnd, Observer
 from cartwheel.assembly.processes import Kind, Processes
 from cartwheel.assembly.recording import Recording, RecordingOptions
@@ -140,7 +141,8 @@ class Assembly:
         """
         from cartwheel.control.server import ControlServer
 
-        server = ControlServer(self.session, title=title, load=_load_robot, ros=ros)
+        world = world_title(self.session.simulation.world)
+        server = ControlServer(self.session, title=title, load=_load_robot, world=world, ros=ros)
         self._stack.enter_context(self._at_end(server.close))
         self._control = server
 

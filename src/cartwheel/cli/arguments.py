@@ -19,12 +19,13 @@ _MAPPING = re.compile(r"([A-Za-z_][\w.-]*):=(.*)", re.DOTALL)
 RECORDING = "Recording: a .mcap, .bag or .db3 file, or a rosbag2 folder."
 
 Sim = Annotated[
-    int | None,
+    str | None,
     typer.Option(
         "--sim",
-        metavar="PID",
-        help="Process ID of the simulation to control, if several are running. Default: the "
-        f"environment variable {VARIABLE}.",
+        metavar="PID|WORLD",
+        help="Simulation to control, if several are running: its process ID or the name of its "
+        "world. For the second world of a Python program, use PID-2. Default: the environment "
+        f"variable {VARIABLE}.",
     ),
 ]
 

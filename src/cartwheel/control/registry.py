@@ -11,13 +11,13 @@ import os
 import socket
 import stat
 import time
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from cartwheel.codes.command import (
     CONTROL_FOLDER_UNUSABLE,
-    OPTION_INVALID,
     SIMULATION_AMBIGUOUS,
     SIMULATION_NOT_RUNNING,
 )
@@ -47,11 +47,23 @@ class Running:
     """Seconds since 1970."""
     path: Path
     """Path of the socket."""
+    has_siblings: bool = False
+    """Whether its process has several simulations."""
 
     def __str__(self) -> str:
         since = time.strftime("%H:%M:%S", time.localtime(self.started))
         page = f", {self.url}" if self.url else ""
-        return f"{self.pid}: {self.title}{page}, since {since}"
+        return f"{self.selector}: {self.title}{page}, since {since}"
+
+    @property
+    def number(self) -> str:
+        """``PID-2`` for the second simulation of its process."""
+        return f"{self.pid}-{self.path.stem.partition('-')[2] or 1}"
+
+    @property
+    def selector(self) -> str:
+        """The value of ``--sim`` for this simulation."""
+        return self.number if self.has_siblings else str(self.pid)
 
 
 def folder() -> Path:
@@ -96,30 +108,38 @@ def running() -> list[Running]:
         else:
             file.unlink(missing_ok=True)
             file.with_suffix(".sock").unlink(missing_ok=True)
+    processes = Counter(entry.pid for entry in found)
+    found = [replace(entry, has_siblings=processes[entry.pid] > 1) for entry in found]
     return sorted(found, key=lambda entry: entry.started)
 
 
-def find(pid: int | None = None) -> Running:
+def find(selector: str | None = None) -> Running:
     """The simulation that a command applies to: the selected one, or the only one.
 
     Args:
-        pid: Process ID; the environment variable `VARIABLE` is the default.
+        selector: Process ID, process ID and number as ``4711-2``, or the name of the world. The
+            environment variable `VARIABLE` is the default.
 
     Raises:
         ControlError: No simulation is running, or several are and none is selected.
     """
     known = running()
-    if pid is None:
-        pid = _pid_of_environment()
-    if pid is not None:
-        for entry in known:
-            if entry.pid == pid:
-                return entry
+    selector = selector or os.environ.get(VARIABLE, "").strip()
+    if selector:
+        found = (
+            [entry for entry in known if selector == str(entry.pid)]
+            or [entry for entry in known if selector == entry.number]
+            or [entry for entry in known if selector == entry.world]
+        )
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise _ambiguous(f'{len(found)} simulations match "{selector}"', found)
         raise ControlError(
-            f"no simulation is running as process {pid}",
+            f'no running simulation has the process ID or world "{selector}"',
             code=SIMULATION_NOT_RUNNING,
             hint=_listing(known),
-            values={"pid": pid},
+            values={"sim": selector},
         )
     if not known:
         raise ControlError(
@@ -128,12 +148,7 @@ def find(pid: int | None = None) -> Running:
             hint="Start one with: cartwheel run",
         )
     if len(known) > 1:
-        raise ControlError(
-            f"{len(known)} simulations are running; select one with --sim PID",
-            code=SIMULATION_AMBIGUOUS,
-            hint=_listing(known),
-            values={"pids": tuple(sorted(entry.pid for entry in known))},
-        )
+        raise _ambiguous(f"{len(known)} simulations are running", known)
     return known[0]
 
 
@@ -163,7 +178,8 @@ def listen() -> tuple[socket.socket, Path]:
 
 def announce(entry: Running) -> None:
     """Writes or replaces a simulation's file atomically."""
-    values = {name: value for name, value in asdict(entry).items() if name != "path"}
+    values = asdict(entry)
+    del values["path"], values["has_siblings"]
     file = entry.path.with_suffix(".json")
     draft = entry.path.with_suffix(".draft")
     draft.write_text(json.dumps(values))
@@ -198,17 +214,13 @@ def _read(file: Path) -> Running | None:
         return None
 
 
-def _pid_of_environment() -> int | None:
-    text = os.environ.get(VARIABLE, "").strip()
-    if not text:
-        return None
-    if not text.isdecimal():
-        raise ControlError(
-            f'{VARIABLE} must be a process ID (got "{text}")',
-            code=OPTION_INVALID,
-            values={"option": VARIABLE, "value": text},
-        )
-    return int(text)
+def _ambiguous(problem: str, found: Sequence[Running]) -> ControlError:
+    return ControlError(
+        f"{problem}; select one with --sim",
+        code=SIMULATION_AMBIGUOUS,
+        hint=f"For example, use --sim {found[-1].selector}. {_listing(found)}",
+        values={"sims": tuple(sorted(entry.selector for entry in found))},
+    )
 
 
 def _listing(known: Iterable[Running]) -> str:

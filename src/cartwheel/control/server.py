@@ -56,6 +56,7 @@ class ControlServer:
         session: The session.
         title: A short description of what is simulated.
         load: Reads the file of a ``spawn`` request.
+        world: Name of the world by which commands select the session; None for the world's own.
         ros: Whether the session will register at a ROS 1 master; see `announce_ros`.
 
     Raises:
@@ -63,7 +64,13 @@ class ControlServer:
     """
 
     def __init__(
-        self, session: RunningSession, *, title: str, load: Load, ros: bool = False
+        self,
+        session: RunningSession,
+        *,
+        title: str,
+        load: Load,
+        world: str | None = None,
+        ros: bool = False,
     ) -> None:
         self._session = session
         self._operations = Operations(session, load)
@@ -76,7 +83,7 @@ class ControlServer:
         self.entry = Running(
             pid=os.getpid(),
             title=title,
-            world=session.simulation.world.name,
+            world=session.simulation.world.name if world is None else world,
             ros_master="" if ros else None,
             path=path,
         )

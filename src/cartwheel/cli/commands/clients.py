@@ -11,7 +11,7 @@ from cartwheel.control import ControlClient, find
 from cartwheel.errors import CartwheelError
 
 
-def connect(sim: int | None) -> ControlClient:
+def connect(sim: str | None) -> ControlClient:
     """Connects to the selected simulation.
 
     Raises:

@@ -15,7 +15,7 @@ from cartwheel.control.faults import unpacked
 
 
 def spawn(
-    sim: int | None,
+    sim: str | None,
     file: str,
     values: Mapping[str, str],
     *,
@@ -42,13 +42,13 @@ def spawn(
     say(answer["name"])
 
 
-def delete(sim: int | None, model: str) -> None:
+def delete(sim: str | None, model: str) -> None:
     """Deletes a model."""
     with connect(sim) as client:
         client.request("delete", model=model)
 
 
-def print_list(sim: int | None) -> None:
+def print_list(sim: str | None) -> None:
     """Prints a table of all models."""
     with connect(sim) as client:
         found = client.request("models")["models"]

@@ -14,7 +14,7 @@ _INTERVAL = 1.0
 """s of wall time between two reports."""
 
 
-def measure(sim: int | None, topic: str, *, count: int | None, window: int) -> None:
+def measure(sim: str | None, topic: str, *, count: int | None, window: int) -> None:
     """Reports the rate once a second, in the layout of ``rostopic hz``.
 
     The rate is measured in simulation time, so it does not depend on the speed of the simulation.

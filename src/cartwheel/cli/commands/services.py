@@ -8,7 +8,7 @@ from cartwheel.cli.commands.clients import connect, parse_yaml
 from cartwheel.cli.console import say, table
 
 
-def print_list(sim: int | None, *, verbose: bool) -> None:
+def print_list(sim: str | None, *, verbose: bool) -> None:
     """The names, or a table."""
     with connect(sim) as client:
         found = client.request("services")["services"]
@@ -21,7 +21,7 @@ def print_list(sim: int | None, *, verbose: bool) -> None:
             say(one["name"])
 
 
-def call(sim: int | None, service: str, words: Sequence[str]) -> None:
+def call(sim: str | None, service: str, words: Sequence[str]) -> None:
     """Calls a service and prints the response as YAML."""
     request = parse_yaml(words)
     with connect(sim) as client:

@@ -23,7 +23,7 @@ TWIST = "geometry_msgs/msg/Twist"
 STAMPED = "geometry_msgs/msg/TwistStamped"
 
 
-def drive(sim: int | None, topic: str | None, *, speed: float, turn: float) -> None:
+def drive(sim: str | None, topic: str | None, *, speed: float, turn: float) -> None:
     """Publishes a Twist for each key, and a stop at the end."""
     with connect(sim) as client:
         read = topics_read(client)

@@ -11,14 +11,14 @@ from cartwheel.control import ControlClient, running
 from cartwheel.control.registry import VARIABLE, Running
 
 
-def ask(sim: int | None, request: str, **parameters: Any) -> None:
+def ask(sim: str | None, request: str, **parameters: Any) -> None:
     """Sends a request and prints the resulting time and state."""
     with connect(sim) as client:
         answer = client.request(request, **parameters)
     say(f"{answer['state']} at {answer['time']:.3f} s")
 
 
-def print_status(sim: int | None) -> None:
+def print_status(sim: str | None) -> None:
     """Prints the simulation's state; of all simulations if several run and none is selected."""
     known = running()
     if sim is None and len(known) > 1 and VARIABLE not in os.environ:
@@ -38,8 +38,9 @@ def _print_one(entry: Running) -> None:
 def _print_client(client: ControlClient) -> None:
     entry, status = client.simulation, client.request("status")
     speed = "max" if status["speed"] is None else f"{status['speed']:g}"
+    selected = f", --sim {entry.selector}" if entry.has_siblings else ""
     rows = [
-        ("simulation", f"{entry.title} (process {entry.pid})"),
+        ("simulation", f"{entry.title} (process {entry.pid}{selected})"),
         ("viewer", entry.url or "none"),
         ("world", status["world"]),
         ("models", ", ".join(status["models"]) or "none"),

@@ -20,7 +20,7 @@ from cartwheel.control import ControlClient, Sample
 from cartwheel.errors import CartwheelError, GraphError, suggestion
 
 
-def print_list(sim: int | None, *, verbose: bool) -> None:
+def print_list(sim: str | None, *, verbose: bool) -> None:
     """Prints the names, or a table of types, rates, publishers and subscribers."""
     with connect(sim) as client:
         found = client.request("topics")["topics"]
@@ -36,7 +36,7 @@ def print_list(sim: int | None, *, verbose: bool) -> None:
     say_table(rows)
 
 
-def print_info(sim: int | None, topic: str) -> None:
+def print_info(sim: str | None, topic: str) -> None:
     """Prints one topic, in the layout of ``rostopic info``."""
     with connect(sim) as client:
         one = client.request("topic", topic=topic)
@@ -51,7 +51,7 @@ def print_info(sim: int | None, topic: str) -> None:
 
 
 def echo(
-    sim: int | None,
+    sim: str | None,
     topic: str,
     *,
     count: int | None,
@@ -143,7 +143,7 @@ def pick(message: Any, path: str) -> Any:
 
 
 def publish(
-    sim: int | None,
+    sim: str | None,
     topic: str,
     type_name: str,
     words: Sequence[str],
