@@ -21,9 +21,9 @@ REPRESENTATIVE = {
     "gate": "tests/gate/test_frames.py",
     "gazebo": "tests/gazebo/test_hostile_text.py",
     "graph": "tests/graph/test_graph.py",
-    "messages": "tests/messages/test_ros1.py",
+    "messages": "tests/messages/ros1/test_ros1.py",
     "playback": "tests/playback/test_player.py::test_an_empty_recording_is_told",
-    "simulation": "tests/simulation/test_separation.py",
+    "simulation": "tests/simulation/dynamics/test_separation.py",
     "viewer": "tests/viewer/test_port.py",
     "world": "tests/world/test_chains.py",
 }

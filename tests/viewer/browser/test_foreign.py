@@ -10,13 +10,12 @@ from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
+from tests.viewer.conftest import eventually, new_page
 
 from cartwheel.description.model import WorldDescription
 from cartwheel.gate.access import Access
 from cartwheel.session import Session
 from cartwheel.viewer import Viewer
-
-from .conftest import eventually, new_page
 
 TRY = """url => new Promise(done => {
   const link = new WebSocket(url, ["viser-v%s"]);

@@ -3,11 +3,10 @@
 import math
 
 import pytest
+from tests.viewer.conftest import TWIST, close_search, eventually, open_page
 
 from cartwheel.geometry import Pose
 from cartwheel.viewer.panels.drive import DrivePanel
-
-from .conftest import TWIST, close_search, eventually, open_page
 
 
 def press(page, arena, key, count=1):

@@ -14,11 +14,10 @@ from pathlib import Path
 import msgspec
 import pytest
 import viser
+from tests.viewer.browsing import CAMERA
+from tests.viewer.running import running
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
-
-from .browsing import CAMERA
-from .running import running
 
 
 @pytest.fixture

@@ -8,13 +8,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from tests.viewer.browsing import Browser, browsing
+from tests.viewer.running import Running, running
 from websockets.exceptions import InvalidStatus
 
 from cartwheel.codes.wires import PAGE_REFUSED
 from cartwheel.control.registry import running as registered
-
-from .browsing import Browser, browsing
-from .running import Running, running
 
 BALL = b"""<robot name="ball"><link name="ball">
   <inertial><mass value="1"/>

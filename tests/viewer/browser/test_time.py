@@ -1,8 +1,8 @@
 """Pause, step, reset and speed in a real browser."""
 
-from cartwheel.simulation.snapshot import RunState
+from tests.viewer.conftest import eventually
 
-from .conftest import eventually
+from cartwheel.simulation.snapshot import RunState
 
 
 def time_ns(arena):

@@ -1,10 +1,9 @@
 """Camera, IMU and bumper in a real browser."""
 
 import numpy as np
+from tests.viewer.conftest import CART, eventually, picture_of
 
 from cartwheel.geometry import Pose, quat_from_rpy
-
-from .conftest import CART, eventually, picture_of
 
 
 def turn(arena, yaw, x=0.0):

@@ -10,14 +10,13 @@ import threading
 from pathlib import Path
 
 import pytest
+from tests.viewer.browsing import browsing
+from tests.viewer.conftest import TWIST, eventually
 
 from cartwheel.messages import from_dict
 from cartwheel.viewer.panels.camera import CameraPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.world import WorldPanel
-
-from .browsing import browsing
-from .conftest import TWIST, eventually
 
 GO, TURN, STOP = (0.5, 0.0), (0.0, 1.0), (0.0, 0.0)
 
@@ -101,7 +100,7 @@ def test_a_browser_that_falls_silent_drives_no_longer(fresh):
     """As where the network is gone: the connection stands, and nothing comes over it."""
     port = fresh.url.rpartition(":")[2]
     with subprocess.Popen(
-        [sys.executable, "-c", SILENT, port], cwd=Path(__file__).parent, stdout=subprocess.PIPE
+        [sys.executable, "-c", SILENT, port], cwd=Path(__file__).parents[1], stdout=subprocess.PIPE
     ) as process:
         try:
             assert process.stdout.readline() == b"driving\n"

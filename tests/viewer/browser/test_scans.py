@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.viewer.conftest import eventually
 
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose
 from cartwheel.viewer.scans import Scans
-
-from .conftest import eventually
 
 TOPIC = "/watch/scan"
 WATCH = """<sdf version="1.7"><model name="watch"><static>true</static><link name="eye">

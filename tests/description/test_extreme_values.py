@@ -8,7 +8,7 @@ import warnings
 import mujoco
 import pytest
 from tests.coded import coded, raises
-from tests.description.test_elements import DOCUMENTS
+from tests.description.test_every_tag_has_an_effect import DOCUMENTS
 
 import cartwheel as cw
 from cartwheel.checks import kinematic_tree, repairs

@@ -3,9 +3,8 @@
 import signal
 
 import pytest
-
-from .conftest import eventually, new_page
-from .running import running
+from tests.viewer.conftest import eventually, new_page
+from tests.viewer.running import running
 
 NOTICE = ".cw-offline-notice"
 SHOWN = "getComputedStyle(document.querySelector('.cw-state'), '::after').content"

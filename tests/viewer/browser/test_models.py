@@ -1,13 +1,12 @@
 """Inserting, selecting, moving and deleting models in a real browser."""
 
 import pytest
+from tests.viewer.conftest import CART, close_notes, eventually, project, write
 
 from cartwheel.codes.recording import UPLOAD_REFUSED
 from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.viewer.panels.world import WorldPanel
 from cartwheel.viewer.uploads import MOST_BYTES
-
-from .conftest import CART, close_notes, eventually, project, write
 
 
 def world_panel(arena):

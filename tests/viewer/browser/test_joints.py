@@ -3,11 +3,10 @@
 import pytest
 import yaml
 from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
+from tests.viewer.conftest import eventually
 
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose
-
-from .conftest import eventually
 
 
 @pytest.fixture

@@ -8,14 +8,13 @@ import socket
 from typing import Any
 
 import pytest
+from tests.viewer.browsing import CAMERA, browsing
+from tests.viewer.running import running
 from websockets.exceptions import ConnectionClosed
 
 from cartwheel.codes import files
 from cartwheel.codes.recording import UPLOAD_REFUSED
 from cartwheel.viewer import uploads
-
-from .browsing import CAMERA, browsing
-from .running import running
 
 NAN = math.nan
 

@@ -3,10 +3,7 @@
 import math
 
 import pytest
-
-from cartwheel.geometry import Pose
-
-from .conftest import (
+from tests.viewer.conftest import (
     CART,
     RIGHT,
     close_notes,
@@ -17,6 +14,8 @@ from .conftest import (
     screenshot,
     stage,
 )
+
+from cartwheel.geometry import Pose
 
 RED, BLUE = 0, 2
 

@@ -3,6 +3,7 @@
 import threading
 
 import pytest
+from tests.viewer.conftest import SIZE, eventually, new_page
 
 import cartwheel as cw
 from cartwheel.bridges.recording.opening import open_recording
@@ -10,8 +11,6 @@ from cartwheel.playback import PlaybackSession
 from cartwheel.simulation.snapshot import RunState
 from cartwheel.viewer import Viewer
 from cartwheel.viewer.play_desk import PlayDesk
-
-from .conftest import SIZE, eventually, new_page
 
 SECONDS = 4.0
 

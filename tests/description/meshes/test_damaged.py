@@ -2,38 +2,27 @@
 
 from __future__ import annotations
 
-import importlib.util
 import struct
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.description.meshes import test_dae, test_loading
 
 from cartwheel.codes.files import MESH_UNREADABLE
 from cartwheel.description.meshes import MeshError, load_mesh
 from cartwheel.description.model import Mesh
 
-
-def _sibling(name: str):
-    """Test files are no package, so that they need no names of their own."""
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-_meshes, _dae = _sibling("test_loading"), _sibling("test_dae")
 SAMPLES = {
-    "stl": _meshes.tetra_stl(),
-    "obj": _meshes.OBJ.encode(),
-    "dae": _dae.textured_document().encode(),
+    "stl": test_loading.tetra_stl(),
+    "obj": test_loading.OBJ.encode(),
+    "dae": test_dae.textured_document().encode(),
     "ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
     b"property float y\nproperty float z\nelement face 1\n"
     b"property list uchar int vertex_indices\nend_header\n"
     + struct.pack("<9fB3i", 0, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2),
-    "glb": _meshes.triangle_glb(),
+    "glb": test_loading.triangle_glb(),
 }
 
 
