@@ -2,6 +2,8 @@
 
 import ast
 import re
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -132,6 +134,50 @@ def test_the_order_has_no_cycle() -> None:
         ready = {room for room, below in MAY_IMPORT.items() if room not in done and below <= done}
         assert ready, f"a cycle among {set(MAY_IMPORT) - done}"
         done |= ready
+
+
+FOLDERS = sorted({path.parent for path in FILES if path.parent != SOURCE})
+NESTED_FORMATS = {("urdf", "sdf")}
+"""An SDF file may include a URDF file, whose ``<gazebo>`` tags may contain SDF."""
+MOST_FILES = 26
+
+
+def imported_modules(path: Path) -> Iterator[str]:
+    """Yields the modules that a file imports when it runs."""
+    pending: list[ast.AST] = [ast.parse(path.read_text())]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.ImportFrom):
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
+            pending += ast.iter_child_nodes(node)
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_the_files_and_folders_of_a_folder_import_each_other_one_way(folder: Path) -> None:
+    below: dict[str, set[str]] = {}
+    prefix = folder.relative_to(SOURCE.parent).parts
+    for path in folder.rglob("*.py"):
+        name = path.relative_to(folder).parts[0].removesuffix(".py")
+        if name == "__init__":
+            continue
+        for module in imported_modules(path):
+            parts = module.split(".")
+            if tuple(parts[: len(prefix)]) == prefix and len(parts) > len(prefix):
+                below.setdefault(name, set()).add(parts[len(prefix)])
+    order = {
+        name: {each for each in names if each != name and (name, each) not in NESTED_FORMATS}
+        for name, names in below.items()
+    }
+    try:
+        TopologicalSorter(order).prepare()
+    except CycleError as error:
+        pytest.fail(f"{folder.relative_to(SOURCE)}: a cycle of {error.args[1]}")
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_folder_is_small_enough_to_look_through(folder: Path) -> None:
+    assert len([path for path in folder.iterdir() if path.name != "__pycache__"]) <= MOST_FILES
 
 
 def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cartwheel.devices.drives.kinematics import along_arc, axle_motion, rim_speeds
-from cartwheel.devices.drives.ramp import ramp
+from cartwheel.devices.ramp import ramp
 
 
 def test_each_wheel_rolls_on_its_own_circle():

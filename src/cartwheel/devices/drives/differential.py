@@ -11,8 +11,8 @@ from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import axle_motion, rim_speeds
 from cartwheel.devices.drives.limiter import Limiter, Limits
-from cartwheel.devices.drives.ramp import ramp
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
+from cartwheel.devices.ramp import ramp
 
 NO_LIMITS = Limits()
 

@@ -9,7 +9,6 @@ from typing import Literal
 
 from cartwheel.devices.drives.commanded_joint import CommandedJoint
 from cartwheel.devices.drives.limiter import Limiter, Limits
-from cartwheel.devices.drives.ramp import ramp
 from cartwheel.devices.drives.reckoning import DeadReckoning
 from cartwheel.devices.drives.steering import (
     alignment,
@@ -22,6 +21,7 @@ from cartwheel.devices.drives.steering import (
     wheel_angles_in_place,
 )
 from cartwheel.devices.elementwise import Number, clamp, tan
+from cartwheel.devices.ramp import ramp
 
 Axle = Sequence[CommandedJoint]
 """One wheel or steering joint in the middle, or the left and the right one."""

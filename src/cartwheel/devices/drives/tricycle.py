@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from cartwheel.component import Scope
 from cartwheel.devices.drives.commanded_joint import Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
-from cartwheel.devices.drives.ramp import ramp
 from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
 from cartwheel.devices.elementwise import Number, clamp, where
+from cartwheel.devices.ramp import ramp
 
 _QUARTER = math.pi / 2
 """Maximum steering angle, rad."""

@@ -11,10 +11,10 @@ import numpy as np
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.action_server import ActionServer
-from cartwheel.devices.drives.ramp import ramp
 from cartwheel.devices.joints.actuator import JointActuator
 from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 from cartwheel.devices.periodic import Periodic
+from cartwheel.devices.ramp import ramp
 from cartwheel.graph import Goal
 from cartwheel.messages import header, message_class
 

@@ -10,7 +10,6 @@ from typing import Any
 from cartwheel.codes import running
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros2_control.components import HardwareComponents
-from cartwheel.dialects.ros2_control.parameters import ParameterServices
 from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
 from cartwheel.dialects.ros_control.chaining import Reference, owners
 from cartwheel.dialects.ros_control.controller import Controller
@@ -22,6 +21,7 @@ from cartwheel.dialects.ros_control.files import (
     ros2_file,
 )
 from cartwheel.dialects.ros_control.manager import ControllerManager
+from cartwheel.dialects.ros_control.parameter_services import ParameterServices
 from cartwheel.dialects.ros_control.switching import wrong_state
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.messages import message_class

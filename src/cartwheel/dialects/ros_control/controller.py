@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from cartwheel.component import Component
-from cartwheel.dialects.ros2_control.parameters import ParameterServices
 from cartwheel.dialects.ros_control.chaining import Reference
 from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.parameter_services import ParameterServices
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.scope import ControllerScope
 from cartwheel.dialects.ros_control.settings import Settings
