@@ -24,8 +24,10 @@ def answered(post: Post, function: Callable[[], T]) -> Future[T]:
             return
         try:
             future.set_result(function())
-        except Exception as error:  # noqa: BLE001 - it is the caller's to handle
+        except BaseException as error:
             future.set_exception(error)
+            if not isinstance(error, Exception):
+                raise
 
     post(run)
     return future

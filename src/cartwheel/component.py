@@ -214,7 +214,10 @@ class Component:
         """
         self._name_type(type_name)
         name = self.scope.published(topic, type_name)
-        return self.keep(self.graph.advertise(name, type_name, node=self.node, rate=rate, qos=qos))
+        publisher = self.graph.advertise(
+            name, type_name, node=self.node, rate=rate, qos=qos, checked=self._foreign
+        )
+        return self.keep(publisher)
 
     def subscribe(
         self, topic: str, type_name: str, callback: Callable[[Any], None], *, unset: bool = False
@@ -290,8 +293,13 @@ class Component:
 
         Cartwheel's own components use only its own types, for which no files are searched.
         """
-        if not type(self).__module__.startswith("cartwheel."):
+        if self._foreign:
             self.graph.types.named(type_name)
+
+    @property
+    def _foreign(self) -> bool:
+        """Whether the component is defined in a different package."""
+        return not type(self).__module__.startswith("cartwheel.")
 
     def take_positions(
         self, joints: Sequence[str], put: Callable[[Mapping[str, float], float], None]

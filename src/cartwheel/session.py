@@ -206,7 +206,7 @@ class Session:
         """Creates a pacer that runs the session against the wall clock."""
         return Pacer(self.simulation, until_ns=until_ns, strict=self.strict)
 
-    def _subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
+    def _subscriber_failed(self, subscription: Subscription, error: BaseException) -> None:
         what = f'the subscriber "{subscription.node}" of {subscription.topic}'
         self.simulation.faults.fail(what, error)
 

@@ -1,8 +1,13 @@
 """Calls that a world refuses at once."""
 
-import pytest
+import math
 
-from cartwheel.errors import GraphError, SimulationError
+import pytest
+from tests.coded import raises
+
+from cartwheel.codes.graph import FIELD_VALUE_INVALID, MESSAGE_TYPE_UNKNOWN
+from cartwheel.codes.world import NUMBER_OUT_OF_RANGE
+from cartwheel.errors import CartwheelError, GraphError, SimulationError
 from cartwheel.messages import from_dict
 
 
@@ -37,3 +42,42 @@ def test_a_message_of_another_type_is_refused_at_once(make, rosbots):
     with pytest.raises(GraphError) as caught:
         world.publish("/part2_cmr/cmd_vel", from_dict("std_msgs/msg/String", {}))
     assert caught.value.values["given"] == "std_msgs/msg/String"
+
+
+@pytest.mark.parametrize("value", ["hi", 3, None, from_dict("std_msgs/msg/String", {})])
+def test_a_publisher_refuses_what_is_no_message_of_its_type(value, make):
+    world = make.world()
+    publisher = world.advertise("/level", "std_msgs/Float32")
+    level = world.mailbox("/level")
+    with pytest.raises(GraphError) as caught:
+        publisher.publish(value)
+    assert caught.value.code is FIELD_VALUE_INVALID
+    assert caught.value.values["type"] == "std_msgs/msg/Float32"
+    assert (level.drain(), publisher.sent) == ([], 0)
+    publisher.publish(from_dict("std_msgs/msg/Float32", {"data": 2.0}))
+    assert [message.data for message in level.drain()] == [2.0]
+
+
+@pytest.mark.parametrize("type", ["nonsense", "std_msgs/msg/Nothing", "a/b/c/d", "", 3])
+def test_a_subscription_to_a_type_that_does_not_exist_is_refused(type, make):
+    world = make.world()
+    with raises(MESSAGE_TYPE_UNKNOWN, CartwheelError):
+        world.subscribe("/level", print, type=type)
+    assert "/level" not in [topic.name for topic in world.graph.topics()]
+    heard = []
+    world.subscribe("/level", heard.append, type="std_msgs/Float32")
+    world.publish("/level", data=1.0)
+    world.run(0.1)
+    assert [message.data for message in heard] == [1.0]
+
+
+@pytest.mark.parametrize("seconds", [-1, -1e-9, math.nan, math.inf, -math.inf, 2e9])
+@pytest.mark.parametrize("method", ["run", "spin"])
+def test_a_run_has_a_finite_duration(method, seconds, make):
+    world = make.world()
+    with raises(NUMBER_OUT_OF_RANGE, CartwheelError):
+        getattr(world, method)(seconds)
+    # Differences of times are rounded.
+    getattr(world, method)(-1e-12)
+    getattr(world, method)(0)
+    assert world.time == 0

@@ -2,6 +2,7 @@
 
 import dataclasses
 import importlib.metadata
+import signal
 import subprocess
 import sys
 
@@ -79,6 +80,10 @@ class Faulty(Plugin[FaultyParameters]):
 
     def _fail(self, place):
         self.calls.append(place)
+        if self.config.when == f"exit {place}":
+            sys.exit(3)
+        if self.config.when == f"signal {place}":
+            signal.raise_signal(signal.SIGTERM)
         if self.config.when == place:
             raise ZeroDivisionError(f"in {place}")
 
@@ -161,6 +166,42 @@ def test_a_plugin_that_fails_is_named_and_ended_and_the_rest_goes_on(make, cart,
     assert len([each for each in world.diagnostics if each.severity == "error"]) == 1
 
 
+@pytest.mark.parametrize("when", (*_PLACES, "close"))
+def test_a_plugin_that_exits_is_named_and_the_program_goes_on(make, cart, when):
+    world = make.world()
+    robot = world.spawn(cart(f"exit {when}"))
+    if when == "subscription":
+        robot.publish("/command", data=2.0)
+    world.run(0.5)
+    world.reset()
+    world.run(0.5)
+    robot.delete()
+    (found,) = [each for each in world.diagnostics if each.severity == "error"]
+    assert found.code is running.PLUGIN_FAILED
+    assert found.values["cause"] == "SystemExit"
+    assert str(found.origin).endswith("cart.urdf:10")
+
+
+@pytest.mark.parametrize("when", _PLACES)
+def test_a_signal_handler_that_exits_ends_the_program(make, cart, when):
+    def leave(_number, _frame):
+        sys.exit(4)
+
+    world = make.world()
+    before = signal.signal(signal.SIGTERM, leave)
+    try:
+        with pytest.raises(SystemExit) as caught:
+            robot = world.spawn(cart(f"signal {when}"))
+            if when == "subscription":
+                robot.publish("/command", data=2.0)
+            world.run(0.5)
+            world.reset()
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert caught.value.code == 4
+    assert not [each for each in world.diagnostics if each.severity == "error"]
+
+
 def test_a_plugin_that_does_not_fail_drives_the_joint(make, cart):
     """Else the test above would see a joint that stands still in any case."""
     world = make.world()
@@ -201,7 +242,7 @@ def test_strict_ends_with_the_first_fault(cart, when):
 def test_strict_is_named_as_the_reason_of_the_end(cart):
     with cw.World("empty", strict=True) as world, pytest.raises(CartwheelError) as got:
         world.spawn(cart("configure"))
-    assert "--strict" in got.value.hint
+    assert "strict=True" in got.value.hint
 
 
 def test_what_a_callback_raises_comes_out_of_run_and_time_goes_on(make):

@@ -14,7 +14,7 @@ from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError
 from cartwheel.messages.store import finding_with
 from cartwheel.session import Session
-from cartwheel.simulation.clock import to_ns
+from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
     from cartwheel.assembly.connections import Connections, Plan
@@ -99,21 +99,23 @@ class RunningWorld:
         Ctrl-C completes the current step, so that a later call can continue.
 
         Args:
-            seconds: Simulation time. If a client resets the simulation, it starts again.
+            seconds: Simulation time, at least 0. If a client resets the simulation, it starts
+                again.
             speed: Target real-time factor; None is as fast as possible.
 
         Raises:
+            CartwheelError: `seconds` or `speed` is out of range.
             SimulationError: The simulation diverged, the world is closed, a callback of the same
                 world called the method, or the process was forked while the world was connected.
             RecordingError: A recording has failed.
             KeyboardInterrupt: Ctrl-C was pressed.
         """
-        duration_ns = to_ns(seconds)
+        duration = duration_ns(seconds)
         with self._run() as simulation, self._driver.interruptible() as pressed:
             if self._connections is None and speed is None:
-                simulation.advance(simulation.time_ns + duration_ns)
+                simulation.advance(simulation.time_ns + duration)
             else:
-                self._driver.run(duration_ns, speed, shared=False)
+                self._driver.run(duration, speed, shared=False)
         if pressed.is_set():
             raise KeyboardInterrupt
 
@@ -124,17 +126,18 @@ class RunningWorld:
         step. Without a time limit, the method then returns.
 
         Args:
-            seconds: Simulation time; None has no limit.
+            seconds: Simulation time, at least 0; None has no limit.
             speed: Target real-time factor; None is as fast as possible.
 
         Raises:
+            CartwheelError: `seconds` or `speed` is out of range.
             SimulationError: The simulation diverged, or the world is closed.
             RecordingError: A recording has failed.
             KeyboardInterrupt: Ctrl-C was pressed before the time limit.
         """
-        duration_ns = None if seconds is None else to_ns(seconds)
+        duration = None if seconds is None else duration_ns(seconds)
         with self._run(), self._driver.interruptible() as pressed:
-            self._driver.run(duration_ns, speed, shared=True)
+            self._driver.run(duration, speed, shared=True)
         if pressed.is_set() and seconds is not None:
             raise KeyboardInterrupt
 

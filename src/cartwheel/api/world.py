@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from cartwheel import description as descriptions
 from cartwheel.api.model import Model
 from cartwheel.api.running import RunningWorld
-from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic, GraphError
+from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
-from cartwheel.graph import Graph, Mailbox, Publisher
-from cartwheel.messages import from_dict, from_flat, type_name
+from cartwheel.graph import Graph, Mailbox, Publisher, check_message
+from cartwheel.messages import from_dict, from_flat
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
 
@@ -232,14 +231,8 @@ class World(RunningWorld):
             message = from_flat(kind, fields)
         elif message is None or isinstance(message, Mapping):
             message = from_dict(kind, message or {})
-        elif getattr(type(message), "__msgtype__", None) != kind:
-            given = getattr(type(message), "__msgtype__", type(message).__name__)
-            raise GraphError(
-                f'topic "{topic}" requires a message of type {kind}, not {given}',
-                code=FIELD_VALUE_INVALID,
-                values={"topic": topic, "type": kind, "given": given},
-                hint="Pass a message, a mapping of its fields, or the fields as keyword arguments.",
-            )
+        else:
+            check_message(topic, kind, message)
         self.graph.publish(topic, kind, message)
 
     def subscribe(
@@ -249,6 +242,16 @@ class World(RunningWorld):
 
         An exception in the callback stops `run` after the current step. The next `run` continues
         from there.
+
+        Args:
+            topic: Topic name.
+            callback: Receives each message. It must not change the message.
+            type: As in `advertise`. Required if the topic does not exist yet.
+
+        Raises:
+            UnknownNameError: The topic does not exist and no type is given, or the type does not
+                exist.
+            GraphError: The topic has a different type, or the definition of the type is invalid.
         """
         simulation = self.session.simulation
 
@@ -258,24 +261,25 @@ class World(RunningWorld):
             except BaseException as error:  # noqa: BLE001 - raised by `run`
                 simulation.faults.defer(error)
 
-        full = type_name(type) if type else None
-        if full is not None:
-            self.graph.types.named(full)
+        full = None if type is None else self.message_class(type).__msgtype__
         self.graph.subscribe(topic, guarded, type_name=full)
 
     def advertise(self, topic: str, type: str) -> Publisher:
         """Advertises a topic, and returns its publisher.
+
+        `Publisher.publish` raises a `GraphError` for a value that is not a message of the type.
 
         Args:
             topic: Topic name.
             type: ``geometry_msgs/msg/Twist``, or a type that a package of the workspace defines.
 
         Raises:
+            UnknownNameError: The type does not exist.
             GraphError: The topic exists with a different type, or the definition of the type is
                 invalid.
         """
         full = self.message_class(type).__msgtype__
-        return self.graph.advertise(topic, full)
+        return self.graph.advertise(topic, full, checked=True)
 
     def message_class(self, type: str) -> Any:
         """Returns the class of a message type: a dataclass with the message's fields.
@@ -287,7 +291,7 @@ class World(RunningWorld):
             UnknownNameError: The type does not exist.
             GraphError: The definition of the type is invalid.
         """
-        return self.graph.types.message_class(type)
+        return self.graph.types.message_class(str(type))
 
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
         """Buffers the topic's messages, to be read after `run`.

@@ -70,7 +70,7 @@ class Plugin(Component, Generic[C]):
             part.report(diagnostic)
         try:
             self.configure()
-        except Exception:
+        except BaseException:
             # The subclass's own close may use attributes that configure has not set.
             Component.close(self)
             raise

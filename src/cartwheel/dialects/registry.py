@@ -87,7 +87,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             and not any(plugin_named(tag.filename, more) for tag in one.plugins)
         ]
         plugins += _serve(part, shared, alone, systems)
-    except Exception:
+    except BaseException:
         for created in plugins:
             created.close()
         raise
@@ -110,7 +110,7 @@ def _create(
         if not isinstance(error, forgiven):
             raise
         part.report(left_out(tag, error))
-    except Exception as error:  # noqa: BLE001 - a plugin's own
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
         part.report(failed(tag, error))
     return []
 

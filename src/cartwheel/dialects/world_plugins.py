@@ -10,7 +10,7 @@ from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.sensor_tags import SYSTEMS
 from cartwheel.dialects.plugin_files import PluginFiles
-from cartwheel.errors import CartwheelError, Diagnostic, fault
+from cartwheel.errors import CartwheelError, Diagnostic, fault, raise_exit
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
 
@@ -40,8 +40,9 @@ def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     )
 
 
-def failed(tag: PluginTag, error: Exception) -> Diagnostic:
+def failed(tag: PluginTag, error: BaseException) -> Diagnostic:
     """Returns the diagnostic for a plugin or sensor with an unexpected exception at creation."""
+    raise_exit(error)
     return fault(
         f"{_title(tag)} failed and is ignored",
         error,
@@ -94,6 +95,6 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
                 behaviours.append(part.made(functools.partial(plugin, part, shared, tag, None)))
             except CartwheelError as error:
                 part.report(left_out(tag, error))
-            except Exception as error:  # noqa: BLE001 - a plugin's own
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
                 part.report(failed(tag, error))
     return behaviours

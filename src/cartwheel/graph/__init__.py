@@ -18,6 +18,7 @@ from cartwheel.graph.topic import (
     Service,
     Subscription,
     TopicInfo,
+    check_message,
 )
 from cartwheel.graph.transforms import StaticTransforms
 
@@ -45,6 +46,7 @@ __all__ = [
     "Subscription",
     "TopicInfo",
     "TopicRenaming",
+    "check_message",
     "choices",
     "resolve_frame",
     "resolve_name",

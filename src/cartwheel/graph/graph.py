@@ -29,6 +29,7 @@ from cartwheel.graph.names import resolve_name
 from cartwheel.graph.parameters import Parameters
 from cartwheel.graph.topic import (
     Callback,
+    CheckedPublisher,
     Handler,
     OnError,
     Publisher,
@@ -113,8 +114,17 @@ class Graph:
         node: str = "cartwheel",
         rate: float | None = None,
         qos: Qos = "default",
+        checked: bool = False,
     ) -> Publisher:
         """Creates a publisher for a topic of the ROS 2 type ``pkg/msg/Name``.
+
+        Args:
+            name: Topic.
+            type_name: Message type.
+            node: Publisher's name, for listings.
+            rate: Publish rate for listings, Hz.
+            qos: Quality of service on ROS 2.
+            checked: Whether the publisher refuses values that are not messages of its type.
 
         Raises:
             GraphError: The topic exists with a different type, or the name or the definition of
@@ -123,7 +133,8 @@ class Graph:
         self.types.note(type_name)
         with self._lock:
             topic = self._topic(name, type_name)
-            publisher = Publisher(self, topic, node=node, rate=rate, qos=qos)
+            kind = CheckedPublisher if checked else Publisher
+            publisher = kind(self, topic, node=node, rate=rate, qos=qos)
             topic.publishers += (publisher,)
             self._changed(topic)
             return publisher
@@ -352,7 +363,7 @@ class Graph:
             topic.subscriptions = tuple(s for s in topic.subscriptions if s is not subscription)
             self._changed(topic)
 
-    def _failed(self, topic: Topic, callback: Callback, error: Exception) -> None:
+    def _failed(self, topic: Topic, callback: Callback, error: BaseException) -> None:
         for subscription in topic.subscriptions:
             if subscription.callback is callback:
                 (subscription.on_error or self.on_error)(subscription, error)
@@ -381,11 +392,11 @@ def _at_once(function: Callable[[], None]) -> None:
     function()
 
 
-def _raise(_: Subscription, error: Exception) -> None:
+def _raise(_: Subscription, error: BaseException) -> None:
     raise error
 
 
-def _fail(_topic: Topic, _callback: Callback, error: Exception) -> None:
+def _fail(_topic: Topic, _callback: Callback, error: BaseException) -> None:
     raise error
 
 

@@ -6,6 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+from cartwheel.codes.graph import FIELD_VALUE_INVALID
+from cartwheel.errors import GraphError
+from cartwheel.messages import type_name
+
 if TYPE_CHECKING:
     from cartwheel.graph.graph import Graph
 
@@ -49,7 +53,7 @@ class Topic:
     """A named stream of messages of one type."""
 
     def __init__(
-        self, name: str, type_name: str, failed: Callable[[Topic, Callback, Exception], None]
+        self, name: str, type_name: str, failed: Callable[[Topic, Callback, BaseException], None]
     ) -> None:
         self.name = name
         self.type = type_name
@@ -82,7 +86,7 @@ class Topic:
         """Calls one callback. Its errors do not reach the publisher."""
         try:
             callback(message)
-        except Exception as error:  # noqa: BLE001 - the callback is foreign code
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - the callback is foreign code
             self.failed(self, callback, error)
 
 
@@ -125,12 +129,41 @@ class Publisher:
         for callback in topic.callbacks:
             try:
                 callback(message)
-            except Exception as error:  # noqa: BLE001 - the callback is foreign code
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - the callback is foreign code
                 topic.failed(topic, callback, error)
 
     def close(self) -> None:
         """Removes the publisher from the graph."""
         self._graph._remove_publisher(self._topic, self)
+
+
+class CheckedPublisher(Publisher):
+    """A publisher for the code of users. It refuses values that are not messages of its type."""
+
+    def publish(self, message: Any) -> None:
+        """See `Publisher.publish`.
+
+        Raises:
+            GraphError: The value is not a message of the topic's type.
+        """
+        check_message(self.topic, self.type, message)
+        super().publish(message)
+
+
+def check_message(topic: str, kind: str, message: Any) -> None:
+    """Refuses a value that is not a message of a topic's type.
+
+    Raises:
+        GraphError: See above.
+    """
+    given = getattr(type(message), "__msgtype__", type(message).__name__)
+    if given not in (kind, type_name(kind)):
+        raise GraphError(
+            f'topic "{topic}" requires a message of type {kind}, not {given}',
+            code=FIELD_VALUE_INVALID,
+            values={"topic": topic, "type": kind, "given": given},
+            hint="Pass a message, or use World.publish with the values of its fields.",
+        )
 
 
 class Subscription:
@@ -157,7 +190,7 @@ class Subscription:
         self._graph._remove_subscription(self._topic, self)
 
 
-OnError = Callable[[Subscription, Exception], None]
+OnError = Callable[[Subscription, BaseException], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

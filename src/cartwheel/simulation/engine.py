@@ -54,7 +54,7 @@ class Engine:
         self.renderer = Renderer()
         self.diagnostics: list[Diagnostic] = list(world.diagnostics)
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
-        self.on_fault: Callable[[object, Exception], None] = _raise
+        self.on_fault: Callable[[object, BaseException], None] = _raise
         """Called with a failed plugin and its error."""
         self.on_tasks: list[Callable[[], None]] = []
         """Called after a task was replaced."""
@@ -253,7 +253,7 @@ class Engine:
         return float(self.data.qpos[self.model.jnt_qposadr[joint]])
 
 
-def _raise(_: object, error: Exception) -> None:
+def _raise(_: object, error: BaseException) -> None:
     raise error
 
 

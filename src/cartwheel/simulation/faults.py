@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
-from cartwheel.errors import Diagnostic, Once, PluginError, SimulationError, fault
+from cartwheel.errors import Diagnostic, Once, PluginError, SimulationError, fault, raise_exit
 from cartwheel.options import STRICT
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.engine import Engine
@@ -49,7 +49,7 @@ class Faults:
             error, self.pending = self.pending, None
             raise error
 
-    def fail(self, what: str, error: Exception) -> None:
+    def fail(self, what: str, error: BaseException) -> None:
         """Handles an error in an external function: a subscriber or a posted function.
 
         It stops `Simulation.advance`. If `tolerant`, it is only reported, and only once.
@@ -58,17 +58,19 @@ class Faults:
             what: The function, such as "a command", for the message.
             error: The error that it raised.
         """
+        raise_exit(error)
         if not self.tolerant:
             self.defer(error)
         elif self._reported.allows(f"{what} {error!r} {getattr(error, 'values', '')}"):
             self._engine.report(fault(f"{what} failed", error, code=world_codes.CALLBACK_FAILED))
 
-    def task_failed(self, task: Task, error: Exception) -> None:
+    def task_failed(self, task: Task, error: BaseException) -> None:
         """Handles an error in a task: disables the plugin that owns the task.
 
         Raises:
             DivergedError: The state is no longer finite, which may have caused the error.
         """
+        raise_exit(error)
         # Code that reads a diverged state may fail in any way: report the divergence instead.
         self._population.watch.check(self._population.origin_of)
         if isinstance(error, SimulationError):
@@ -82,11 +84,12 @@ class Faults:
             text = f"{name} failed and is disabled"
             self._report(fault(text, error, code=world_codes.CALLBACK_FAILED))
 
-    def disable(self, plugin: object, error: Exception) -> None:
+    def disable(self, plugin: object, error: BaseException) -> None:
         """Disables a plugin that raised an error, and reports it; the simulation continues.
 
         Does nothing if the plugin was already disabled or deleted.
         """
+        raise_exit(error)
         resident = self._population.owner_of(plugin)
         if resident is None:
             return

@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from cartwheel.codes import world as world_codes
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose, Quat, quat_normalize
+from cartwheel.simulation.clock import NANOSECONDS, to_ns
 
 FARTHEST = 1e6
 """m, rad, m/s or rad/s; the engine considers a state diverged at 1e10."""
 STRONGEST = 1e10
 """N or N m."""
+LONGEST = 1e9
+"""Maximum duration of a run, s."""
 SLOWEST, FASTEST = 1e-6, 1e6
 """Real-time factors."""
 MOST_STEPS = 1_000_000_000
@@ -39,6 +42,17 @@ def _out_of_range(name: str, wanted: str, value: float) -> CartwheelError:
         code=world_codes.NUMBER_OUT_OF_RANGE,
         values={"name": name, "value": value},
     )
+
+
+def duration_ns(seconds: float) -> int:
+    """Converts the duration of a run to nanoseconds.
+
+    Raises:
+        CartwheelError: The duration is not between 0 and `LONGEST`.
+    """
+    if not -0.5 / NANOSECONDS < seconds <= LONGEST:
+        raise _out_of_range("the duration in s", f"between 0 and {LONGEST:g}", seconds)
+    return to_ns(seconds)
 
 
 def numbers(values: Sequence[float], name: str, *, most: float = FARTHEST) -> None:

@@ -147,7 +147,7 @@ class Part(Requests):
                 elif isinstance(handle, WrenchHandle):
                     handle.apply((0.0,) * 3, (0.0,) * 3)
 
-    def fail(self, plugin: object, error: Exception) -> None:
+    def fail(self, plugin: object, error: BaseException) -> None:
         """Disables a plugin of this model that failed outside its tasks."""
         self._engine.on_fault(plugin, error)
 
@@ -168,7 +168,7 @@ class Part(Requests):
         copies = [dict(each) for each in tables]
         try:
             yield
-        except Exception:
+        except BaseException:
             for each, length in zip(lists, lengths, strict=True):
                 del each[length:]
             for table, copy in zip(tables, copies, strict=True):

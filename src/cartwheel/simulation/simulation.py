@@ -50,7 +50,7 @@ class Simulation(Models):
         self._population.start(attach_world)
         try:
             self._population.add_all(world.models)
-        except Exception:
+        except BaseException:
             self.close()
             raise
 
@@ -147,7 +147,7 @@ class Simulation(Models):
                         before()
                     if after is not None:
                         afters.append(task)
-            except Exception as error:  # noqa: BLE001 - a plugin's own
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
                 self.faults.task_failed(task, error)
         if afters:
             self.engine.forward()
@@ -157,7 +157,7 @@ class Simulation(Models):
                     # None if the plugin was disabled in the meantime.
                     if after is not None:
                         after()
-                except Exception as error:  # noqa: BLE001 - a plugin's own
+                except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
                     self.faults.task_failed(task, error)
         return upcoming, bool(afters)
 
@@ -194,7 +194,7 @@ class Simulation(Models):
             for behaviour in tuple(resident.behaviours):
                 try:
                     behaviour.reset()
-                except Exception as error:  # noqa: BLE001 - a plugin's own
+                except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
                     self.faults.disable(behaviour, error)
             for handle in resident.drives.values():
                 handle.command(handle.target)
@@ -234,7 +234,7 @@ class Simulation(Models):
         before, engine.world = engine.world, world
         try:
             self._population.compile()
-        except Exception:
+        except BaseException:
             engine.world = before
             raise
 

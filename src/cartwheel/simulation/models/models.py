@@ -78,7 +78,7 @@ class Models(Run):
         resident = self._population.admit(description, name, pose, namespace, frame_prefix)
         try:
             self._population.compile({**self._population.residents, name: resident})
-        except Exception:
+        except BaseException:
             resident.close()
             raise
         self._population.welcome(name)
@@ -267,6 +267,6 @@ class Models(Run):
         entry.description = description
         try:
             self._population.compile()
-        except Exception:
+        except BaseException:
             entry.description = before
             raise

@@ -136,7 +136,7 @@ class Population:
         resident = Resident(entry, part)
         try:
             resident.behaviours = self.attach(resident.part)
-        except Exception:
+        except BaseException:
             resident.close()
             raise
         return resident

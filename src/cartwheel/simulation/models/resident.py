@@ -9,7 +9,7 @@ from typing import Protocol
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import Origin, WorldError, fault
+from cartwheel.errors import Origin, WorldError, fault, raise_exit
 from cartwheel.geometry import Pose
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import MotorHandle
@@ -111,7 +111,8 @@ class Resident:
     def _close(self, behaviour: Behaviour) -> None:
         try:
             behaviour.close()
-        except Exception as error:  # noqa: BLE001 - a plugin's own
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
+            raise_exit(error)
             text = f"{title(behaviour)} failed while it was closed"
             self.part.report(fault(text, error, place(behaviour), code=running.PLUGIN_FAILED))
 
