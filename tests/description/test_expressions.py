@@ -124,7 +124,7 @@ def test_an_expression_cannot_reach_python(expression):
 def test_a_refused_expression_shows_no_address(expression):
     with pytest.raises(DescriptionError) as caught:
         value(expression)
-    assert f"when evaluating ${{{expression[:20]}" in caught.value.message
+    assert f"(in the expression ${{{expression[:20]}" in caught.value.message
     assert "0x" not in str(caught.value)
 
 

@@ -62,10 +62,10 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, _comparable(name, known), n=_SHOWN, cutoff=0.5)
     shown = ", ".join(close or names[:_LISTED])
     if not names:
-        return "Known names: none."
+        return "Existing names: none."
     if close:
         return f"Similar names: {shown}."
-    return f"Known names: {shown}{', …' if len(names) > _LISTED else ''}."
+    return f"Existing names: {shown}{', …' if len(names) > _LISTED else ''}."
 
 
 def _comparable(name: str, known: Iterable[str]) -> list[str]:

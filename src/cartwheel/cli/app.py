@@ -25,7 +25,8 @@ from cartwheel.cli import (
 app = typer.Typer(
     name="cartwheel",
     cls=help.Group,
-    help="Simulate ROS robots from their xacro, URDF or SDF files. No Gazebo, GPU or ROS needed.",
+    help="Simulate ROS robots from their xacro, URDF or SDF files. Works without ROS, Gazebo and "
+    "GPU.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,

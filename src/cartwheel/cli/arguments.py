@@ -38,32 +38,32 @@ Names = Annotated[
     list[str] | None,
     _names(
         "FILE [NAME:=VALUE]...",
-        "Robot description (xacro, URDF or SDF) or the name of a bundled one, and values for its "
-        "xacro arguments.",
+        "Robot description (xacro, URDF or SDF), or the name of a bundled description. NAME:=VALUE "
+        "sets a xacro argument.",
     ),
 ]
 ModelNames = Annotated[
     list[str] | None,
     _names(
         "FILE [NAME:=VALUE]...",
-        "Model file (xacro, URDF or SDF) or the name of a bundled model, and values for its xacro "
-        "arguments.",
+        "Model file (xacro, URDF or SDF), or the name of a bundled model. NAME:=VALUE sets a xacro "
+        "argument.",
     ),
 ]
 CheckNames = Annotated[
     list[str] | None,
     _names(
         "FILE|FOLDER [NAME:=VALUE]...",
-        "Robot description (xacro, URDF or SDF), the name of a bundled one, or a folder of "
-        "descriptions; and values for xacro arguments.",
+        "Robot description (xacro, URDF or SDF), the name of a bundled description, or a folder "
+        "with descriptions. NAME:=VALUE sets a xacro argument.",
     ),
 ]
 RunNames = Annotated[
     list[str] | None,
     _names(
         "[FILE] [NAME:=VALUE]...",
-        "Robot description (xacro, URDF or SDF) or the name of a bundled one, and values for its "
-        "xacro arguments. Default: the bundled example cart, rosbots.xacro.",
+        "Robot description (xacro, URDF or SDF), or the name of a bundled description. Default: "
+        "the bundled example cart, rosbots.xacro.",
     ),
 ]
 PackagePath = Annotated[
@@ -111,8 +111,8 @@ Model = Annotated[
 def _host(servers: str) -> Any:
     return typer.Option(
         metavar="ADDRESS",
-        help=f"Network address of {servers}. With 0.0.0.0, other computers can connect; they need "
-        "the token in the printed address.",
+        help=f"Network address of {servers}. With 0.0.0.0, other computers can connect if they "
+        "have the token, which is in the printed URL.",
         rich_help_panel=help.PAGE,
     )
 

@@ -34,8 +34,8 @@ def check(
         typer.Option(
             "--select",
             metavar="CODES",
-            help="Report only these codes: a number such as CW204, a name, or a prefix such as "
-            "CW2. Separate several codes with commas.",
+            help="Report only these codes: a number (CW204), a name, or the beginning of a number "
+            "(CW2). Separate several codes with commas.",
             rich_help_panel=help.REPORT,
         ),
     ] = None,

@@ -35,12 +35,15 @@ def play(
         typer.Option(
             "--start",
             metavar="SECONDS",
-            help="Start this long after the beginning of the recording.",
+            help="Time after the beginning of the recording at which playback starts.",
             rich_help_panel=help.TIME,
         ),
     ] = 0.0,
     loop: Annotated[
-        bool, typer.Option("--loop", help="Start again at the end.", rich_help_panel=help.TIME)
+        bool,
+        typer.Option(
+            "--loop", help="Repeat the recording when it ends.", rich_help_panel=help.TIME
+        ),
     ] = False,
     paused: arguments.Paused = False,
     world: Annotated[

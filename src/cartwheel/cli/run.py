@@ -147,7 +147,7 @@ def run(
         bool,
         typer.Option(
             "--foxglove",
-            help="Start a server for Foxglove and Lichtblick at the --host address.",
+            help="Start a server for Foxglove and Lichtblick on the address of --host.",
             rich_help_panel=help.WIRES,
         ),
     ] = False,
@@ -176,8 +176,9 @@ def run(
         typer.Option(
             "--record-topics",
             metavar="PATTERN",
-            help="Record only matching topics: /camera/*, re:EXPRESSION, or !PATTERN to exclude."
-            " Can be repeated. Default: all topics, images included.",
+            help="Record only topics that match a name such as /camera/*, or a regular expression "
+            "after re:. A pattern after ! excludes topics. Can be repeated. Default: all topics, "
+            "including images.",
             rich_help_panel=help.RECORDING,
         ),
     ] = None,
@@ -194,7 +195,7 @@ def run(
         bool,
         typer.Option(
             "--overwrite",
-            help="Replace an existing recording with the same name.",
+            help="Replace a recording that already exists.",
             rich_help_panel=help.RECORDING,
         ),
     ] = False,
@@ -209,8 +210,8 @@ def run(
     FILE can also be a world, which is then simulated without a robot. NAME:=VALUE sets a xacro
     argument; world:=FILE is the same as --world.
 
-    With --ros1, ROS 1 node arguments are also accepted: __name:=NAME, _PARAMETER:=VALUE,
-    /TOPIC:=OTHER, and, if FILE is a world, TOPIC:=OTHER.
+    With --ros1, arguments of a ROS 1 node are also accepted: __name:=NAME, _PARAMETER:=VALUE and
+    /TOPIC:=NEW_NAME. If FILE is a world, TOPIC:=NEW_NAME is accepted, too.
     """
     from cartwheel.cli.commands.options import Options
     from cartwheel.cli.commands.run import simulate

@@ -52,7 +52,7 @@ ENTITY_AMBIGUOUS = Code(
     "CW719",
     "entity-ambiguous",
     "error",
-    "a name in a service request is ambiguous, or belongs to a different kind of entity",
+    "a name in a service request is ambiguous, or is the name of a different kind of entity",
 )
 ENTITY_NAME_TAKEN = Code(
     "CW720", "entity-name-taken", "error", "the name of a new model or light is already in use"

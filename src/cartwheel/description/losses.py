@@ -30,7 +30,7 @@ def loss(
     """
     left_out = {"left_out": of} if of else {}
     return (code or error.code).diagnostic(
-        f"{error.message}: {consequence}",
+        f"{error.message}, so {consequence}",
         origin=origin or error.origin,
         hint=error.hint or "",
         severity=severity,

@@ -246,7 +246,8 @@ class Requests:
         bolted = any(j.child == description.canonical_link for j in description.joints)
         if description.static or bolted or link is None or description.mass <= 0:
             raise PluginError(
-                f'model "{self.name}" cannot be moved: it is fixed or has no mass',
+                f'model "{self.name}" cannot be moved because it is static, is fixed to the '
+                "world or has no mass",
                 code=running.MODEL_NOT_MOVABLE,
                 origin=origin,
                 values={"model": self.name},
@@ -307,7 +308,7 @@ class Requests:
         joint = next((each for each in self.description.joints if each.child == link), None)
         if axle_of(joint) is None:
             raise PluginError(
-                f'link "{link}" is not a wheel: no continuous joint turns it',
+                f'link "{link}" is not a wheel because no continuous joint turns it',
                 code=running.NOT_A_WHEEL,
                 origin=origin,
                 values={"link": link},

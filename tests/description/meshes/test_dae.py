@@ -259,7 +259,9 @@ def test_lines_are_told_and_skinned_meshes_shown(tmp_path):
     nodes = '<node><instance_controller url="#c"/></node>'
     (part,) = load(tmp_path, document(surface=surface, more=more, nodes=nodes))
     assert part.vertices[:, 2].tolist() == [7, 7, 7]
-    assert mesh_notes(Mesh(uri="", path=tmp_path / "t.dae")) == ("the COLLADA <lines> are ignored",)
+    assert mesh_notes(Mesh(uri="", path=tmp_path / "t.dae")) == (
+        "the COLLADA elements <lines> are ignored",
+    )
 
 
 UNUSABLE = [

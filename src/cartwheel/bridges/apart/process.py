@@ -137,7 +137,7 @@ class BridgeProcess:
             return self._link.call(name, *arguments).result(timeout)
         except TimeoutError:
             raise CartwheelError(
-                f"{self.title} did not respond within {timeout:g} s",
+                f"the process for {self.title} did not respond within {timeout:g} s",
                 code=BRIDGE_SLOW,
                 values={"bridge": self.title, "seconds": timeout},
             ) from None
@@ -180,7 +180,7 @@ class BridgeProcess:
 
     @property
     def _death(self) -> str:
-        return f"the process that runs {self.title} has exited"
+        return f"the process for {self.title} has exited"
 
     def _ended(self) -> None:
         """Called on the link's thread."""

@@ -111,10 +111,10 @@ def parse_server(program: str, words: Sequence[str]) -> ServerArguments:
         inert.add_argument(f"--record_{name}", metavar="X", help=argparse.SUPPRESS)
     inert.add_argument("--record_resources", action="store_true", help=argparse.SUPPRESS)
     inert.add_argument("-p", "--play", metavar="FILE", help=argparse.SUPPRESS)
-    inert.add_argument("-o", "--profile", metavar="NAME", help="physics preset")
+    inert.add_argument("-o", "--profile", metavar="NAME", help="name of a physics preset")
     inert.add_argument("--initial_sim_time", metavar="S", default="0", help="time starts at 0")
     inert.add_argument("--minimal_comms", action="store_true", help="Gazebo transport option")
-    inert.add_argument("--headless", action="store_true", help="launch file argument")
+    inert.add_argument("--headless", action="store_true", help="argument of launch files")
     given = parser.parse_args([word for word in words if ":=" not in word])
     if given.play is not None:
         raise CartwheelError(

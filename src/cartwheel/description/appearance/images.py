@@ -105,7 +105,7 @@ def check_size(image: Any, name: str) -> None:
 def _too_large(name: str, size: str) -> PictureError:
     return PictureError(
         name,
-        f"it is too large{f': {size}' if size else ''}",
+        f"it is too large{f' ({size})' if size else ''}",
         f"The limit is {MOST_PIXELS // 1_000_000} million pixels. Scale the image down.",
     )
 

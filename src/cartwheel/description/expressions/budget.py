@@ -83,7 +83,8 @@ class Budget:
         """
         if self._operations > MAX_OPERATIONS:
             raise TooLargeError(
-                f"the xacro file requires more than {MAX_OPERATIONS:,} operations",
+                f"the expressions of the xacro file require more than {MAX_OPERATIONS:,} "
+                "operations",
                 "operations",
                 MAX_OPERATIONS,
             )
@@ -114,7 +115,7 @@ class Budget:
         """
         if length > MAX_CHARACTERS:
             raise TooLargeError(
-                f"the text has more than {MAX_CHARACTERS:,} characters", "text", MAX_CHARACTERS
+                f"a text has more than {MAX_CHARACTERS:,} characters", "text", MAX_CHARACTERS
             )
         self.make(length)
 
@@ -183,7 +184,7 @@ class Budget:
                 characters += len(each)
                 if characters > MAX_CHARACTERS:
                     raise TooLargeError(
-                        f"the value has more than {MAX_CHARACTERS:,} characters",
+                        f"a value has more than {MAX_CHARACTERS:,} characters",
                         "value",
                         MAX_CHARACTERS,
                     )
@@ -200,7 +201,7 @@ class Budget:
                 continue
             if count > MAX_ITEMS:
                 raise TooLargeError(
-                    f"the value has more than {MAX_ITEMS:,} items", "value", MAX_ITEMS
+                    f"a value has more than {MAX_ITEMS:,} items", "value", MAX_ITEMS
                 )
             if isinstance(each, dict):
                 left.extend(dict.keys(each))
@@ -219,7 +220,7 @@ def room(count: int) -> None:
         ExpressionError: There are too many items.
     """
     if count > MAX_ITEMS:
-        raise TooLargeError(f"the list has more than {MAX_ITEMS:,} items", "list", MAX_ITEMS)
+        raise TooLargeError(f"a list has more than {MAX_ITEMS:,} items", "list", MAX_ITEMS)
 
 
 def bits(count: int) -> None:
@@ -229,4 +230,4 @@ def bits(count: int) -> None:
         ExpressionError: There are too many bits.
     """
     if count > MAX_BITS:
-        raise TooLargeError(f"the number has more than {MAX_BITS} bits", "number", MAX_BITS)
+        raise TooLargeError(f"a number has more than {MAX_BITS} bits", "number", MAX_BITS)

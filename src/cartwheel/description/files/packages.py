@@ -227,7 +227,7 @@ class Packages:
                 yield downloaded
                 return
             raise DescriptionError(
-                f'"{uri}" is on the network and is not downloaded',
+                f'"{uri}" is on the network, and Cartwheel does not download files',
                 code=codes.FILE_ON_NETWORK,
                 values={"kind": "file", "name": uri},
                 origin=origin,

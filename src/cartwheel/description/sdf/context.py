@@ -112,8 +112,9 @@ def read_pose(node: Node | None) -> Pose:
     else:
         # Gazebo Classic reads the values that are present.
         values = (*node.vector(len(words)), 0.0, 0.0, 0.0, 0.0, 0.0)[:6]
+        rest = "the rest is ignored" if len(words) > 6 else "0 is used for the others"
         incomplete = codes.VALUE_IGNORED.diagnostic(
-            f"the pose has {len(words)} of 6 numbers, so 0 is used for the others",
+            f"a pose must have 6 numbers (got {len(words)}), so {rest}",
             origin=node.origin,
             values={"stated": node.text},
         )

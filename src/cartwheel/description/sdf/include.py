@@ -91,7 +91,7 @@ def _chosen(root: Node, uri: Node) -> Node:
     if (actor := root.child("actor")) is not None:
         actor.mark()
         raise NotThereError(
-            f'"{uri.text}" is an actor, which is not simulated',
+            f'"{uri.text}" is an actor, and actors are not simulated',
             code=tags.NOT_SIMULATED,
             origin=uri.origin,
         )
@@ -144,11 +144,11 @@ def _fuel_model(name: str, uri: Node, ctx: Context) -> Path:
         except DescriptionError:
             continue
     raise NotThereError(
-        f'"{uri.text}" is on the network and is not downloaded',
+        f'"{uri.text}" is on the network, and Cartwheel does not download models',
         code=files.FILE_ON_NETWORK,
         origin=uri.origin,
         values={"kind": "model", "name": uri.text},
-        hint='Download it to ~/.gz/fuel with "gz fuel download -u" and its URL, or put the model '
+        hint=f'Download the model: gz fuel download -u "{uri.text}". Or put the model '
         f'folder "{name}" into a folder in GZ_SIM_RESOURCE_PATH.',
     )
 

@@ -73,7 +73,7 @@ def read_sdf(
             )
         if models:
             raise models[0].fail(
-                "a model outside the <world>",
+                "a <model> is outside the <world>",
                 "Move the <model> into the <world>.",
                 code=tags.TAG_MISPLACED,
             )
@@ -93,7 +93,7 @@ def read_sdf(
             )
     elif models:
         raise models[1].fail(
-            f"the file has {len(models)} models without a world",
+            f"the file contains {len(models)} models, but no <world>",
             "Put the models into a <world>. A file with a single model describes a robot.",
             code=files.WRONG_KIND,
         )

@@ -169,8 +169,8 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
             advice = f'Add to link "{first.name}": {inertial_text(first.inertial)}'
         ctx.report(
             robot.INERTIA_MISSING.diagnostic(
-                f"{_mover(roots[0], holders[0])} has no <inertial>. {_fate(holders[0])}; Cartwheel "
-                f"uses {weights[0]:.3g} kg{_reason(first)}",
+                f"{_mover(roots[0], holders[0])}. {_fate(holders[0])}; Cartwheel uses a mass of "
+                f"{weights[0]:.3g} kg{_reason(first)}",
                 origin=first.origin,
                 hint=advice,
                 values={"links": (roots[0],), "masses": (weights[0],)},
@@ -197,8 +197,8 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
 
 def _mover(root: str, holder: Joint | None) -> str:
     if holder is None:
-        return f'the root link "{root}", with everything fixed to it,'
-    return f'link "{root}" moves on joint "{holder.name}" but'
+        return f'neither the root link "{root}" nor a link fixed to it has an <inertial>'
+    return f'link "{root}" moves on joint "{holder.name}" but has no <inertial>'
 
 
 def _fate(holder: Joint | None) -> str:

@@ -1,8 +1,8 @@
 """Elements in published URDFs that no URDF reader uses: they need a note, not a warning."""
 
 _NOBODY = "no URDF parser supports it"
-_SAFETY = "it belongs to the PR2's safety controller"
-_IDENTIFIED = "it is a value measured on the real arm; URDF has damping and friction"
+_SAFETY = "it configures the safety controller of the PR2"
+_IDENTIFIED = "it is a measured value of the real arm; URDF defines only damping and friction"
 _PLANNER = "it is for a planner"
 _SURFACE = "Gazebo colours and surfaces belong in a <gazebo> tag"
 _OLD = "it is from an early version of URDF"

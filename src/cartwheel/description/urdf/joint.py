@@ -138,8 +138,8 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
     elif kind in ("revolute", "prismatic"):
         ctx.report(
             robot.LIMIT_MISSING.diagnostic(
-                f'joint "{name}" of type {kind} has no <limit>; ROS rejects it, but Cartwheel '
-                "treats it as unlimited",
+                f'joint "{name}" of type {kind} has no <limit>; ROS rejects the robot, but '
+                "Cartwheel does not limit the joint",
                 origin=node.origin,
                 severity="warning",
                 values={"joint": name},

@@ -316,11 +316,10 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
         load_mesh(mesh, origin=node.origin)
     except DescriptionError as error:
         # As in Gazebo, and as in a world, this only affects the one shape.
-        rest = " and does not collide" if kind == "collision" else ""
         ctx.report(
             loss(
                 error,
-                f'a {kind} of link "{link}" is ignored{rest}',
+                f'a {kind} of link "{link}" is ignored',
                 of=kind,
                 origin=node.origin,
                 values={"link": link},

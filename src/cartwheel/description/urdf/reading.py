@@ -228,7 +228,7 @@ def _warn_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
     if seen is not None and not any(link.collisions for link in links):
         ctx.report(
             robot.BASE_WITHOUT_COLLISION.diagnostic(
-                "none of its links has a <collision>, so the robot falls through the ground",
+                "no link of the robot has a <collision>, so the robot falls through the ground",
                 origin=seen.visuals[0].origin,
                 hint="Add a <collision> next to each <visual>, with the same <origin> and "
                 f'<geometry>. Start with link "{seen.name}".',

@@ -166,7 +166,7 @@ def _evaluated(text: str) -> str:
 
 def _expression(text: str) -> str:
     evaluated = _evaluated(text)
-    return f", when evaluating ${{{evaluated}}}" if evaluated else ""
+    return f" (in the expression ${{{evaluated}}})" if evaluated else ""
 
 
 def _meant(name: str, known: list[str] | tuple[str, ...]) -> tuple[str | None, str]:

@@ -131,7 +131,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
             if "expression" in error.values:
                 raise
             raise ExpressionError(
-                f"{error.message}, when evaluating ${{{shown}}}",
+                f"{error.message} (in the expression ${{{shown}}})",
                 code=error.code,
                 hint=error.hint,
                 values={**error.values, "expression": shown},

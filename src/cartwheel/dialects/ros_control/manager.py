@@ -93,7 +93,7 @@ class ControllerManager:
         if controller is None:
             raise wrong_state(name, "is not loaded")
         if controller.running:
-            raise wrong_state(name, "is running", hint="Stop it first.")
+            raise wrong_state(name, "is running", hint="Stop the controller first.")
         del self._controllers[name]
         self._order = update_order(self._controllers)
         self._begun.discard(name)

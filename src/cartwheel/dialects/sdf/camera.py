@@ -21,7 +21,7 @@ from cartwheel.devices.cameras.lens import Distortion
 _WIDEST_VIEW = 2.8
 """Largest field of view, rad; a wider image of a pinhole camera is nearly all border."""
 _UNSUPPORTED = {
-    "lens": "the field of view is that of <horizontal_fov>",
+    "lens": "<horizontal_fov> specifies the field of view",
     "save": "images are not saved",
     "visibility_mask": "all visuals are rendered",
 }

@@ -52,7 +52,7 @@ def controller_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue  # for a different variant of the robot
             yield devices_codes.CONTROLLER_JOINT_UNKNOWN.diagnostic(
                 severity=severity_in(file),
-                message=f'"{key}" refers to the joint "{name}", which does not exist',
+                message=f'the parameter "{key}" refers to the joint "{name}", which does not exist',
                 values={"tag": key, "joint": name},
                 origin=value.origin,
                 instead=value.replaced(near) if near else "",

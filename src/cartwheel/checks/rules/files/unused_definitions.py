@@ -52,7 +52,7 @@ def property_unused(subject: Subject) -> Iterator[Diagnostic]:
                     values={"name": name},
                     origin=node.origin,
                     mark=f'name="{name}"',
-                    hint="Use it where its value is repeated, or remove it.",
+                    hint="Use the property wherever its value is repeated, or remove it.",
                 )
 
 

@@ -60,7 +60,7 @@ def base_no_collision(subject: Subject) -> Iterator[Diagnostic]:
                 None,
             )
             yield robot_codes.BASE_WITHOUT_COLLISION.diagnostic(
-                message="no link in the robot has a <collision>, so the robot falls through the "
+                message="no link of the robot has a <collision>, so the robot falls through the "
                 "ground"
                 if nowhere
                 else f'the body "{seen.name}" has visuals but no <collision>, so it passes '

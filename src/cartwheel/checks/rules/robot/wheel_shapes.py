@@ -38,8 +38,8 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
                 )
             alone = node is not None and bool(text) and len(link.collisions) == 1
             yield robot_codes.WHEEL_NOT_ROUND.diagnostic(
-                message=f'the collision of the driven wheel "{link.name}" is not round: its width '
-                f"perpendicular to the joint axis varies from {widths.min():.3g} m to "
+                message=f'the collision of the driven wheel "{link.name}" is not round: seen along '
+                f"the joint axis, its width varies from {widths.min():.3g} m to "
                 f"{widths.max():.3g} m",
                 values={
                     "link": link.name,

@@ -57,7 +57,8 @@ def place_millimetres(subject: Subject) -> Iterator[Diagnostic]:
             continue
         metres = " ".join(nodes.short(value / 1000) for value in xyz)
         yield robot_codes.POSITION_IN_MILLIMETRES.diagnostic(
-            message=f"this <{holder.tag}> is {math.hypot(*xyz):.4g} m away from its link",
+            message=f"the origin of this <{holder.tag}> is {math.hypot(*xyz):.4g} m away from "
+            "its link",
             values={"tag": holder.tag, "distance": math.hypot(*xyz)},
             hint="Is the position in millimetres?",
             origin=origin.origin,

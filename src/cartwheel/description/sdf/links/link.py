@@ -163,7 +163,7 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
         name = link.attributes.get("name", "")
         ctx.report(
             tags.DEFAULT_USED.diagnostic(
-                f'the inertia of link "{name}" is not a number, so the SDF default, 1 kg m², is '
+                f'the inertia of link "{name}" contains NaN, so the default in SDF, 1 kg m², is '
                 "used",
                 origin=tensor.origin,
                 values={"link": name, "missing": "inertia"},

@@ -122,7 +122,7 @@ class PidController(Controller):
         if not fits or sorted(names) != sorted(self._names):
             self.warn(
                 running.COMMAND_IGNORED,
-                f"a {what} is ignored because it must contain one value for each joint",
+                f"a {what} is ignored because it does not contain one value for each joint",
                 hint=f"Joints of the controller: {', '.join(self._names)}.",
             )
             return []
