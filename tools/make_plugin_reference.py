@@ -38,24 +38,28 @@ INTRODUCTION = f"""\
 {_MADE}
 
 Cartwheel supports these plugins and sensors. Plugins are listed by the `filename` in their
-`<plugin>` tag, and sensors that need no plugin by their type. Each page describes the tags, topics
-and services.
+`<plugin>` tag, and sensors that need no plugin by their type. The page of each plugin or sensor
+describes its tags, topics and services. It also names the original plugin, which is the plugin for
+Gazebo whose tags and topics Cartwheel supports. The following rules apply to all plugins:
 
 - If a tag has several spellings and a `<plugin>` contains more than one of them, the spelling that
-  is listed first on the page applies. Repeatable tags combine the values of all spellings.
+  is listed first on the page applies. If a tag is repeatable, the values of all spellings are
+  combined.
 - Unsupported tags are reported with file and line.
-- `<robotNamespace>` (or `<ros><namespace>`) is prepended to every topic and service name that does
-  not begin with `/`. `<ros><remapping>` renames topics and services.
-- A plugin that publishes sensor data is active while one of its topics has subscribers. A plugin
-  that drives joints or applies forces is always active. `<alwaysOn>` is accepted and has no effect.
+- The namespace in `<robotNamespace>` or `<ros><namespace>` is added in front of every topic and
+  service name that does not begin with `/`. `<ros><remapping>` renames topics and services.
+- In default names, `<model>`, `<world>`, `<link>`, `<joint>` and `<sensor>` stand for the names of
+  these elements. Any other name in angle brackets is a tag and stands for its value.
+- A plugin that publishes sensor data is active only while one of its topics has subscribers. A
+  plugin that drives joints or applies forces is always active. `<alwaysOn>` has no effect.
 - Folders in `filename` are ignored. The prefix `lib` and the extension `.so` are optional. The
-  prefix `ignition-gazebo-` is read as `gz-sim-`.
-- A plugin that is not listed here has no effect. A warning is reported when the robot is loaded.
+  prefix `ignition-gazebo-` has the same meaning as `gz-sim-`.
+- A plugin that is not listed here has no effect, and is reported when the robot is loaded.
 """
 
 _SENSORS = """\
-Sensors written for gz-sim (Gazebo's successor to Gazebo Classic) need no `<plugin>`. Such a sensor
-publishes in each of these cases:
+Sensors for gz-sim, the successor of Gazebo Classic, need no `<plugin>`. A sensor without a
+`<plugin>` publishes messages if at least one of these conditions is met:
 
 - The world or the model contains the matching system, such as `gz-sim-sensors-system`.
 - The sensor contains `<topic>` or `<gz_frame_id>`.
@@ -65,22 +69,23 @@ publishes in each of these cases:
 _AFTER = """\
 ## Errors
 
-A plugin that raises an error while it runs is disabled: its topics and services are removed, its
-motors brake and its forces become 0. The error message names the plugin, its model, and the file
-and line of its tag; `--verbose` adds the traceback. The simulation continues unless `--strict` is
-set.
+If a plugin raises an error while it runs, Cartwheel disables the plugin: it removes the plugin's
+topics and services, brakes its motors and sets its forces to 0. The error message names the plugin,
+its model, and the file and line of its tag. With `--verbose`, it also contains the traceback. With
+`--strict`, the simulation stops; otherwise, it continues.
 
 ## Plugins in your own package
 
-Your own package can add plugins through the entry point group `cartwheel.plugins`. Each entry
-points to a subclass of `cartwheel.plugin.Plugin`. If a package cannot be loaded, only robots
-that use its plugins are affected: a warning reports that the plugin is not supported, and its hint
-states why the package could not be loaded.
+Your own Python package can add plugins with the entry point group `cartwheel.plugins`. Each entry
+point refers to a subclass of `cartwheel.plugin.Plugin`; see
+[Write a plugin](how-to/write-a-plugin.md#create-a-package). If a package cannot be loaded, only
+robots that use its plugins are affected. For these robots, a warning reports that the plugin is not
+supported, and the hint of the warning states why the package could not be loaded.
 """
 
 _ROLES = {"publishes": "publishes", "subscribes": "subscribes", "serves": "provides"}
-_TABLE = "The table lists the topics and services of the example above"
-_TABLE_SWITCHED = f"{_TABLE}, with every boolean tag set to `true`"
+_TABLE = "The table lists the topics and services that the example above creates"
+_TABLE_SWITCHED = f"{_TABLE} if every boolean tag is set to `true`"
 
 
 _TOPICS_INTRODUCTION = f"""\
@@ -263,7 +268,7 @@ def _linked(line: str, links: dict[str, str]) -> str:
 
 def _kind(kind: Any, *, nested: bool = False) -> str:
     if nested:
-        return "tags"
+        return "nested tags"
     options = typing.get_args(kind)
     if typing.get_origin(kind) is typing.Literal:
         return _listed(options, "or")

@@ -96,11 +96,11 @@ class GzAckermannParameters(GzLimitedParameters):
 
 
 class GzAckermannDrive(Plugin[GzAckermannParameters]):
-    """Drives and steers a car from Twist commands and publishes odometry from its wheels.
+    """Drives and steers a car as commanded by Twist messages, and publishes odometry.
 
-    ``linear.x`` is the speed in m/s, and ``angular.z`` the yaw rate in rad/s. The odometry is
-    computed from the rotation of the driven wheels. Original plugin: ``AckermannSteering`` in
-    gz-sim.
+    In a command, ``linear.x`` is the speed in m/s, and ``angular.z`` is the yaw rate in rad/s. The
+    odometry is computed from the rotation of the driven wheels. Original plugin:
+    ``AckermannSteering`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)

@@ -25,12 +25,12 @@ class AltimeterParameters:
 
 
 class Altimeter(Plugin[AltimeterParameters]):
-    """Publishes the height of a sensor above its initial height, and its vertical velocity.
+    """Publishes a sensor's height above its initial position, and its vertical velocity.
 
-    Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the initial
-    height in the world frame. The noise in ``<vertical_position>`` and ``<vertical_velocity>``
-    is applied. Original sensor: ``AltimeterSensor`` in gz-sensors. The message type is the same as
-    in ros_gz_bridge.
+    Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the sensor's
+    initial z coordinate in the world. The noise that ``<vertical_position>`` and
+    ``<vertical_velocity>`` specify is added. Original sensor: ``AltimeterSensor`` in gz-sensors.
+    The message type is the same as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

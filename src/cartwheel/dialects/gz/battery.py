@@ -31,7 +31,7 @@ class BatteryParameters:
     )
     capacity: float = tag("capacity", unit="A h", doc="Charge of the full battery.")
     charge: float | None = tag(
-        "initial_charge", default=None, unit="A h", doc="Initial charge. Default: the capacity."
+        "initial_charge", default=None, unit="A h", doc="Initial charge. Default: `<capacity>`."
     )
     resistance: float = tag("resistance", default=0.0, unit="Ω", doc="Internal resistance.")
     smoothing: float = tag(
@@ -41,28 +41,32 @@ class BatteryParameters:
         doc="Time constant of the low-pass filter for the current.",
     )
     power: float = tag(
-        "power_load", default=0.0, unit="W", doc="Power drawn while the battery discharges."
+        "power_load", default=0.0, unit="W", doc="Power that is drawn while the battery discharges."
     )
     draining: bool = tag(
-        "start_draining", default=False, doc="Start discharging when the simulation starts."
+        "start_draining",
+        default=False,
+        doc="Whether the battery starts to discharge when the simulation starts.",
     )
     drain_topics: tuple[str, ...] = tag(
         "power_draining_topic",
         default=(),
-        doc="Topic on which any message starts discharging. The message type is Empty, "
-        "unless another plugin uses the topic with a different type.",
+        doc="Topic on which any message starts discharging. The message type is Empty, unless "
+        "another plugin uses the topic with a different type. Repeat the tag for each "
+        "topic.",
     )
     stop_topics: tuple[str, ...] = tag(
         "stop_power_draining_topic",
         default=(),
-        doc="Topic on which any message stops discharging.",
+        doc="Topic on which any message stops discharging. Repeat the tag for each topic.",
     )
     rechargeable: bool = tag(
         "enable_recharge",
         default=False,
-        doc="Recharge the battery after a message on "
-        "`/model/<model>/battery/<battery_name>/recharge/start`, until a message on "
-        "`…/recharge/stop`. Requires `<charging_time>`.",
+        doc="Whether Bool messages can control recharging: a message on "
+        "`/model/<model>/battery/<battery_name>/recharge/start` starts it, and a message on "
+        "`/model/<model>/battery/<battery_name>/recharge/stop` stops it. Requires "
+        "`<charging_time>`.",
     )
     by_topic: bool = tag(
         "recharge_by_topic",
@@ -73,12 +77,14 @@ class BatteryParameters:
         "charging_time",
         default=0.0,
         unit="h",
-        doc="Time to recharge the empty battery, with `<enable_recharge>`.",
+        doc="Time in which an empty battery would be charged to `<capacity>`. Used with "
+        "`<enable_recharge>`.",
     )
     invert: bool = tag(
         "invert_current_sign",
         default=False,
-        doc="Publish a discharging current as negative, as sensor_msgs/BatteryState defines it.",
+        doc="Whether to publish a discharging current as negative, as sensor_msgs/BatteryState "
+        "defines it.",
     )
     fixed: bool = tag(
         "fix_issue_225",
@@ -88,7 +94,7 @@ class BatteryParameters:
 
 
 class BatteryPlugin(Plugin[BatteryParameters]):
-    """Simulates a battery that discharges at constant power.
+    """Simulates a battery that is discharged with a constant power.
 
     Discharging starts when a plugin first turns a joint of the model, for example after a drive
     command. It also starts with a message on ``<power_draining_topic>``, or when the simulation
@@ -96,10 +102,10 @@ class BatteryPlugin(Plugin[BatteryParameters]):
     capacity) - resistance * current``, where ``constant`` and ``linear`` are the open-circuit
     voltage coefficients.
 
-    Recharging stops at 90 % of the capacity. BatteryState is published at 50 Hz on
-    ``/model/<model>/battery/<battery_name>/state``. The message field ``percentage`` is from 0 to
-    1, as in ROS. An empty battery is reported but does not stop the robot. Original plugin:
-    ``LinearBatteryPlugin`` in gz-sim.
+    Recharging stops at 90 % of the capacity. BatteryState messages are published at 50 Hz on
+    ``/model/<model>/battery/<battery_name>/state``. The message field ``percentage`` is between 0
+    and 1, as sensor_msgs/BatteryState defines it. Cartwheel reports an empty battery, but the robot
+    continues to work. Original plugin: ``LinearBatteryPlugin`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

@@ -25,9 +25,9 @@ class GzCameraParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the images; see above. Default: "
-        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>`, followed by `/image` for "
-        "a camera and by `/depth_image` for a depth camera.",
+        doc="Topic of the images, or the prefix of several topics, as described above. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>`, followed by `/image` "
+        "for a camera and by `/depth_image` for a depth camera.",
     )
     frame: str = tag(
         "camera/optical_frame_id",
@@ -40,22 +40,25 @@ class GzCameraParameters:
     info_topic: str = tag(
         "camera/camera_info_topic",
         default="",
-        doc="Topic of the CameraInfo. Default: `camera_info` in the namespace of the image topic.",
+        doc="Topic of the CameraInfo messages. Default: `camera_info` in the namespace of the "
+        "image topic.",
     )
     triggered: bool = tag(
-        "camera/triggered", default=False, doc="Publish an image only after a trigger message."
+        "camera/triggered",
+        default=False,
+        doc="Whether to publish an image only after a trigger message.",
     )
     nearest: float = tag(
         "camera/depth_camera/clip/near",
         default=0.0,
         unit="m",
-        doc="Depths at or below this value are -inf.",
+        doc="Depths at or below this value are published as -inf.",
     )
     furthest: float = tag(
         "camera/depth_camera/clip/far",
         default=math.inf,
         unit="m",
-        doc="Depths at or above this value are inf.",
+        doc="Depths at or above this value are published as inf.",
     )
     trigger_topic: str = tag(
         "camera/trigger_topic",
@@ -65,14 +68,15 @@ class GzCameraParameters:
 
 
 class GzCamera(Plugin[GzCameraParameters]):
-    """Publishes the images of gz-sim's ``camera``, ``depth_camera`` and ``rgbd_camera`` sensors.
+    """Publishes images, depth images and point clouds of gz-sim's camera sensors.
 
-    A ``camera`` publishes images on ``<topic>``. A ``depth_camera`` publishes depths on ``<topic>``
-    and points on ``<topic>/points``. An ``rgbd_camera`` publishes images on ``<topic>/image``,
-    depths on ``<topic>/depth_image`` and points on ``<topic>/points``.
+    A ``camera`` sensor publishes images on ``<topic>``. A ``depth_camera`` sensor publishes depth
+    images on ``<topic>`` and point clouds on ``<topic>/points``. An ``rgbd_camera`` sensor
+    publishes images on ``<topic>/image``, depth images on ``<topic>/depth_image`` and point clouds
+    on ``<topic>/points``.
 
-    Depths are measured along the optical axis, and are inf where nothing is hit. Points have x
-    forward, y left and z up, as in gz-sim.
+    Depths are measured along the optical axis, and are inf for pixels without a surface. In the
+    frame of the points, x points forward, y left and z up, as in gz-sim.
 
     Original sensors: ``CameraSensor``, ``DepthCameraSensor`` and ``RgbdCameraSensor`` in
     gz-sensors. The message types are the same as in ros_gz_bridge.

@@ -23,9 +23,9 @@ class GzContactParameters:
 
 
 class GzContact(Plugin[GzContactParameters]):
-    """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState.
+    """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState messages.
 
-    Messages are also published without contact. The field ``states`` is then empty. Original
+    If there is no contact, messages are published too. Their field ``states`` is empty. Original
     plugin: ``Contact`` in gz-sim.
     """
 

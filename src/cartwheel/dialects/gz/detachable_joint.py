@@ -16,41 +16,49 @@ _OWN = "__model__"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DetachableJointParameters:
-    parent_link: str = tag("parent_link", doc="Link of this model.")
-    child_model: str = tag(
-        "child_model", doc="Model to attach. `__model__` is the model that contains the plugin."
+    parent_link: str = tag(
+        "parent_link", doc="Link of this model to which the child link is attached."
     )
-    child_link: str = tag("child_link", doc="Link of the child model.")
+    child_model: str = tag(
+        "child_model",
+        doc="Model that contains the child link. `__model__` is the model that contains the "
+        "plugin.",
+    )
+    child_link: str = tag(
+        "child_link", doc="Link of the child model that is attached to the parent link."
+    )
     detach_topic: str = tag(
         "detach_topic",
         "topic",
         default="",
-        doc="Topic of the Empty messages that detach the child. Default: "
+        doc="Topic of the Empty messages that detach the child link. Default: "
         "`/model/<model>/detachable_joint/detach`.",
     )
     attach_topic: str = tag(
         "attach_topic",
         default="",
-        doc="Topic of the Empty messages that attach the child again. Default: "
+        doc="Topic of the Empty messages that attach the child link again. Default: "
         "`/model/<model>/detachable_joint/attach`.",
     )
     output_topic: str = tag(
         "output_topic",
         default="",
-        doc="Topic of the state (String): `attached` or `detached`. Published when the "
-        "state changes. Default: `/model/<child_model>/detachable_joint/state`.",
+        doc="Topic of the String messages `attached` and `detached`, which are published when "
+        "the state changes. Default: `/model/<child_model>/detachable_joint/state`.",
     )
     quiet: bool = tag(
-        "suppress_child_warning", default=False, doc="Do not warn if the child does not exist."
+        "suppress_child_warning",
+        default=False,
+        doc="Whether to suppress the warning if the child model or link does not exist.",
     )
 
 
 class DetachableJoint(Plugin[DetachableJointParameters]):
     """Attaches a link of another model to a link of this model until a message detaches it.
 
-    The links are attached when the simulation starts, in their current relative pose. A child model
-    that is spawned later is attached as soon as it exists. Original plugin: ``DetachableJoint`` in
-    gz-sim.
+    The links are attached in their current relative pose, as with a fixed joint. They are attached
+    when the simulation starts or, if the child model is spawned later, when it is spawned. Original
+    plugin: ``DetachableJoint`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-detachable-joint-system",)

@@ -51,10 +51,10 @@ class GzDiffDriveParameters(GzLimitedParameters):
 
 
 class GzDiffDrive(Plugin[GzDiffDriveParameters]):
-    """Drives left and right wheels from Twist commands and publishes odometry from their rotation.
+    """Drives left and right wheels as commanded by Twist messages, and publishes odometry.
 
-    The wheel torque is limited only by the effort limits of the joints. Original plugin:
-    ``DiffDrive`` in gz-sim.
+    The odometry is computed from the rotation of the wheels. Only the effort limits of the joints
+    limit the torque of the wheels. Original plugin: ``DiffDrive`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)

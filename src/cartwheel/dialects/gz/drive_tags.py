@@ -48,7 +48,7 @@ class GzDriveParameters:
         "odom_publish_frequency",
         default=50.0,
         unit="Hz",
-        doc="Publish rate of the odometry. 0: every step.",
+        doc="Publish rate of the odometry. If 0, it is published at every simulation step.",
     )
 
 
@@ -60,25 +60,29 @@ class GzCommonLimits(GzDriveParameters):
         "min_velocity",
         default=None,
         unit="m/s or rad/s",
-        doc="Minimum linear and angular velocity. Default: no limit.",
+        doc="Minimum of the linear velocity (in m/s) and of the angular velocity (in rad/s). "
+        "Default: no limit.",
     )
     max_velocity: float | None = tag(
         "max_velocity",
         default=None,
         unit="m/s or rad/s",
-        doc="Maximum linear and angular velocity. Default: no limit.",
+        doc="Maximum of the linear velocity (in m/s) and of the angular velocity (in rad/s). "
+        "Default: no limit.",
     )
     min_acceleration: float | None = tag(
         "min_acceleration",
         default=None,
         unit="m/s² or rad/s²",
-        doc="Minimum linear and angular acceleration. Default: no limit.",
+        doc="Minimum of the linear acceleration (in m/s²) and of the angular acceleration (in "
+        "rad/s²). Default: no limit.",
     )
     max_acceleration: float | None = tag(
         "max_acceleration",
         default=None,
         unit="m/s² or rad/s²",
-        doc="Maximum linear and angular acceleration. Default: no limit.",
+        doc="Maximum of the linear acceleration (in m/s²) and of the angular acceleration (in "
+        "rad/s²). Default: no limit.",
     )
     min_jerk: float | None = tag(
         "min_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
@@ -93,34 +97,52 @@ class GzLimitedParameters(GzCommonLimits):
     """Separate limits for linear and angular motion, which override the common limits."""
 
     min_linear_velocity: float | None = tag(
-        "min_linear_velocity", default=None, unit="m/s", doc="Overrides `<min_velocity>`."
+        "min_linear_velocity",
+        default=None,
+        unit="m/s",
+        doc="Minimum linear velocity. Overrides `<min_velocity>`.",
     )
     max_linear_velocity: float | None = tag(
-        "max_linear_velocity", default=None, unit="m/s", doc="Overrides `<max_velocity>`."
+        "max_linear_velocity",
+        default=None,
+        unit="m/s",
+        doc="Maximum linear velocity. Overrides `<max_velocity>`.",
     )
     min_angular_velocity: float | None = tag(
-        "min_angular_velocity", default=None, unit="rad/s", doc="Overrides `<min_velocity>`."
+        "min_angular_velocity",
+        default=None,
+        unit="rad/s",
+        doc="Minimum angular velocity. Overrides `<min_velocity>`.",
     )
     max_angular_velocity: float | None = tag(
-        "max_angular_velocity", default=None, unit="rad/s", doc="Overrides `<max_velocity>`."
+        "max_angular_velocity",
+        default=None,
+        unit="rad/s",
+        doc="Maximum angular velocity. Overrides `<max_velocity>`.",
     )
     min_linear_acceleration: float | None = tag(
-        "min_linear_acceleration", default=None, unit="m/s²", doc="Overrides `<min_acceleration>`."
+        "min_linear_acceleration",
+        default=None,
+        unit="m/s²",
+        doc="Minimum linear acceleration. Overrides `<min_acceleration>`.",
     )
     max_linear_acceleration: float | None = tag(
-        "max_linear_acceleration", default=None, unit="m/s²", doc="Overrides `<max_acceleration>`."
+        "max_linear_acceleration",
+        default=None,
+        unit="m/s²",
+        doc="Maximum linear acceleration. Overrides `<max_acceleration>`.",
     )
     min_angular_acceleration: float | None = tag(
         "min_angular_acceleration",
         default=None,
         unit="rad/s²",
-        doc="Overrides `<min_acceleration>`.",
+        doc="Minimum angular acceleration. Overrides `<min_acceleration>`.",
     )
     max_angular_acceleration: float | None = tag(
         "max_angular_acceleration",
         default=None,
         unit="rad/s²",
-        doc="Overrides `<max_acceleration>`.",
+        doc="Maximum angular acceleration. Overrides `<max_acceleration>`.",
     )
     min_linear_jerk: float | None = tag(
         "min_linear_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."

@@ -27,15 +27,16 @@ class GzForceTorqueParameters:
 
 
 class GzForceTorque(Plugin[GzForceTorqueParameters]):
-    """Publishes the force and torque on the joint that contains a ``force_torque`` sensor.
+    """Publishes the force and torque in the joint that contains a ``force_torque`` sensor.
 
-    ``<frame>`` selects the frame of the vectors: ``child`` (default), ``parent`` or ``sensor``.
-    ``<measure_direction>`` selects the sign: ``child_to_parent`` (default) or ``parent_to_child``.
-    ``<force>`` and ``<torque>`` can contain noise for each axis.
+    These tags of the sensor's ``<force_torque>`` are supported: ``<frame>`` selects the frame in
+    which the force and torque are expressed, ``child`` (default), ``parent`` or ``sensor``.
+    ``<measure_direction>`` selects their sign, ``child_to_parent`` (default) or
+    ``parent_to_child``. ``<force>`` and ``<torque>`` can specify noise for each axis.
 
-    The default frame ID is the link selected by ``<frame>``. With ``sensor``, it is the child link,
-    or the sensor's name if the sensor is rotated relative to its link. Original sensor:
-    ``ForceTorqueSensor`` in gz-sensors.
+    The default frame ID is the link that ``<frame>`` selects. If ``<frame>`` is ``sensor``, it is
+    the child link, or the sensor's name if the sensor is rotated relative to its link. Original
+    sensor: ``ForceTorqueSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

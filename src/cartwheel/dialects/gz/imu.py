@@ -26,9 +26,9 @@ class GzImuParameters:
 class GzImu(Plugin[GzImuParameters]):
     """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
-    The orientation is relative to the world, or to ``<orientation_reference_frame>``. If
-    ``<enable_orientation>`` is false, the orientation is not measured and the first element of its
-    covariance is -1.
+    The orientation is relative to the world, or to ``<orientation_reference_frame>`` if this tag is
+    set. If ``<enable_orientation>`` is false, the orientation is not measured, and the first
+    element of its covariance is -1.
 
     Original sensor: ``ImuSensor`` in gz-sensors. See also REP 145.
     """

@@ -23,15 +23,30 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _ServoParameters:
-    p: float = tag("p_gain", default=1.0, doc="Proportional gain.")
-    i: float = tag("i_gain", default=0.0, doc="Integral gain.")
-    d: float = tag("d_gain", default=0.0, doc="Derivative gain, which damps the joint.")
-    i_max: float = tag("i_max", default=1.0, unit="N m or N", doc="Maximum of the integral term.")
-    i_min: float = tag("i_min", default=-1.0, unit="N m or N", doc="Minimum of the integral term.")
-    cmd_max: float = tag("cmd_max", default=1000.0, unit="N m or N", doc="Maximum output.")
-    cmd_min: float = tag("cmd_min", default=-1000.0, unit="N m or N", doc="Minimum output.")
+    p: float = tag("p_gain", default=1.0, doc="Proportional gain of the PID controller.")
+    i: float = tag("i_gain", default=0.0, doc="Integral gain of the PID controller.")
+    d: float = tag(
+        "d_gain",
+        default=0.0,
+        doc="Derivative gain of the PID controller. It is applied as damping of the joint.",
+    )
+    i_max: float = tag(
+        "i_max", default=1.0, unit="N m or N", doc="Maximum of the PID controller's integral term."
+    )
+    i_min: float = tag(
+        "i_min", default=-1.0, unit="N m or N", doc="Minimum of the PID controller's integral term."
+    )
+    cmd_max: float = tag(
+        "cmd_max", default=1000.0, unit="N m or N", doc="Maximum output of the PID controller."
+    )
+    cmd_min: float = tag(
+        "cmd_min", default=-1000.0, unit="N m or N", doc="Minimum output of the PID controller."
+    )
     cmd_offset: float = tag(
-        "cmd_offset", default=0.0, unit="N m or N", doc="Constant added to the output."
+        "cmd_offset",
+        default=0.0,
+        unit="N m or N",
+        doc="Constant that is added to the output of the PID controller.",
     )
     actuators: bool = tag(
         "use_actuator_msg", default=False, doc="No effect: only Float64 commands are supported."
@@ -39,12 +54,13 @@ class _ServoParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the target (Float64). Default: `/model/<model>/joint/<joint>/cmd_pos`.",
+        doc="Topic of the target positions (Float64). Default: "
+        "`/model/<model>/joint/<joint>/cmd_pos`.",
     )
     sub_topic: str = tag(
         "sub_topic",
         default="",
-        doc="Topic relative to `/model/<model>`. Used if `<topic>` is not set.",
+        doc="Topic of the targets, relative to `/model/<model>`. Used if `<topic>` is not set.",
     )
     joints: tuple[str, ...] = tag(
         "joint_name",
@@ -55,19 +71,29 @@ class _ServoParameters:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointPositionParameters(_ServoParameters):
-    i: float = tag("i_gain", default=0.1, doc="Integral gain.")
-    d: float = tag("d_gain", default=0.01, doc="Derivative gain, which damps the joint.")
+    i: float = tag("i_gain", default=0.1, doc="Integral gain of the PID controller.")
+    d: float = tag(
+        "d_gain",
+        default=0.01,
+        doc="Derivative gain of the PID controller. It is applied as damping of the joint.",
+    )
     index: float = tag(
-        "joint_index", default=0.0, doc="Axis of the joint. Only 0, the first axis, is supported."
+        "joint_index",
+        default=0.0,
+        doc="Index of the controlled axis of the joint. Only 0, the first axis, is supported.",
     )
     velocity: bool = tag(
         "use_velocity_commands",
         default=False,
-        doc="Move to the target with a velocity of at most `<cmd_max>`, regardless of the "
-        "load. The PID gains then have no effect.",
+        doc="Whether to move to the target at a velocity of at most `<cmd_max>`, regardless of "
+        "the load. The PID gains then have no effect.",
     )
     initial: float = tag(
-        "initial_position", default=0.0, unit="rad or m", most=FARTHEST, doc="Initial target."
+        "initial_position",
+        default=0.0,
+        unit="rad or m",
+        most=FARTHEST,
+        doc="Target position until the first message.",
     )
 
 
@@ -76,15 +102,21 @@ class JointVelocityParameters(_ServoParameters):
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the target (Float64). Default: `/model/<model>/joint/<joint>/cmd_vel`.",
+        doc="Topic of the target velocities (Float64). Default: "
+        "`/model/<model>/joint/<joint>/cmd_vel`.",
     )
     force: bool = tag(
         "use_force_commands",
         default=False,
-        doc="Control the velocity with the PID controller instead of a velocity servo.",
+        doc="Whether the PID controller controls the velocity. If false, a velocity servo does, "
+        "and the tags of the PID controller have no effect.",
     )
     initial: float = tag(
-        "initial_velocity", default=0.0, unit="rad/s or m/s", most=FARTHEST, doc="Initial target."
+        "initial_velocity",
+        default=0.0,
+        unit="rad/s or m/s",
+        most=FARTHEST,
+        doc="Target velocity until the first message.",
     )
 
 
@@ -145,7 +177,8 @@ def _gains(config: _ServoParameters) -> PidGains:
 class JointPositionController(Plugin[JointPositionParameters]):
     """Moves a joint to the last commanded position and holds it there.
 
-    Until the first command, the target is ``<initial_position>``. Original plugin:
+    Until the first command, the target position is ``<initial_position>``. By default, a PID
+    controller computes the force or torque on the joint. Original plugin:
     ``JointPositionController`` in gz-sim.
     """
 
@@ -177,10 +210,11 @@ class JointPositionController(Plugin[JointPositionParameters]):
 
 
 class JointController(Plugin[JointVelocityParameters]):
-    """Holds a joint at the last commanded velocity.
+    """Moves a joint at the last commanded velocity.
 
-    Until the first command, the target is ``<initial_velocity>``. Original plugin:
-    ``JointController`` in gz-sim.
+    Until the first command, the target velocity is ``<initial_velocity>``. By default, a velocity
+    servo controls the velocity. With ``<use_force_commands>``, a PID controller does. Original
+    plugin: ``JointController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)
@@ -205,14 +239,16 @@ class JointController(Plugin[JointVelocityParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ApplyJointForceParameters:
-    joint: str = tag("joint_name", role="joint", doc="Joint on which the force acts.")
+    joint: str = tag(
+        "joint_name", role="joint", doc="Joint to which the force or torque is applied."
+    )
 
 
 class ApplyJointForce(Plugin[ApplyJointForceParameters]):
-    """Applies the last commanded force or torque to a joint.
+    """Applies the last commanded force or torque to a joint until the next command.
 
-    The command is a torque in N m for a revolute joint, and a force in N for a prismatic joint. The
-    topic (Float64) is ``/model/<model>/joint/<joint>/cmd_force``. Original plugin:
+    Commands are received on ``/model/<model>/joint/<joint>/cmd_force`` (Float64). A command is a
+    torque in N m for a revolute joint, and a force in N for a prismatic joint. Original plugin:
     ``ApplyJointForce`` in gz-sim.
     """
 

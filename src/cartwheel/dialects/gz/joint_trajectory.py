@@ -40,7 +40,7 @@ class JointTrajectoryParameters:
     header_start: bool = tag(
         "use_header_start_time",
         default=False,
-        doc="Start trajectories at their header stamp instead of on arrival.",
+        doc="Whether to start a trajectory at its header stamp instead of on arrival.",
     )
     joints: tuple[str, ...] = tag(
         "joint_name",
@@ -98,13 +98,16 @@ class JointTrajectoryParameters:
 
 
 class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
-    """Drives joints to the points of a trajectory, one after the other.
+    """Moves joints to the points of a trajectory, one point after the other.
 
-    Each point is the target until its ``time_from_start`` has passed. Points are not interpolated,
-    so smooth motion requires closely spaced points. The force on a joint is the sum of the position
-    controller's output, the velocity controller's output and the point's effort. The progress,
-    published on ``<topic>_progress`` (Float32), is the number of the current point divided by the
-    total number of points. Original plugin: ``JointTrajectoryController`` in gz-sim.
+    Each point is the target until its ``time_from_start`` has passed. The plugin does not
+    interpolate between points, so smooth motion requires closely spaced points. The force or torque
+    on a joint is the sum of three values: the output of a position controller, the output of a
+    velocity controller, and the effort of the trajectory point.
+
+    The progress is published on ``<topic>_progress`` (Float32). It is the number of the current
+    point divided by the total number of points. Original plugin: ``JointTrajectoryController`` in
+    gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)

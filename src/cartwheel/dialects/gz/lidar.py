@@ -30,8 +30,9 @@ class GzLidarParameters:
     topic: str = tag(
         "topic",
         default="",
-        doc="Topic of the LaserScan. The PointCloud2 is published on `<topic>/points`. "
-        "Default: `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
+        doc="Topic of the LaserScan messages. The PointCloud2 messages are published on "
+        "`<topic>/points`. Default: "
+        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
     )
     frame: str = tag(
         "gz_frame_id",
@@ -43,13 +44,13 @@ class GzLidarParameters:
 
 
 class GzLidar(Plugin[GzLidarParameters]):
-    """Publishes the middle row of a lidar as a LaserScan, and all rows as a PointCloud2.
+    """Publishes a lidar's middle row of rays as a LaserScan, and all rows as a PointCloud2.
 
-    The cloud is organised: it has one row of points for each row of rays, starting with the lowest.
-    A ray that hits nothing results in a point with infinite coordinates.
+    The point cloud is organised: it has one row of points for each row of rays, starting with the
+    lowest row. A ray without a hit results in a point with infinite coordinates.
 
-    ``gpu_lidar`` and ``gpu_ray`` sensors measure the visual geometry; ``lidar`` and ``ray`` sensors
-    measure the collision geometry.
+    ``gpu_lidar`` and ``gpu_ray`` sensors detect visual shapes; ``lidar`` and ``ray`` sensors detect
+    collision shapes.
 
     Original sensor: ``GpuLidarSensor`` in gz-sensors. The message types are the same as in
     ros_gz_bridge.

@@ -25,9 +25,17 @@ class LogicalCameraParameters:
     )
     frame: str = frame_tag()
     near: float = tag(
-        "logical_camera/near", default=0.0, unit="m", doc="Distance to the near plane."
+        "logical_camera/near",
+        default=0.0,
+        unit="m",
+        doc="Distance from the sensor to the near plane of its view.",
     )
-    far: float = tag("logical_camera/far", default=1.0, unit="m", doc="Distance to the far plane.")
+    far: float = tag(
+        "logical_camera/far",
+        default=1.0,
+        unit="m",
+        doc="Distance from the sensor to the far plane of its view.",
+    )
     view: float = tag(
         "logical_camera/horizontal_fov", default=1.0, unit="rad", doc="Horizontal field of view."
     )
@@ -37,12 +45,12 @@ class LogicalCameraParameters:
 
 
 class LogicalCamera(Plugin[LogicalCameraParameters]):
-    """Publishes the models in view, each with its pose relative to the sensor.
+    """Publishes the names of the models in view, and their poses relative to the sensor.
 
-    The sensor looks along its x axis. A model is in view if the origin of its frame is in view.
-    Models do not occlude each other. The message field ``pose`` is the pose of the sensor in the
-    world. Original sensor: ``LogicalCameraSensor`` in gz-sensors. The message type is the same as
-    in ros_gz_bridge.
+    The sensor looks along its x axis. A model is in view if the origin of its model frame is in
+    view, even if another model hides it. The message field ``pose`` is the pose of the sensor in
+    the world. Original sensor: ``LogicalCameraSensor`` in gz-sensors. The message type is the same
+    as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -25,7 +25,7 @@ class GzMagnetometerParameters:
 
 
 class GzMagnetometer(Plugin[GzMagnetometerParameters]):
-    """Publishes the world's ``<magnetic_field>`` in the frame of a ``magnetometer`` sensor, in T.
+    """Publishes the world's ``<magnetic_field>`` in the frame of a magnetometer, in tesla.
 
     Original sensor: ``MagnetometerSensor`` in gz-sensors.
     """

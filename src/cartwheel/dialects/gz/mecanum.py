@@ -73,12 +73,12 @@ class MecanumParameters(GzCommonLimits):
 
 
 class GzMecanumDrive(Plugin[MecanumParameters]):
-    """Drives four mecanum wheels from Twist commands and publishes odometry.
+    """Drives four mecanum wheels as commanded by Twist messages, and publishes odometry.
 
-    Friction moves the robot if the wheels' collisions represent rollers: they contain
-    ``<fdir1 gz:expressed_in="...">`` and different values of ``<mu>`` and ``<mu2>``. Otherwise, a
-    velocity controller applies a force to the robot, as with ``libgazebo_ros_planar_move.so``, and
-    the wheels turn at the corresponding speeds.
+    If the friction of the wheels' collisions models the rollers, contact forces move the robot.
+    This is the case if the collisions contain ``<fdir1 gz:expressed_in="...">`` and different
+    values of ``<mu>`` and ``<mu2>``. Otherwise, a velocity controller applies a force to the robot,
+    as with ``libgazebo_ros_planar_move.so``, and the wheels turn at the corresponding speeds.
 
     The odometry is computed from the rotation of the wheels. Original plugin: ``MecanumDrive`` in
     gz-sim.

@@ -24,10 +24,11 @@ class GzNavSatParameters:
 
 
 class GzNavSat(Plugin[GzNavSatParameters]):
-    """Publishes the geographic position of a ``navsat`` sensor.
+    """Publishes the latitude, longitude and altitude that a ``navsat`` sensor measures.
 
-    The position is relative to the world's ``<spherical_coordinates>``. The noise in the sensor's
-    ``<navsat>`` is applied, in m. Original sensor: ``NavSatSensor`` in gz-sensors.
+    The world's ``<spherical_coordinates>`` define the geographic position of the world's origin.
+    The noise that the sensor's ``<navsat>`` specifies is added, in m. Original sensor:
+    ``NavSatSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

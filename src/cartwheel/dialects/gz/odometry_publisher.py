@@ -18,16 +18,19 @@ from cartwheel.geometry import Pose, quat_from_rpy
 @dataclass(frozen=True, kw_only=True, slots=True)
 class OdometryPublisherParameters:
     frame: str = tag(
-        "odom_frame", default="", doc="Reference frame of the pose. Default: `<model>/odom`."
+        "odom_frame", default="", doc="Frame ID of the messages. Default: `<model>/odom`."
     )
     base_frame: str = tag(
         "robot_base_frame",
         default="",
         role="frame",
-        doc="Child frame of the odometry. Default: `<model>/base_footprint`.",
+        doc="Child frame ID of the messages. Default: `<model>/base_footprint`.",
     )
     rate: float = tag(
-        "odom_publish_frequency", default=50.0, unit="Hz", doc="Publish rate of all topics."
+        "odom_publish_frequency",
+        default=50.0,
+        unit="Hz",
+        doc="Publish rate of all topics. If 0, messages are published at every simulation step.",
     )
     topic: str = tag(
         "odom_topic",
@@ -43,12 +46,13 @@ class OdometryPublisherParameters:
     tf_topic: str = tag(
         "tf_topic",
         default="",
-        doc="Topic of the TFMessage. Default: `/model/<model>/pose`.",
+        doc="Topic of the transforms (TFMessage). Default: `/model/<model>/pose`.",
     )
     dimensions: Literal["2", "3"] = tag(
         "dimensions",
         default="2",
-        doc="`2`: pose and twist are planar (x, y, yaw). `3`: they are three-dimensional.",
+        doc="With `2`, the pose and the twist are planar (x, y, yaw). With `3`, they are "
+        "three-dimensional.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyz_offset",
@@ -71,7 +75,7 @@ class OdometryPublisherParameters:
 
 
 class OdometryPublisher(Plugin[OdometryPublisherParameters]):
-    """Publishes the model's ground-truth pose in the world, with the twist in the model frame.
+    """Publishes the model's ground-truth pose in the world, and its twist in the model frame.
 
     Original plugin: ``OdometryPublisher`` in gz-sim.
     """

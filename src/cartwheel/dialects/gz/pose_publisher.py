@@ -14,49 +14,54 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PosePublisherParameters:
     links: bool = tag(
-        "publish_link_pose", default=True, doc="Publish the poses of links, relative to the model."
+        "publish_link_pose",
+        default=True,
+        doc="Whether to publish the poses of links, relative to the model.",
     )
     visuals: bool = tag(
         "publish_visual_pose",
         default=False,
-        doc="Publish the poses of visuals, relative to their links.",
+        doc="Whether to publish the poses of visuals, relative to their links.",
     )
     collisions: bool = tag(
         "publish_collision_pose",
         default=False,
-        doc="Publish the poses of collisions, relative to their links.",
+        doc="Whether to publish the poses of collisions, relative to their links.",
     )
     sensors: bool = tag(
         "publish_sensor_pose",
         default=False,
-        doc="Publish the poses of sensors, relative to their links.",
+        doc="Whether to publish the poses of sensors, relative to their links.",
     )
     model: bool | None = tag(
         "publish_model_pose",
         default=None,
-        doc="Publish the pose of the model in the world. Default: `<publish_nested_model_pose>`.",
+        doc="Whether to publish the pose of the model in the world. Default: "
+        "`<publish_nested_model_pose>`.",
     )
     nested: bool = tag(
         "publish_nested_model_pose",
         default=False,
-        doc="Default of `<publish_model_pose>`. Nested models have no separate frames.",
+        doc="Sets the default of `<publish_model_pose>`. It has no other effect, because nested "
+        "models have no frames of their own.",
     )
     vector: bool = tag(
         "use_pose_vector_msg",
         default=False,
-        doc="Publish one TFMessage with all poses instead of one TransformStamped per pose.",
+        doc="Whether to publish all poses in one TFMessage, instead of one TransformStamped for "
+        "each pose.",
     )
     rate: float = tag(
         "update_frequency",
         default=-1.0,
         unit="Hz",
-        doc="Publish rate. 0 or less: every step.",
+        doc="Publish rate. If 0 or negative, messages are published at every simulation step.",
     )
     static: bool = tag(
         "static_publisher",
         default=False,
-        doc="Publish constant poses on `<topic>_static` instead of `<topic>`. A pose is "
-        "constant if no joint can change it.",
+        doc="Whether to publish constant poses on `<topic>_static` instead of `<topic>`. A pose "
+        "is constant if no joint can change it.",
     )
     static_rate: float | None = tag(
         "static_update_frequency",
@@ -70,9 +75,11 @@ class PosePublisherParameters:
 class PosePublisher(Plugin[PosePublisherParameters]):
     """Publishes the poses of a model and of its links, visuals, collisions and sensors.
 
-    Each pose is relative to the parent frame. Frames are named ``<model>``, ``<model>/<link>`` and
-    ``<model>/<link>/<part>``. Original plugin: ``PosePublisher`` in gz-sim. The message types are
-    the same as in ros_gz_bridge.
+    Each pose is relative to its parent: the pose of a link is relative to the model, and the poses
+    of visuals, collisions and sensors are relative to their links. The frames are named
+    ``<model>``, ``<model>/<link>`` and ``<model>/<link>/<name>``, where ``<name>`` is the visual,
+    collision or sensor. Original plugin: ``PosePublisher`` in gz-sim. The message types are the
+    same as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-pose-publisher-system",)

@@ -40,7 +40,7 @@ class VelocityControlParameters:
 
 
 class VelocityControl(Plugin[VelocityControlParameters]):
-    """Holds the model at the commanded linear and angular velocity, expressed in the model frame.
+    """Moves the model at the commanded linear and angular velocity, expressed in its own frame.
 
     All six degrees of freedom are controlled. Without an initial velocity, the model moves freely
     until the first command. Original plugin: ``VelocityControl`` in gz-sim.

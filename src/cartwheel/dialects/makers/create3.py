@@ -37,11 +37,12 @@ class Create3BumperParameters:
 
 
 class Create3Bumper(Plugin[Create3BumperParameters]):
-    """Publishes the pressed zone of the bumper as a HazardDetection of type BUMP.
+    """Publishes a HazardDetection of type BUMP while the bumper is pressed.
 
-    The frame ID is the name of one of five zones, such as ``bump_front_left``. If several zones are
-    pressed, the zone with the deepest contact is published. Original plugin: ``gazebo_ros_bumper``
-    in the package ``irobot_create_gazebo_plugins``.
+    The bumper has five zones. The frame ID of a message is the name of the pressed zone, such as
+    ``bump_front_left``. If several zones are pressed, the zone with the deepest contact is
+    published. Original plugin: ``gazebo_ros_bumper`` in the package
+    ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
@@ -65,15 +66,15 @@ class Create3CliffParameters:
         "detection_threshold",
         default=0.01,
         unit="m",
-        doc="A cliff is reported if the floor is at least this far from the sensor.",
+        doc="Distance between the sensor and the floor at which a cliff is reported.",
     )
     frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
 
 
 class Create3Cliff(Plugin[Create3CliffParameters]):
-    """Publishes a HazardDetection of type CLIFF while the floor is too far from a ray sensor.
+    """Publishes a HazardDetection of type CLIFF while the floor is too far below a ray sensor.
 
-    The smallest range of the sensor is compared with ``<detection_threshold>``. Original plugin:
+    The distance to the floor is the smallest range that the sensor measures. Original plugin:
     ``gazebo_ros_cliff_sensor`` in the package ``irobot_create_gazebo_plugins``.
     """
 
@@ -105,7 +106,7 @@ class Create3IntensityParameters:
 
 
 class Create3Intensity(Plugin[Create3IntensityParameters]):
-    """Publishes the intensity of reflected infrared light.
+    """Publishes the intensity of the infrared light that the nearest obstacle reflects.
 
     The intensity is ``3500 exp(-2 e d / max)``, where e is Euler's number, d is the distance to the
     nearest obstacle and max is the maximum range of the ray sensor. Original plugin:
@@ -147,10 +148,10 @@ class Create3ImuParameters:
 
 
 class Create3Imu(Plugin[Create3ImuParameters]):
-    """Publishes the measurements of an IMU sensor. Accelerations exclude gravity.
+    """Publishes the measurements of an IMU sensor. The acceleration does not include gravity.
 
-    Original plugin: ``gazebo_ros_imu`` in the package ``irobot_create_gazebo_plugins``, which also
-    excludes gravity.
+    Original plugin: ``gazebo_ros_imu`` in the package ``irobot_create_gazebo_plugins``, which does
+    not include gravity either.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
@@ -178,7 +179,7 @@ class Create3MouseParameters:
 
 
 class Create3Mouse(Plugin[Create3MouseParameters]):
-    """Publishes the accumulated travel of a link along its own x and y axes, in m.
+    """Publishes the distance, in m, that a link has travelled along its own x and y axes.
 
     Original plugin: ``gazebo_ros_optical_mouse`` in the package ``irobot_create_gazebo_plugins``.
     """
@@ -200,19 +201,23 @@ class Create3WheelDropParameters:
         "detection_threshold",
         default=0.7,
         unit="m",
-        doc="Joint position of a fully dropped wheel. A wheel drop is reported when the "
-        "position reaches 95 % of this value, until it is below 75 %.",
+        doc="Joint position of a fully dropped wheel. The plugin reports a wheel drop from the "
+        "time when the position reaches 95 % of this value until it falls below 75 %.",
     )
     frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
-    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Rate of checks and messages.")
+    rate: float = tag(
+        "update_rate",
+        default=62.0,
+        unit="Hz",
+        doc="Rate at which the joint is checked and messages are published.",
+    )
 
 
 class Create3WheelDrop(Plugin[Create3WheelDropParameters]):
     """Publishes a HazardDetection of type WHEEL_DROP while a wheel is dropped.
 
-    A wheel is dropped when its suspension joint has extended, for example because the robot was
-    lifted. Original plugin: ``gazebo_ros_wheel_drop`` in the package
-    ``irobot_create_gazebo_plugins``.
+    A wheel drops when its suspension joint extends, for example when the robot is lifted. Original
+    plugin: ``gazebo_ros_wheel_drop`` in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_wheel_drop.so",)

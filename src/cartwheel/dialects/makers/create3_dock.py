@@ -35,7 +35,12 @@ def _dock(config: _Dock) -> DockConfig:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3OpcodeParameters(_Dock):
-    rate: float = tag("update_rate", default=31.0, unit="Hz", doc="Rate of the codes.")
+    rate: float = tag(
+        "update_rate",
+        default=31.0,
+        unit="Hz",
+        doc="Rate at which the plugin checks which codes the receivers detect, and publishes them.",
+    )
     omni_opening: float = tag(
         "sensor_0_fov", default=1.0, unit="rad", doc="Field of view of the top receiver."
     )
@@ -51,12 +56,12 @@ class Create3OpcodeParameters(_Dock):
 
 
 class Create3Opcode(Plugin[Create3OpcodeParameters]):
-    """Publishes the infrared codes from the dock that the robot's two receivers detect.
+    """Publishes the infrared codes of a dock that the robot's two receivers detect.
 
-    The dock emits three infrared signals: the halo, which surrounds it, and the red and the green
-    buoy. A receiver detects a signal if the distance to the dock is below the range of the receiver
-    plus the range of the signal. Original plugin: ``gazebo_ros_ir_opcode`` in the package
-    ``irobot_create_gazebo_plugins``.
+    The dock emits three infrared signals: the halo in all directions, and the red and the green
+    buoy, which are two beams. A receiver detects a signal if the dock is in the receiver's field of
+    view, and closer than the range of the receiver plus the range of the signal. Original plugin:
+    ``gazebo_ros_ir_opcode`` in the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_opcode.so",)
@@ -83,16 +88,16 @@ class Create3DockStatusParameters(_Dock):
         "update_rate",
         default=1.0,
         unit="Hz",
-        doc="Publish rate. Changes are published immediately.",
+        doc="Publish rate. A change of the status is also published immediately.",
     )
 
 
 class Create3DockStatus(Plugin[Create3DockStatusParameters]):
-    """Publishes whether the robot detects its dock and whether it is docked.
+    """Publishes whether the robot detects a dock, and whether it is docked.
 
-    The dock counts as visible while its codes are received on ``ir_opcode``. Nothing is published
-    if the world has no dock. Original plugin: ``gazebo_ros_docking_status`` in the package
-    ``irobot_create_gazebo_plugins``.
+    The robot detects the dock while the dock's infrared codes are received on ``ir_opcode``. If the
+    world contains no dock, nothing is published. Original plugin: ``gazebo_ros_docking_status`` in
+    the package ``irobot_create_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_docking_status.so",)

@@ -21,49 +21,56 @@ class ForceBasedMoveParameters:
         "robotBaseFrame",
         default="base_footprint",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
     rate: float = tag(
         "odometryRate",
         default=20.0,
         unit="Hz",
-        doc="Publish rate of odometry and transform. 0 or less: neither is published.",
+        doc="Publish rate of the odometry and its transform. If 0 or negative, neither is "
+        "published.",
     )
     publish_tf: bool = tag(
-        "publishOdometryTf", default=True, doc="Publish the transform of the odometry."
+        "publishOdometryTf",
+        default=True,
+        doc="Whether to publish the odometry as a transform on `/tf`.",
     )
     timeout: float = tag(
         "cmdVelTimeOut",
         "commandWatchdog",
         default=0.25,
         unit="s",
-        doc="The robot stops after this time without a command.",
+        doc="Time without a command after which the robot stops.",
     )
     x_gain: float = tag(
-        "x_velocity_p_gain", default=10000.0, unit="N s/m", doc="Force per linear velocity error."
+        "x_velocity_p_gain",
+        default=10000.0,
+        unit="N s/m",
+        doc="Force divided by the error of the linear velocity.",
     )
     y_gain: float = tag(
         "y_velocity_p_gain",
         default=10000.0,
         unit="N s/m",
-        doc="Must equal `<x_velocity_p_gain>`, which is used for both directions.",
+        doc="Must be equal to `<x_velocity_p_gain>`, because one gain applies to both directions.",
     )
     yaw_gain: float = tag(
         "yaw_velocity_p_gain",
         default=100.0,
         unit="N m s/rad",
-        doc="Torque per angular velocity error.",
+        doc="Torque divided by the error of the angular velocity.",
     )
 
 
 class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
-    """Applies forces to make the robot follow Twist commands, and publishes odometry.
+    """Applies forces that move the robot as commanded by Twist messages, and publishes odometry.
 
-    The robot moves in the plane: it follows ``linear.x``, ``linear.y`` and ``angular.z``. The force
-    and the torque act at the centre of mass and are the gains times the velocity errors. The
-    odometry is relative to the robot's initial pose. Original packages:
-    ``ridgeback_gazebo_plugins`` and ``hector_gazebo_plugins``.
+    The robot moves in the xy plane, with the commanded ``linear.x``, ``linear.y`` and
+    ``angular.z``. The force is a gain times the error of the linear velocity, and the torque is a
+    gain times the error of the angular velocity. Both act at the centre of mass. The odometry is
+    relative to the robot's initial pose. Original packages: ``ridgeback_gazebo_plugins`` and
+    ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

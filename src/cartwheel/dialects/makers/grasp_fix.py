@@ -21,13 +21,13 @@ class GraspFixParameters:
         "arm",
         default=(),
         nested=True,
-        doc="A hand: `<arm_name>`, `<palm_link>`, and a `<gripper_link>` for each finger. Repeat "
-        "the tag for each hand.",
+        doc="A hand. The tags inside are `<arm_name>`, `<palm_link>`, and a `<gripper_link>` "
+        "for each finger. Repeat the tag for each hand.",
     )
     angle: float = tag(
         "forces_angle_tolerance",
         default=120.0,
-        unit="°",
+        unit="degrees",
         doc="Two fingers grip an object if the angle between their forces exceeds this "
         "value, which must be between 90 and 180.",
     )
@@ -51,17 +51,18 @@ class GraspFixParameters:
     pass_through: bool = tag(
         "disable_collisions_on_attach",
         default=False,
-        doc="Disable the collisions of the attached object.",
+        doc="Whether to disable the collisions of the attached object.",
     )
     contact_topic: str = tag("contact_topic", default="", doc="No effect.")
 
 
 class GraspFix(Plugin[GraspFixParameters]):
-    """Attaches an object to the palm while fingers grip it from opposite sides.
+    """Attaches an object to the palm of a hand while fingers grip it from opposite sides.
 
-    Contacts are checked at ``<update_rate>``. A collision is gripped if the angle between the
-    forces of two fingers on it exceeds ``<forces_angle_tolerance>``, and the smaller force is at
-    least 0.3 times the larger one. Each check adds 1 to the grip counter of a gripped collision,
+    Contacts are checked at ``<update_rate>``. A collision of an object counts as gripped if two
+    fingers press on it from sufficiently different directions: the angle between their forces must
+    exceed ``<forces_angle_tolerance>``, and the smaller force must be at least 0.3 times the larger
+    one. Each collision has a grip counter. Each check adds 1 to the counters of gripped collisions,
     and subtracts 1 from all other counters.
 
     An object is attached to the palm by a fixed joint when the grip counter of one of its

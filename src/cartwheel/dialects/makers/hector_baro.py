@@ -27,10 +27,16 @@ class HectorBaroParameters:
         doc="Topic of the Altimeter messages. Not published if empty.",
     )
     frame: str = tag(
-        "frameId", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+        "frameId",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
     )
     update_rate: float = tag(
-        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+        "updateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     elevation: float = tag(
         "elevation", default=0.0, unit="m", doc="Altitude of the world's origin above sea level."
@@ -51,12 +57,12 @@ class HectorBaroParameters:
 
 
 class HectorBaro(Plugin[HectorBaroParameters]):
-    """Publishes a link's z position in the world, its altitude above sea level and the pressure.
+    """Publishes a link's height in the world, its altitude above sea level and the air pressure.
 
-    The z position has an offset, a drift, noise and a scale factor, as in
-    ``libhector_gazebo_ros_imu.so``. The air pressure is computed from the measured altitude:
-    ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``. Original plugin: ``gazebo_ros_baro`` in
-    the package ``hector_quadrotor_gazebo_plugins``.
+    The height has the same kinds of errors as the acceleration in ``libhector_gazebo_ros_imu.so``:
+    an offset, a drift, noise and a scale factor. The air pressure is computed from the measured
+    altitude: ``pressure = qnh (1 - altitude / 44330 m) ^ 5.263157``. Original plugin:
+    ``gazebo_ros_baro`` in the package ``hector_quadrotor_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_baro.so",)

@@ -32,12 +32,16 @@ class HectorGpsParameters:
     )
     frame: str = tag("frameId", default="/world", role="frame", doc="Frame ID of the messages.")
     update_rate: float = tag(
-        "updateRate", default=4.0, unit="Hz", doc="Publish rate. 0: every step."
+        "updateRate",
+        default=4.0,
+        unit="Hz",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     use_world: bool = tag(
         "useWorldSphericalCoordinates",
         default=False,
-        doc="Use the world's `<spherical_coordinates>` as the default reference.",
+        doc="Whether the world's `<spherical_coordinates>` are the defaults of the four "
+        "reference tags below.",
     )
     latitude: float | None = tag(
         "referenceLatitude",
@@ -117,10 +121,11 @@ class HectorGpsParameters:
 class HectorGps(Plugin[HectorGpsParameters]):
     """Publishes the latitude, longitude, altitude and velocity of a link.
 
-    As in the original plugin, the Earth is treated as flat around the reference point. Within a few
-    kilometres, the error is below 1 m. Position and velocity have an offset, a drift, noise and a
-    scale factor, as in ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_gps`` in the
-    package ``hector_gazebo_plugins``.
+    As in the original plugin, the Earth is treated as flat around the reference point, which is the
+    world's origin. Within a few kilometres, the resulting error is below 1 m. The position and the
+    velocity have the same kinds of errors as the acceleration in ``libhector_gazebo_ros_imu.so``:
+    an offset, a drift, noise and a scale factor. Original plugin: ``gazebo_ros_gps`` in the package
+    ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)

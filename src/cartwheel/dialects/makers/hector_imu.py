@@ -26,19 +26,26 @@ class HectorImuParameters:
     bias_topic: str | None = tag(
         "biasTopicName",
         default=None,
-        doc="Topic of the current errors (Imu). Default: `<topic>/bias`.",
+        doc="Topic of Imu messages that contain the current errors of the measurements. "
+        "Default: `<topic>/bias`.",
     )
     service: str | None = tag(
         "serviceName",
         default=None,
-        doc="Service (Empty) that removes the drift of the angular velocity. Default: "
-        "`<topic>/calibrate`.",
+        doc="Name of a service of type Empty that removes the drift of the angular velocity. "
+        "Default: `<topic>/calibrate`.",
     )
     frame: str = tag(
-        "frameId", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+        "frameId",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
     )
     update_rate: float = tag(
-        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+        "updateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyzOffset",
@@ -141,14 +148,17 @@ class HectorImuParameters:
 
 
 class HectorImu(Plugin[HectorImuParameters]):
-    """Publishes angular velocity, acceleration and orientation of a link, with noise and drift.
+    """Publishes the angular velocity, acceleration and orientation of a link, with noise and drift.
 
-    The acceleration includes the reaction to gravity. Each quantity has a constant offset, a slow
-    drift and noise. Acceleration and angular velocity also have a scale factor. As in the original
-    plugin, the acceleration error also tilts the orientation. The services
-    ``<topic>/set_accel_bias`` and ``<topic>/set_rate_bias`` set the current drift of the
-    acceleration and of the angular velocity. Original plugin: ``gazebo_ros_imu`` in the package
-    ``hector_gazebo_plugins``. See also REP 145.
+    As REP 145 requires, the acceleration includes gravity: an IMU at rest measures 9.8 m/s²
+    upwards. The acceleration, the angular velocity and the yaw angle have three errors: a constant
+    offset, a slow drift and noise. The acceleration and the angular velocity also have a scale
+    factor. As in the original plugin, an error of the acceleration also tilts the published
+    orientation.
+
+    The service ``<topic>/set_accel_bias`` sets the current drift of the acceleration, and
+    ``<topic>/set_rate_bias`` sets the current drift of the angular velocity. Original plugin:
+    ``gazebo_ros_imu`` in the package ``hector_gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

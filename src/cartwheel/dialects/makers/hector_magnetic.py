@@ -34,18 +34,27 @@ class HectorMagneticParameters:
         doc="Topic of the Vector3Stamped or MagneticField messages.",
     )
     frame: str = tag(
-        "frameId", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+        "frameId",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
     )
     update_rate: float = tag(
-        "updateRate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+        "updateRate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     magnitude: float = tag(
-        "magnitude", default=1.0, doc="Magnitude of the field. The messages use the same unit."
+        "magnitude",
+        default=1.0,
+        doc="Magnitude of the field, in the unit that the messages should have.",
     )
     use_world: bool = tag(
         "useWorldSphericalCoordinates",
         default=False,
-        doc="Use the heading in the world's `<spherical_coordinates>`.",
+        doc="Whether the heading in the world's `<spherical_coordinates>` is the default of "
+        "`<referenceHeading>`.",
     )
     heading: float | None = tag(
         "referenceHeading",
@@ -69,9 +78,11 @@ class HectorMagneticParameters:
     as_field: bool = tag(
         "useMagneticFieldMsgs",
         default=False,
-        doc="Publish MagneticField messages instead of Vector3Stamped.",
+        doc="Whether to publish MagneticField messages instead of Vector3Stamped messages.",
     )
-    offset: tuple[float, float, float] = tag("offset", default=_NONE, doc="Constant error.")
+    offset: tuple[float, float, float] = tag(
+        "offset", default=_NONE, doc="Constant error of the measured field."
+    )
     drift: tuple[float, float, float] = tag(
         "drift", default=_NONE, doc="Standard deviation of the drift."
     )
@@ -92,9 +103,9 @@ class HectorMagneticParameters:
 class HectorMagnetic(Plugin[HectorMagneticParameters]):
     """Publishes the Earth's magnetic field in the link frame.
 
-    The field has an offset, a drift, noise and a scale factor, as in
-    ``libhector_gazebo_ros_imu.so``. Original plugin: ``gazebo_ros_magnetic`` in the package
-    ``hector_gazebo_plugins``.
+    The measured field has the same kinds of errors as the acceleration in
+    ``libhector_gazebo_ros_imu.so``: an offset, a drift, noise and a scale factor. Original plugin:
+    ``gazebo_ros_magnetic`` in the package ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)

@@ -37,15 +37,16 @@ class SonarParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
+        doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
+        "applies.",
     )
 
 
 class HectorSonar(Plugin[SonarParameters]):
-    """Publishes the smallest range of a ray sensor as a Range message of type ultrasound.
+    """Publishes the smallest range that a ray sensor measures, as an ultrasound Range message.
 
-    If nothing is hit, the maximum range is published. Original plugin: ``gazebo_ros_sonar`` in the
-    package ``hector_gazebo_plugins``.
+    If no ray hits an object, the maximum range is published. Original plugin: ``gazebo_ros_sonar``
+    in the package ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)

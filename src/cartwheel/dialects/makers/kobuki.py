@@ -47,7 +47,7 @@ class KobukiParameters:
     timeout: float = tag(
         "velocity_command_timeout",
         unit="s",
-        doc="The robot stops after this time without a command.",
+        doc="Time without a command after which the robot stops.",
     )
     cliff_left: str = tag(
         "cliff_sensor_left_name", doc="Name of the left ray sensor, which faces the floor."
@@ -61,7 +61,7 @@ class KobukiParameters:
     cliff_threshold: float = tag(
         "cliff_detection_threshold",
         unit="m",
-        doc="A cliff is reported if the floor is at least this far from the sensor.",
+        doc="Distance between the sensor and the floor at which a cliff is reported.",
     )
     bumper: str = tag("bumper_name", doc="Name of the bumper's contact sensor.")
     drop_left: str = tag(
@@ -76,24 +76,24 @@ class KobukiParameters:
     )
     imu: str = tag("imu_name", doc="Name of the imu sensor.")
     publish_tf: bool = tag(
-        "publish_tf", default=False, doc="Publish the transform of the odometry."
+        "publish_tf", default=False, doc="Whether to publish the odometry as a transform on `/tf`."
     )
     rate: float = tag(
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate of all topics. 0: every step.",
+        doc="Publish rate of all topics. If 0, messages are published at every simulation step.",
     )
 
 
 class Kobuki(Plugin[KobukiParameters]):
-    """Drives a Kobuki base and publishes odometry and IMU, bumper, cliff and wheel drop data.
+    """Drives a Kobuki base, and publishes its odometry, IMU data, and bumper and cliff events.
 
-    The odometry uses the travelled distance of the wheels and the rotation from the gyroscope. A
-    contact within 30° of straight ahead presses the centre bumper. A contact from 30° to 90°
-    presses the left or right bumper. Bumper, cliff and wheel drop events are published when their
-    state changes. The robot stops while its motor power is off. Original package:
-    ``kobuki_gazebo_plugins``.
+    The odometry is computed from the distances that the wheels travel and the angular velocity that
+    the IMU measures. A contact within 30° of the forward direction presses the centre bumper. A
+    contact between 30° and 90° presses the left or right bumper. Bumper, cliff and wheel drop
+    events are published when their state changes. The robot stops while its motor power is off.
+    Original package: ``kobuki_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_kobuki.so",)

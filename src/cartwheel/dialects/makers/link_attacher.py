@@ -85,8 +85,9 @@ class LinkAttacherRos2(_LinkAttacher):
     """Attaches and detaches any two links in the world through ROS 2 services.
 
     Attached links keep their relative pose, as with a fixed joint. Any number of pairs can be
-    attached at the same time; the original plugin supports only one pair. Failed requests return
-    ``success: false`` with a message. Original plugin: ``IFRA_LinkAttacher`` by IFRA-Cranfield.
+    attached at the same time; the original plugin supports only one pair at a time. Failed requests
+    return ``success: false`` with a message. Original plugin: ``IFRA_LinkAttacher`` by
+    IFRA-Cranfield.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_link_attacher.so",)

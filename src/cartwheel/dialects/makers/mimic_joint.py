@@ -16,7 +16,9 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MimicJointParameters:
-    joint: str = tag("joint", default="left_joint", role="joint", doc="Joint to mimic.")
+    joint: str = tag(
+        "joint", default="left_joint", role="joint", doc="Joint whose position is mimicked."
+    )
     mimic_joint: str = tag(
         "mimicJoint", default="right_joint", role="joint", doc="Joint that mimics `<joint>`."
     )
@@ -24,14 +26,15 @@ class MimicJointParameters:
         "multiplier",
         default=1.0,
         most=MOST_RATIO,
-        doc="The position of `<mimicJoint>` is multiplier * position of `<joint>` + offset.",
+        doc="Factor in the position of `<mimicJoint>`, which is multiplier * position of "
+        "`<joint>` + offset.",
     )
     offset: float = tag(
         "offset",
         default=0.0,
         unit="rad or m",
         most=FARTHEST,
-        doc="Offset of the position of `<mimicJoint>`.",
+        doc="Offset in the position of `<mimicJoint>`.",
     )
     max_effort: float = tag(
         "maxEffort",
@@ -51,9 +54,9 @@ class MimicJointParameters:
 
 
 class MimicJoint(Plugin[MimicJointParameters]):
-    """Makes a joint mimic the position of another joint.
+    """Makes the position of a joint follow the position of another joint.
 
-    ``<mimic>`` in a URDF has the same effect without a plugin. Original plugin:
+    In a URDF, a joint with ``<mimic>`` has the same effect without a plugin. Original plugin:
     ``MimicJointPlugin`` in the package ``roboticsgroup_upatras_gazebo_plugins``.
     """
 
@@ -73,12 +76,14 @@ class MimicJoint(Plugin[MimicJointParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DifferentialParameters:
-    first: str = tag("jointA", default="left_joint", role="joint", doc="First joint.")
+    first: str = tag(
+        "jointA", default="left_joint", role="joint", doc="First of the two coupled joints."
+    )
     second: str = tag(
         "jointB",
         default="right_joint",
         role="joint",
-        doc="Second joint, which turns by the same angle.",
+        doc="Second of the two coupled joints. It turns by the same angle as the first one.",
     )
     force: float = tag(
         "forceConstant", default=0.0, unit="N m/rad", doc="No effect: the coupling is rigid."
@@ -86,7 +91,7 @@ class DifferentialParameters:
 
 
 class Differential(Plugin[DifferentialParameters]):
-    """Couples two joints so that their angles are equal, like a rocker-bogie differential.
+    """Couples two joints so that their angles are always equal, as in a rocker-bogie suspension.
 
     The coupling is rigid. In Gazebo, the joints are coupled by a spring with the stiffness
     ``<forceConstant>``. Original plugin: ``differential_plugin`` in the package

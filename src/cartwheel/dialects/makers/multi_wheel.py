@@ -54,26 +54,32 @@ class MultiWheelParameters:
         "robotBaseFrame",
         default="base_footprint",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
     rate: float = tag(
         "updateRate",
         default=100.0,
         unit="Hz",
-        doc="Rate of the control loop and of the topics. 0: every step.",
+        doc="Rate at which commands are applied and messages are published. If 0, both happen "
+        "at every simulation step.",
     )
     publish_tf: bool = tag(
-        "publishOdometryTf", default=True, doc="Publish the transform of the odometry."
+        "publishOdometryTf",
+        default=True,
+        doc="Whether to publish the odometry as a transform on `/tf`.",
     )
-    publish_message: bool = tag("publishOdometryMsg", default=True, doc="Publish the odometry.")
+    publish_message: bool = tag(
+        "publishOdometryMsg", default=True, doc="Whether to publish the odometry as messages."
+    )
 
 
 class MultiWheelDrive(Plugin[MultiWheelParameters]):
-    """Drives any number of wheels on each side from Twist commands and publishes odometry.
+    """Drives any number of left and right wheels as commanded by Twist messages.
 
-    All wheels on a side turn at the same speed. The odometry is the ground-truth pose. Original
-    plugin: ``diffdrive_plugin_multi_wheel`` in the package ``hector_gazebo_plugins``.
+    All wheels on a side turn at the same speed. The plugin also publishes odometry. The odometry is
+    the ground-truth pose. Original plugin: ``diffdrive_plugin_multi_wheel`` in the package
+    ``hector_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libdiffdrive_plugin_multi_wheel.so",)

@@ -31,11 +31,11 @@ class Px4MotorParameters(PropellerTags):
         unit="m/s",
         doc="Axial airspeed at which the thrust becomes 0.",
     )
-    reversible: bool = tag("reversible", default=False, doc="Allow negative thrust.")
+    reversible: bool = tag("reversible", default=False, doc="Whether the thrust can be negative.")
 
 
 class Px4MotorModel(Plugin[Px4MotorParameters]):
-    """Simulates a PX4 propeller, whose thrust decreases with airspeed.
+    """Simulates a propeller for PX4, whose thrust decreases with the airspeed.
 
     Commands are received as mav_msgs/Actuators messages instead of through PX4's own protocol.
     Original plugin: ``gazebo_motor_model`` in ``PX4-SITL_gazebo-classic``.

@@ -57,19 +57,22 @@ class RealSenseParameters:
         "colorUpdateRate",
         default=0.0,
         unit="Hz",
-        doc="Rate of the colour images, at most the sensor's. 0: the sensor's rate.",
+        doc="Rate of the colour images, limited to the sensor's `<update_rate>`. If 0, the "
+        "sensor's rate applies.",
     )
     infrared_rate: float = tag(
         "infraredUpdateRate",
         default=0.0,
         unit="Hz",
-        doc="Rate of the infrared images, at most the sensor's. 0: the sensor's rate.",
+        doc="Rate of the infrared images, limited to the sensor's `<update_rate>`. If 0, the "
+        "sensor's rate applies.",
     )
     depth_rate: float = tag(
         "depthUpdateRate",
         default=0.0,
         unit="Hz",
-        doc="Rate of the depth images, at most the sensor's. 0: the sensor's rate.",
+        doc="Rate of the depth images, limited to the sensor's `<update_rate>`. If 0, the "
+        "sensor's rate applies.",
     )
     nearest: float = tag(
         "rangeMinDepth",
@@ -83,7 +86,7 @@ class RealSenseParameters:
         unit="m",
         doc="Depths at or above this value are published as 0.",
     )
-    points: bool = tag("pointCloud", default=False, doc="Publish point clouds.")
+    points: bool = tag("pointCloud", default=False, doc="Whether to publish point clouds.")
     points_nearest: float = tag(
         "pointCloudCutoff",
         default=0.0,
@@ -99,33 +102,33 @@ class RealSenseParameters:
     color_info: str = tag(
         "colorCameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is in the namespace of the image topic.",
+        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
     )
     infrared1_info: str = tag(
         "infrared1CameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is in the namespace of the image topic.",
+        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
     )
     infrared2_info: str = tag(
         "infrared2CameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is in the namespace of the image topic.",
+        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
     )
     depth_info: str = tag(
         "depthCameraInfoTopicName",
         default="",
-        doc="No effect: `camera_info` is in the namespace of the image topic.",
+        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
     )
 
 
 class RealSense(Plugin[RealSenseParameters]):
-    """Publishes the colour, infrared and depth images of an Intel RealSense.
+    """Publishes the colour, infrared and depth images of an Intel RealSense camera.
 
     The images come from the model's sensors ``<prefix>color``, ``<prefix>ired1``, ``<prefix>ired2``
-    and ``<prefix>depth``. Missing sensors are reported. The plugin's name is the namespace of
-    the topics. Each image topic has a ``camera_info`` topic in the same namespace. Depth images
-    have the encoding 16UC1, in mm. A depth of 0 means that no depth was measured. Original plugin:
-    ``realsense_gazebo_plugin`` by PAL Robotics.
+    and ``<prefix>depth``. If one of these sensors is missing, Cartwheel reports it. The plugin's
+    name is the namespace of the topics. Each image topic has a ``camera_info`` topic in the same
+    namespace. Depth images have the encoding 16UC1, with depths in mm; 0 means that no depth was
+    measured. Original plugin: ``realsense_gazebo_plugin`` by PAL Robotics.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librealsense_gazebo_plugin.so",)

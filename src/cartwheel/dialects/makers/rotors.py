@@ -48,7 +48,7 @@ class RotorsControllerParameters:
 
 
 class RotorsController(Plugin[RotorsControllerParameters]):
-    """Relays motor speed commands to the motors.
+    """Republishes the motor speed commands on the topic to which the motors subscribe.
 
     Original plugin: ``gazebo_controller_interface`` in the package ``rotors_gazebo_plugins``.
     """
@@ -67,10 +67,12 @@ class RotorsController(Plugin[RotorsControllerParameters]):
 class RotorsBaseParameters:
     link: str = tag("linkName", role="link", doc="Link that carries the propellers.")
     topic: str = tag(
-        "motorPubTopic", default="motor_speed", doc="Topic of the speeds of the propellers."
+        "motorPubTopic", default="motor_speed", doc="Topic of the propellers' speeds (Actuators)."
     )
     joint_topic: str = tag(
-        "jointStatePubTopic", default="joint_states", doc="Topic of the propeller joints' angles."
+        "jointStatePubTopic",
+        default="joint_states",
+        doc="Topic of the propeller joints' angles (JointState).",
     )
     slowdown: float = tag(
         "rotorVelocitySlowdownSim",
@@ -80,10 +82,11 @@ class RotorsBaseParameters:
 
 
 class RotorsBase(Plugin[RotorsBaseParameters]):
-    """Publishes the speeds and angles of the propellers at every step.
+    """Publishes the speeds and angles of the propellers at every simulation step.
 
-    Propellers are the links named ``…rotor_<number>`` at movable joints of ``<linkName>``. Original
-    plugin: ``gazebo_multirotor_base_plugin`` in the package ``rotors_gazebo_plugins``.
+    A link is a propeller if its name ends with ``rotor_<number>`` and a movable joint connects it
+    to ``<linkName>``. Original plugin: ``gazebo_multirotor_base_plugin`` in the package
+    ``rotors_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_multirotor_base_plugin.so",)

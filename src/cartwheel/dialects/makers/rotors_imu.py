@@ -45,7 +45,7 @@ class RotorsImuParameters:
         "gyroscopeTurnOnBiasSigma",
         default=math.radians(0.5),
         unit="rad/s",
-        doc="Standard deviation of the constant gyroscope bias.",
+        doc="Standard deviation of the gyroscope's turn-on bias, which stays constant.",
     )
     accel_noise: float = tag(
         "accelerometerNoiseDensity",
@@ -69,16 +69,18 @@ class RotorsImuParameters:
         "accelerometerTurnOnBiasSigma",
         default=0.196,
         unit="m/s²",
-        doc="Standard deviation of the constant accelerometer bias.",
+        doc="Standard deviation of the accelerometer's turn-on bias, which stays constant.",
     )
 
 
 class RotorsImu(Plugin[RotorsImuParameters]):
-    """Publishes the measurements of an IMU at every step, with white noise and drifting biases.
+    """Publishes the measurements of an IMU, with white noise and drifting biases.
 
-    Noise densities are converted to standard deviations for the step length. The bias is the sum of
-    a constant and a random walk, which starts from its stationary distribution. Original plugin:
-    ``gazebo_imu_plugin`` in the package ``rotors_gazebo_plugins``. See also REP 145.
+    A message is published at every simulation step. The noise density is converted to the standard
+    deviation of the noise in one step. Each bias is the sum of a constant turn-on bias and a random
+    walk with a correlation time. The initial value of the random walk is drawn from its stationary
+    distribution. Original plugin: ``gazebo_imu_plugin`` in the package ``rotors_gazebo_plugins``.
+    See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_imu_plugin.so",)

@@ -45,7 +45,7 @@ class RotorsOdometryParameters:
         "measurementDelay", default=0, doc="No effect: measurements are published immediately."
     )
     unknown_delay: float = tag(
-        "unknownDelay", default=0.0, unit="s", doc="Delay added to the stamps."
+        "unknownDelay", default=0.0, unit="s", doc="Delay that is added to the header stamps."
     )
     normal_position: tuple[float, float, float] = tag(
         "noiseNormalPosition",
@@ -75,30 +75,30 @@ class RotorsOdometryParameters:
         "noiseUniformPosition",
         default=_NONE,
         unit="m",
-        doc="Uniform noise on the position is within ± this value.",
+        doc="Maximum absolute value of uniform noise on the position.",
     )
     uniform_turn: tuple[float, float, float] = tag(
         "noiseUniformQuaternion",
         default=_NONE,
         unit="rad",
-        doc="Uniform noise on the orientation is within ± this value.",
+        doc="Maximum absolute value of uniform noise on the orientation.",
     )
     uniform_linear: tuple[float, float, float] = tag(
         "noiseUniformLinearVelocity",
         default=_NONE,
         unit="m/s",
-        doc="Uniform noise on the linear velocity is within ± this value.",
+        doc="Maximum absolute value of uniform noise on the linear velocity.",
     )
     uniform_angular: tuple[float, float, float] = tag(
         "noiseUniformAngularVelocity",
         default=_NONE,
         unit="rad/s",
-        doc="Uniform noise on the angular velocity is within ± this value.",
+        doc="Maximum absolute value of uniform noise on the angular velocity.",
     )
 
 
 class RotorsOdometry(Plugin[RotorsOdometryParameters]):
-    """Publishes a link's noisy pose in the world, as five message types and a transform.
+    """Publishes a link's pose in the world, with noise, as five message types and a tf transform.
 
     The twist in the Odometry messages is in the link frame. Original plugin:
     ``gazebo_odometry_plugin`` in the package ``rotors_gazebo_plugins``.

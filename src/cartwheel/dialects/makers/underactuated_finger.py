@@ -24,17 +24,19 @@ class UnderactuatedFingerParameters:
         "virtualJoint",
         default=(),
         nested=True,
-        doc="A joint of the finger: `<name>` and `<scale_factor>`. The joint's target is "
-        "the motor's angle divided by the scale factor. `<pid_gains>` has no effect, "
-        "because a position servo moves the joint. Repeat the tag for each joint.",
+        doc="A joint of the finger. The tags inside are `<name>` and `<scale_factor>`. The "
+        "joint's target angle is the motor's angle divided by the scale factor. The tag "
+        "`<pid_gains>` has no effect, because a position servo moves the joint. Repeat the "
+        "tag for each joint.",
     )
 
 
 class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
-    """Bends the joints of a finger in proportion to a motor's angle, up to the joint limits.
+    """Bends the joints of a tendon-driven finger in proportion to the angle of its motor.
 
-    A joint that meets an obstacle exerts at most its effort limit; the other joints continue to
-    bend. Original plugin: ``gazebo_underactuated_finger`` in the package ``pal_gazebo_plugins``.
+    Each joint bends up to its position limit. A joint that is blocked by an obstacle exerts at most
+    its effort limit, while the other joints continue to bend. Original plugin:
+    ``gazebo_underactuated_finger`` in the package ``pal_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_underactuated_finger.so",)

@@ -47,8 +47,8 @@ class VelodyneParameters:
     organize: bool = tag(
         "organize_cloud",
         default=False,
-        doc="Publish an organised cloud: each column of rays is a row of the cloud, and missing "
-        "points are NaN.",
+        doc="Whether to publish an organised cloud: each column of rays is a row of the cloud, "
+        "and rays without a hit result in NaN points.",
     )
     min_range: float = tag(
         "min_range", default=0.0, unit="m", doc="Points closer than this are omitted."
@@ -76,7 +76,7 @@ class VelodyneParameters:
 
 
 class VelodyneLaser(Plugin[VelodyneParameters]):
-    """Publishes the points that a ray sensor hits as a PointCloud2 with intensity and ring.
+    """Publishes the points that a ray sensor hits as PointCloud2, with intensity and ring number.
 
     Ring 0 is the lowest ring. Points are ordered column by column. All points are measured at the
     same time, so their ``time`` is 0.

@@ -15,9 +15,9 @@ class WarthogSuspensionParameters:
     stiffness: float = tag(
         "suspension_k",
         unit="N m/rad",
-        doc="Stiffness of each joint's spring, which is at rest at position 0.",
+        doc="Stiffness of the spring at each joint. The spring exerts no torque at position 0.",
     )
-    damping: float = tag("suspension_b", unit="N m s/rad", doc="Damping of each joint.")
+    damping: float = tag("suspension_b", unit="N m s/rad", doc="Damping coefficient of each joint.")
     left: str = tag(
         "left_joint",
         default="left_diff_unit_joint",
@@ -33,7 +33,7 @@ class WarthogSuspensionParameters:
 
 
 class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
-    """Applies a spring and a damper to the suspension joint on each side.
+    """Applies the torque of a spring and a damper to the suspension joint on each side of a robot.
 
     Original plugin: ``warthog_suspension_plugin`` in the package ``warthog_gazebo``, which supports
     only the default joint names.

@@ -39,7 +39,8 @@ class Ros2ControlParameters:
     files: tuple[str, ...] = tag(
         "parameters",
         default=(),
-        doc="YAML files with the parameters of the controller manager and its controllers.",
+        doc="YAML file with the parameters of the controller manager and its controllers. "
+        "Repeat the tag for each file.",
     )
     manager: str = tag(
         "controller_manager_name",
@@ -48,7 +49,9 @@ class Ros2ControlParameters:
         doc="Name of the controller manager's node, and of its section in the YAML files.",
     )
     hold_joints: bool = tag(
-        "hold_joints", default=True, doc="Hold joints that no controller has commanded yet."
+        "hold_joints",
+        default=True,
+        doc="Whether to hold joints that no controller has commanded yet.",
     )
     gain: float = tag(
         "position_proportional_gain",
@@ -68,10 +71,11 @@ class Ros2ControlParameters:
 
 
 class Ros2Control(ControlPlugin):
-    """Runs the controllers in its YAML files, at the `update_rate` of the controller manager.
+    """Runs the ros2_control controllers that its YAML files define.
 
-    The YAML files are specified by ``<parameters>`` and by the option ``--controllers`` of
-    ``cartwheel run``. Original packages: ``gazebo_ros2_control`` and ``gz_ros2_control``.
+    The controllers are updated at the ``update_rate`` of the controller manager. The YAML files are
+    specified by ``<parameters>`` and by the option ``--controllers`` of ``cartwheel run``. Original
+    packages: ``gazebo_ros2_control`` and ``gz_ros2_control``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

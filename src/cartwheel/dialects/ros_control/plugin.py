@@ -36,10 +36,15 @@ class RosControlParameters:
         "robotSimType",
         "robot_sim_type",
         default="",
-        doc="Hardware plugin. Only the default, DefaultRobotHWSim, is simulated.",
+        doc="Name of the hardware plugin. Only the default, `DefaultRobotHWSim`, is simulated. "
+        "With any other name, joints are driven as with the default, with a warning.",
     )
     period: float = tag(
-        "controlPeriod", default=0.0, unit="s", doc="Control period. 0: every step."
+        "controlPeriod",
+        default=0.0,
+        unit="s",
+        doc="Time between two updates of the controllers. If 0, they are updated at every "
+        "simulation step.",
     )
     legacy: bool = tag(
         "legacyModeNS",
@@ -48,16 +53,19 @@ class RosControlParameters:
         "global namespace.",
     )
     stop_topic: str = tag(
-        "eStopTopic", default="", doc="Topic of a Bool. While it is true, all joints are stopped."
+        "eStopTopic",
+        default="",
+        doc="Topic of the emergency stop (Bool). All joints are stopped while the last message "
+        "is true.",
     )
 
 
 class RosControl(ControlPlugin):
-    """Runs the controllers that are loaded through its controller manager's services.
+    """Runs the ros_control controllers that are loaded with the controller manager's services.
 
-    Controllers in YAML files that are passed with ``cartwheel run --controllers`` start
-    automatically. If neither the tag nor the spawner specifies a namespace, the controller manager
-    uses the global namespace, as with spawn_model. Original package: ``gazebo_ros_control``.
+    Controllers in YAML files that you pass with ``cartwheel run --controllers`` start
+    automatically. The controller manager is in the namespace that the plugin tag or the spawner
+    specifies. By default, it is in the global namespace. Original package: ``gazebo_ros_control``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_control.so",)

@@ -96,56 +96,63 @@ class AckermannParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
-        doc="Rate of the control loop and of the topics. 0: every step.",
+        doc="Rate at which commands are applied and messages are published. If 0, both happen "
+        "at every simulation step.",
     )
     odometry_frame: str = tag("odometry_frame", default="odom", doc="Frame ID of the odometry.")
     base_frame: str = tag(
         "robot_base_frame",
         default="base_footprint",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
-    publish_odom: bool = tag("publish_odom", default=False, doc="Publish the odometry on `odom`.")
+    publish_odom: bool = tag(
+        "publish_odom", default=False, doc="Whether to publish the odometry on `odom`."
+    )
     publish_odom_tf: bool = tag(
         "publish_odom_tf",
         default=False,
-        doc="Publish the transform from the odometry frame to the base link.",
+        doc="Whether to publish the transform from `<odometry_frame>` to the robot.",
     )
     publish_wheel_tf: bool = tag(
         "publish_wheel_tf",
         default=False,
-        doc="Publish the transforms of the wheel and steering joints.",
+        doc="Whether to publish the transforms of the wheel and steering joints.",
     )
     publish_distance: bool = tag(
         "publish_distance",
         default=False,
-        doc="Publish the distance travelled, in m, on `distance`.",
+        doc="Whether to publish the travelled distance, in m, on `distance`.",
     )
     publish_steerangle: bool = tag(
         "publish_steerangle",
         default=False,
-        doc="Publish the mean steering angle of the front wheels, in rad, on `steerangle`.",
+        doc="Whether to publish the mean steering angle of the front wheels, in rad, on "
+        "`steerangle`.",
     )
     covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the x position in the odometry."
     )
     covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the y position in the odometry."
     )
     covariance_yaw: float = tag(
-        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
+        "covariance_yaw",
+        default=1e-3,
+        unit="rad²",
+        doc="Variance of the yaw angle in the odometry.",
     )
 
 
 class ClassicAckermannDrive(Plugin[AckermannParameters]):
-    """Drives the rear wheels and steers the front wheels of a car from Twist commands.
+    """Drives the rear wheels and steers the front wheels of a car, as commanded by Twist messages.
 
     Commands are received on ``cmd_vel``. ``linear.x`` is the speed in m/s at the middle of the rear
-    axle. ``angular.z`` is the steering angle in rad, with the opposite sign while ``linear.x`` is
-    negative. The odometry is the ground-truth pose in the world. Wheel radius, wheel base and track
-    are read from the robot description. Original plugin: ``gazebo_ros_ackermann_drive`` in the
-    package ``gazebo_plugins``.
+    axle. ``angular.z`` is the steering angle in rad. While ``linear.x`` is negative, the sign of
+    the steering angle is reversed. The odometry is the ground-truth pose in the world. The wheel
+    radius, the wheel base and the track width are computed from the robot description. Original
+    plugin: ``gazebo_ros_ackermann_drive`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackermann_drive.so",)

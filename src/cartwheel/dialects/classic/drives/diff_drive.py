@@ -30,14 +30,14 @@ class DiffDriveParameters:
         "left_joint",
         default=("left_joint",),
         role="left_wheel",
-        doc="Joint of the left wheel. Repeat the tag for each pair.",
+        doc="Joint of the left wheel of a pair. Repeat the tag for each pair.",
     )
     right_joint: tuple[str, ...] = tag(
         "rightJoint",
         "right_joint",
         default=("right_joint",),
         role="right_wheel",
-        doc="Joint of the right wheel. Repeat the tag for each pair.",
+        doc="Joint of the right wheel of a pair. Repeat the tag for each pair.",
     )
     pairs: int = tag("num_wheel_pairs", default=1, doc="Number of wheel pairs.")
     wheel_separation: tuple[float, ...] = tag(
@@ -46,8 +46,8 @@ class DiffDriveParameters:
         default=(0.34,),
         unit="m",
         role="wheel_separation",
-        doc="Distance between the left and right wheel. Repeat the tag for each pair. The "
-        "last value applies to the remaining pairs.",
+        doc="Distance between the left and right wheels of a pair. Repeat the tag for each "
+        "pair; the last value also applies to all further pairs.",
     )
     wheel_diameter: tuple[float, ...] = tag(
         "wheelDiameter",
@@ -55,8 +55,8 @@ class DiffDriveParameters:
         default=(0.15,),
         unit="m",
         role="wheel_diameter",
-        doc="Diameter of both wheels. Repeat the tag for each pair. The last value applies "
-        "to the remaining pairs.",
+        doc="Diameter of the wheels of a pair. Repeat the tag for each pair; the last value "
+        "also applies to all further pairs.",
     )
     wheel_torque: float = tag(
         "wheelTorque",
@@ -66,14 +66,15 @@ class DiffDriveParameters:
         unit="N m",
         role="wheel_torque",
         obsolete=("torque",),
-        doc="Maximum torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
+        doc="Maximum motor torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
         "max_wheel_acceleration",
         default=0.0,
         unit="m/s²",
-        doc="Maximum acceleration of the wheels' commanded rim speed. 0: no limit.",
+        doc="Maximum acceleration of the wheel rims; it limits how fast the commanded wheel "
+        "speeds change. If 0, there is no limit.",
     )
     command_topic: str = tag(
         "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
@@ -93,7 +94,7 @@ class DiffDriveParameters:
         "robot_base_frame",
         default="base_footprint",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
     update_rate: float = tag(
@@ -101,72 +102,78 @@ class DiffDriveParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
-        doc="Rate of the control loop and of the topics. 0: every step.",
+        doc="Rate at which commands are applied and messages are published. If 0, both happen "
+        "at every simulation step.",
     )
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",
         default="world",
-        doc="Source of the odometry. `world` (or `1`): ground-truth pose in the world; `encoder` "
-        "(or `0`): wheel rotation.",
+        doc="Source of the odometry: `world` (or `1`) is the ground-truth pose in the world, "
+        "and `encoder` (or `0`) is dead reckoning from the rotation of the wheels.",
     )
     publish_tf: bool = tag(
         "publishTf",
         "publishTF",
         default=True,
-        doc="Publish the odometry and its transform. If false, `<publish_odom>` and "
+        doc="Whether to publish the odometry and its transform. If false, `<publish_odom>` and "
         "`<publishOdomTF>` have no effect.",
     )
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish the odometry. Default: `true`, or `false` if the plugin tag is written "
-        "for ROS 2.",
+        doc="Whether to publish the odometry as messages. Default: `true`, or `false` if the "
+        "plugin tag is written for ROS 2.",
     )
     publish_odom_tf: bool | None = tag(
         "publishOdomTF",
         "publish_odom_tf",
         default=None,
-        doc="Publish the transform of the odometry. Default: `true`, or `false` if the "
-        "plugin tag is written for ROS 2.",
+        doc="Whether to publish the odometry as a transform on `/tf`. Default: `true`, or "
+        "`false` if the plugin tag is written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
         "publish_wheel_tf",
         default=False,
-        doc="Publish the transforms of the wheels.",
+        doc="Whether to publish the transforms of the wheels.",
     )
     publish_joint_state: bool = tag(
         "publishWheelJointState",
         default=False,
-        doc="Publish the positions and velocities of the wheels on `joint_states`.",
+        doc="Whether to publish the positions and velocities of the wheel joints on "
+        "`joint_states`.",
     )
     covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the x position in the odometry."
     )
     covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the y position in the odometry."
     )
     covariance_yaw: float = tag(
-        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
+        "covariance_yaw",
+        default=1e-3,
+        unit="rad²",
+        doc="Variance of the yaw angle in the odometry.",
     )
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,
-        doc="Reverse the turning direction, as in old releases of Gazebo's plugin.",
+        doc="Whether to reverse the turning direction, as in old releases of Gazebo's plugin.",
     )
 
 
 class DiffDrive(Plugin[DiffDriveParameters]):
-    """Drives pairs of wheels from Twist commands and publishes odometry.
+    """Drives pairs of left and right wheels as commanded by Twist messages, and publishes odometry.
 
-    A velocity servo with the maximum torque ``<wheelTorque>`` turns each wheel. A command stays in
-    effect until the next command.
+    Each wheel is driven by a velocity servo with the maximum torque ``<wheelTorque>``. A command
+    stays in effect until the next command.
 
-    A plugin tag that contains ``<ros>``, ``<left_joint>`` or ``<right_joint>`` is treated as a tag
-    for ROS 2, any other plugin tag as a tag for ROS 1. For ROS 1, if the model is part of a world
-    file and the plugin tag has no ``<robotNamespace>``, the topics are in a namespace with the
-    model's name. Original plugin: ``gazebo_ros_diff_drive`` in the package ``gazebo_plugins``.
+    A plugin tag is treated as written for ROS 2 if it contains ``<ros>``, ``<left_joint>`` or
+    ``<right_joint>``, and otherwise as written for ROS 1. With a plugin tag for ROS 1, the topics
+    are in a namespace with the model's name if the model is part of a world file and there is no
+    ``<robotNamespace>``. Original plugin: ``gazebo_ros_diff_drive`` in the package
+    ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)

@@ -31,7 +31,7 @@ class PlanarMoveParameters:
         "robot_base_frame",
         default="base_footprint",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
     rate: float = tag(
@@ -39,7 +39,8 @@ class PlanarMoveParameters:
         "publish_rate",
         default=20.0,
         unit="Hz",
-        doc="Publish rate of odometry and transform. 0 or less: neither is published.",
+        doc="Publish rate of the odometry and its transform. If 0 or negative, neither is "
+        "published.",
     )
     update_rate: float = tag(
         "update_rate",
@@ -52,29 +53,37 @@ class PlanarMoveParameters:
         "cmd_timeout",
         default=-1.0,
         unit="s",
-        doc="The robot stops after this time without a command. Negative: no timeout.",
+        doc="Time without a command after which the robot stops. If negative, the last command "
+        "stays in effect.",
     )
-    publish_odom: bool = tag("publish_odom", default=True, doc="Publish the odometry.")
+    publish_odom: bool = tag(
+        "publish_odom", default=True, doc="Whether to publish the odometry as messages."
+    )
     publish_odom_tf: bool = tag(
-        "publish_odom_tf", default=True, doc="Publish the transform of the odometry."
+        "publish_odom_tf",
+        default=True,
+        doc="Whether to publish the odometry as a transform on `/tf`.",
     )
     covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of the odometry in x."
+        "covariance_x", default=1e-5, unit="m²", doc="Variance of the x position in the odometry."
     )
     covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of the odometry in y."
+        "covariance_y", default=1e-5, unit="m²", doc="Variance of the y position in the odometry."
     )
     covariance_yaw: float = tag(
-        "covariance_yaw", default=1e-3, unit="rad²", doc="Variance of the odometry in yaw."
+        "covariance_yaw",
+        default=1e-3,
+        unit="rad²",
+        doc="Variance of the yaw angle in the odometry.",
     )
 
 
 class PlanarMove(Plugin[PlanarMoveParameters]):
-    """Moves the robot in the plane from Twist commands and publishes odometry.
+    """Moves the robot in the xy plane as commanded by Twist messages, and publishes odometry.
 
-    No wheels are needed: a velocity controller applies a force to the robot. The force is at most
-    five times the robot's weight, so walls stop the robot. The odometry is the ground-truth pose.
-    Original plugin: ``gazebo_ros_planar_move`` in the package ``gazebo_plugins``.
+    The robot needs no wheels: a velocity controller applies a force to the robot. The force is at
+    most five times the robot's weight, so a wall stops the robot. The odometry is the ground-truth
+    pose. Original plugin: ``gazebo_ros_planar_move`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)

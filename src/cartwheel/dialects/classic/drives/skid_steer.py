@@ -72,34 +72,38 @@ class SkidSteerParameters:
         "robotBaseFrame",
         default="base_footprint",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
     update_rate: float = tag(
         "updateRate",
         default=100.0,
         unit="Hz",
-        doc="Rate of the control loop and of the topics. 0: every step.",
+        doc="Rate at which commands are applied and messages are published. If 0, both happen "
+        "at every simulation step.",
     )
     broadcast_tf: bool = tag(
-        "broadcastTF", default=False, doc="Publish the transform of the odometry."
+        "broadcastTF", default=False, doc="Whether to publish the odometry as a transform on `/tf`."
     )
     covariance_x: float = tag(
-        "covariance_x", default=1e-4, unit="m²", doc="Variance of the odometry in x."
+        "covariance_x", default=1e-4, unit="m²", doc="Variance of the x position in the odometry."
     )
     covariance_y: float = tag(
-        "covariance_y", default=1e-4, unit="m²", doc="Variance of the odometry in y."
+        "covariance_y", default=1e-4, unit="m²", doc="Variance of the y position in the odometry."
     )
     covariance_yaw: float = tag(
-        "covariance_yaw", default=1e-2, unit="rad²", doc="Variance of the odometry in yaw."
+        "covariance_yaw",
+        default=1e-2,
+        unit="rad²",
+        doc="Variance of the yaw angle in the odometry.",
     )
 
 
 class SkidSteerDrive(Plugin[SkidSteerParameters]):
-    """Drives a skid-steered robot with four wheels from Twist commands and publishes odometry.
+    """Drives a four-wheeled skid-steer robot as commanded by Twist messages; publishes odometry.
 
-    The robot turns less than commanded because its tyres slide sideways. The odometry is the
-    ground-truth pose. Original plugin: ``gazebo_ros_skid_steer_drive`` in the package
+    The robot turns more slowly than commanded, because its tyres slide sideways. The odometry is
+    the ground-truth pose. Original plugin: ``gazebo_ros_skid_steer_drive`` in the package
     ``gazebo_plugins``.
     """
 

@@ -83,15 +83,15 @@ class TricycleParameters:
         "max_wheel_acceleration",
         default=0.0,
         unit="rad/s²",
-        doc="Maximum acceleration of the driven wheel. 0: no limit.",
+        doc="Maximum acceleration of the driven wheel. If 0, there is no limit.",
     )
     wheel_deceleration: float | None = tag(
         "wheelDeceleration",
         "max_wheel_deceleration",
         default=None,
         unit="rad/s²",
-        doc="Maximum deceleration of the driven wheel. Has no effect without "
-        "`<wheelAcceleration>`. Default: `<wheelAcceleration>`.",
+        doc="Maximum deceleration of the driven wheel. It has no effect if "
+        "`<wheelAcceleration>` is 0. Default: `<wheelAcceleration>`.",
     )
     wheel_tolerance: float = tag(
         "wheelSpeedTolerance",
@@ -105,7 +105,7 @@ class TricycleParameters:
         "max_steering_speed",
         default=0.0,
         unit="rad/s",
-        doc="Maximum steering rate. 0: no limit.",
+        doc="Maximum speed of the steering joint. If 0, there is no limit.",
     )
     steering_tolerance: float = tag(
         "steeringAngleTolerance",
@@ -117,8 +117,8 @@ class TricycleParameters:
     command_topic: str = tag(
         "commandTopic",
         default="cmd_vel",
-        doc="Topic of the Twist commands. `linear.x` is the speed of the driven wheel in m/s; "
-        "`angular.z` is its steering angle in rad.",
+        doc="Topic of the Twist commands. `linear.x` is the rim speed of the driven wheel in "
+        "m/s, and `angular.z` is its steering angle in rad.",
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
     odometry_frame: str = tag(
@@ -129,7 +129,7 @@ class TricycleParameters:
         "robot_base_frame",
         default="base_link",
         role="frame",
-        doc="Link whose pose the odometry reports. If no link has this name, the root link "
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
         "is used.",
     )
     update_rate: float = tag(
@@ -137,32 +137,33 @@ class TricycleParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
-        doc="Rate of the control loop and of the topics. 0: every step.",
+        doc="Rate at which commands are applied and messages are published. If 0, both happen "
+        "at every simulation step.",
     )
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",
         default="world",
-        doc="Source of the odometry. `world` (or `1`): ground-truth pose in the world; `encoder` "
-        "(or `0`): dead reckoning from the passive wheels.",
+        doc="Source of the odometry: `world` (or `1`) is the ground-truth pose in the world, "
+        "and `encoder` (or `0`) is dead reckoning from the rotation of the passive wheels.",
     )
     publish_odom: bool | None = tag(
         "publish_odom",
         default=None,
-        doc="Publish the odometry and its transform. Default: `true`, or `false` if the "
-        "plugin tag is written for ROS 2.",
+        doc="Whether to publish the odometry and its transform. Default: `true`, or `false` if "
+        "the plugin tag is written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
         "publish_wheel_tf",
         default=False,
-        doc="Publish the transforms of the joints.",
+        doc="Whether to publish the transforms of the wheel and steering joints.",
     )
     publish_joint_state: bool = tag(
         "publishWheelJointState",
         "publish_wheel_joint_state",
         default=False,
-        doc="Publish the joint states on `joint_states`.",
+        doc="Whether to publish the states of the wheel and steering joints on `joint_states`.",
     )
 
 
@@ -171,12 +172,14 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 
 
 class ClassicTricycleDrive(Plugin[TricycleParameters]):
-    """Drives a tricycle with one driven, steered wheel from Twist commands and publishes odometry.
+    """Drives and steers the front wheel of a tricycle as commanded by Twist messages.
 
-    A plugin tag that contains ``<ros>`` or lower-case tags, such as ``<steering_joint>``, is
-    treated as a tag for ROS 2, any other plugin tag as a tag for ROS 1. For ROS 1, if the model is
-    part of a world file and the plugin tag has no ``<robotNamespace>``, the topics are in a
-    namespace with the model's name. Original plugin: ``gazebo_ros_tricycle_drive`` in the package
+    One wheel is driven and steered; the other two are passive. The plugin also publishes odometry.
+
+    A plugin tag is treated as written for ROS 2 if it contains ``<ros>`` or lower-case tags, such
+    as ``<steering_joint>``, and otherwise as written for ROS 1. With a plugin tag for ROS 1, the
+    topics are in a namespace with the model's name if the model is part of a world file and there
+    is no ``<robotNamespace>``. Original plugin: ``gazebo_ros_tricycle_drive`` in the package
     ``gazebo_plugins``.
     """
 

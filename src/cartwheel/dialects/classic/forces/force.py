@@ -25,15 +25,16 @@ class ForceParameters:
     frame: Literal["world", "link"] = tag(
         "force_frame",
         default="world",
-        doc="Frame of the commanded wrench. Gazebo's ROS 1 plugin does not have this tag.",
+        doc="Frame in which the commanded wrench is expressed. Gazebo's ROS 1 plugin does not "
+        "have this tag.",
     )
 
 
 class Force(Plugin[ForceParameters]):
-    """Applies the last received Wrench to a link, at its centre of mass.
+    """Applies the force and torque of the last received Wrench message to a link.
 
-    A wrench stays in effect until the next message. Original plugin: ``gazebo_ros_force`` in the
-    package ``gazebo_plugins``.
+    The force acts at the link's centre of mass. The wrench stays in effect until the next message.
+    Original plugin: ``gazebo_ros_force`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_force.so",)

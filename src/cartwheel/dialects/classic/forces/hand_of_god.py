@@ -27,17 +27,18 @@ class HandOfGodParameters:
         "ka",
         default=200.0,
         unit="N m/rad",
-        doc="Rotational stiffness. As in Gazebo, the torque per rad is half this value.",
+        doc="Stiffness of the rotational spring. As in Gazebo, the actual stiffness is half of "
+        "this value.",
     )
 
 
 class HandOfGod(Plugin[HandOfGodParameters]):
-    """Pulls a link to a tf frame with a critically damped spring.
+    """Pulls a link to the pose of a tf frame with a critically damped spring.
 
     The target is the pose of the frame ``<frameId>_desired`` relative to ``world``. Until tf
-    provides this transform, the link is not pulled. No other body receives the reaction force. The
-    link's pose is published as the frame ``<frameId>_actual``. Original plugin:
-    ``gazebo_ros_hand_of_god`` in the package ``gazebo_plugins``.
+    provides this transform, the link is not pulled. The spring has no second end: no other body
+    receives a reaction force. The link's pose is published as the frame ``<frameId>_actual``.
+    Original plugin: ``gazebo_ros_hand_of_god`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_hand_of_god.so",)

@@ -16,8 +16,8 @@ class VacuumGripperParameters:
     topic: str = tag(
         "topicName",
         default="grasping",
-        doc="Topic of a Bool that is true while an object is held. Gazebo's ROS 1 plugin "
-        "requires this tag.",
+        doc="Topic of the Bool messages, which are true while an object is held. Gazebo's ROS 1 "
+        "plugin requires this tag.",
     )
     reach: float = tag(
         "max_distance",
@@ -25,16 +25,20 @@ class VacuumGripperParameters:
         unit="m",
         doc="Maximum distance between the cup's frame and the frame of the gripped link.",
     )
-    fixed: tuple[str, ...] = tag("fixed", default=(), doc="Models or links that are never gripped.")
+    fixed: tuple[str, ...] = tag(
+        "fixed",
+        default=(),
+        doc="Name of a model or link that is never gripped. Repeat the tag for each name.",
+    )
 
 
 class VacuumGripper(Plugin[VacuumGripperParameters]):
-    """While switched on, holds the nearest link of another model that is within reach.
+    """Holds the nearest link of another model within reach, while the gripper is switched on.
 
     The held link keeps its pose relative to the cup, as with a fixed joint. In Gazebo, the link is
-    pulled toward the cup. The services ``on`` and ``off`` switch the gripper on and off. If the
-    plugin tag contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and ``off``.
-    Original plugin: ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
+    pulled towards the cup instead. The services ``on`` and ``off`` switch the gripper on and off.
+    If the plugin tag contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and
+    ``off``. Original plugin: ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)

@@ -25,35 +25,37 @@ class WheelSlipParameters:
         "wheel",
         default=(),
         nested=True,
-        doc="A wheel: attribute `link_name`, and the tags `<slip_compliance_lateral>`, "
-        "`<slip_compliance_longitudinal>`, `<wheel_normal_force>` in N and `<wheel_radius>` "
-        "in m (default: radius of the wheel's cylinder or sphere). Repeat the tag for each "
-        "wheel.",
+        doc="A wheel. The attribute `link_name` is the link of the wheel. The tags inside are "
+        "`<slip_compliance_lateral>`, `<slip_compliance_longitudinal>`, "
+        "`<wheel_normal_force>` (in N) and `<wheel_radius>` (in m; by default, the radius "
+        "of the wheel's cylinder or sphere). Repeat the tag for each wheel.",
     )
     tolerance: float = tag(
         "wheel_spin_tolerance",
         default=1e-3,
         unit="m/s",
-        doc="Below this rim speed, the published slip is 0.",
+        doc="Rim speed below which the published slip is 0.",
     )
     rate: float = tag(
         "publisher_update_rate",
         default=100.0,
         unit="Hz",
-        doc="Publish rate of `wheel_slip`. 0: every step.",
+        doc="Publish rate of `wheel_slip`. If 0, messages are published at every simulation step.",
     )
 
 
 class WheelSlipPlugin(Plugin[WheelSlipParameters]):
-    """Makes wheels slip in proportion to the friction force.
+    """Makes wheels slip on the ground, in proportion to the friction force.
 
-    The slip speed is ``rim speed * slip compliance * friction force / normal force``. A wheel that
-    is not turning does not slip. The friction coefficient limits the force, and therefore the slip.
+    The slip speed is ``rim speed * slip compliance * friction force / normal force``, in the
+    lateral and in the longitudinal direction. A wheel that is not turning does not slip. The
+    friction coefficient limits the force, and therefore the slip.
 
-    With ``<ros>`` (ROS 2), `libgazebo_ros_wheel_slip.so` publishes the slip of each wheel on
-    ``wheel_slip``: lateral slip as an angle in rad, longitudinal slip as a fraction of the rim
-    speed. Without ``<ros>`` (ROS 1), dynamic_reconfigure can change the compliances of all wheels
-    under ``/<model>/<robotNamespace>``, by default ``/<model>/wheel_slip``.
+    If the plugin tag of `libgazebo_ros_wheel_slip.so` contains ``<ros>`` (ROS 2), the plugin
+    publishes the slip of each wheel on ``wheel_slip``. The lateral slip is an angle in rad, and the
+    longitudinal slip is a fraction of the rim speed. Without ``<ros>`` (ROS 1), dynamic_reconfigure
+    can change the slip compliances of all wheels. Its topics and services are under
+    ``/<model>/<robotNamespace>``, or under ``/<model>/wheel_slip`` without ``<robotNamespace>``.
 
     Original plugins: ``WheelSlipPlugin`` in Gazebo Classic, ``gazebo_ros_wheel_slip`` in the
     package ``gazebo_plugins``, and ``WheelSlip`` in gz-sim.

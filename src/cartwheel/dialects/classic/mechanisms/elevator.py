@@ -13,11 +13,18 @@ from cartwheel.dialects.tags import shown, tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ElevatorParameters:
-    lift_joint: str = tag("lift_joint", role="joint", doc="Prismatic joint that moves the car.")
+    lift_joint: str = tag(
+        "lift_joint", role="joint", doc="Prismatic joint that moves the elevator car."
+    )
     door_joint: str = tag(
         "door_joint", role="joint", doc="Prismatic joint of the door. Position 0 is closed."
     )
-    floor_height: float = tag("floor_height", default=3.0, unit="m", doc="Height of a floor.")
+    floor_height: float = tag(
+        "floor_height",
+        default=3.0,
+        unit="m",
+        doc="Vertical distance between two consecutive floors.",
+    )
     door_wait_time: float = tag(
         "door_wait_time", default=5.0, unit="s", doc="Time for which the door stays open."
     )
@@ -27,16 +34,18 @@ class ElevatorParameters:
         doc="Topic of the String messages with the number of the target floor.",
     )
     bottom_floor: int | None = tag(
-        "bottom_floor", default=None, doc="Lowest floor. Default: no limit."
+        "bottom_floor", default=None, doc="Number of the lowest floor. Default: no limit."
     )
-    top_floor: int | None = tag("top_floor", default=None, doc="Highest floor. Default: no limit.")
+    top_floor: int | None = tag(
+        "top_floor", default=None, doc="Number of the highest floor. Default: no limit."
+    )
 
 
 class ElevatorPlugin(Plugin[ElevatorParameters]):
-    """Moves an elevator's car to the commanded floor and operates its door.
+    """Moves the car of an elevator to the commanded floor, and opens and closes its door.
 
     For each command, the door closes and the car moves. The door then opens, waits for
-    ``<door_wait_time>`` and closes. New commands are ignored until the door is closed again. At
+    ``<door_wait_time>`` and closes. Until the door is closed again, new commands are ignored. At
     floor n, the position of the lift joint is n times ``<floor_height>``. Original plugins:
     ``gazebo_ros_elevator`` in the package ``gazebo_plugins``, and ``ElevatorPlugin`` in Gazebo
     Classic.

@@ -23,34 +23,38 @@ class HarnessParameters:
         "joint",
         default=(),
         nested=True,
-        doc="Prismatic joint with the parent `world` and a `<child>` in this model, written "
-        "as an SDF `<joint>`.",
+        doc="SDF `<joint>` that suspends a link. Its type is `prismatic`, its parent is "
+        "`world`, and its `<child>` is a link of this model. Repeat the tag for each "
+        "suspended link.",
     )
     winch: str = tag(
         "winch",
         default="",
         nested=True,
-        doc="The winch, which moves the joint named in `<joint>`. `<pid>` has no effect.",
+        doc="The winch. Inside this tag, `<joint>` names the joint that the winch moves, and "
+        "`<pid>` has no effect.",
     )
     detach: str = tag(
-        "detach", default="", doc="Joint that is detached by a message on the topic `detach`."
+        "detach",
+        default="",
+        doc="Name of the joint that is detached by a message on the topic `detach`.",
     )
     velocity: float = tag(
         "init_vel",
         default=0.0,
         unit="m/s",
         most=FARTHEST,
-        doc="Initial velocity of the winch (ROS 2).",
+        doc="Initial velocity of the winch. This tag comes from the ROS 2 plugin.",
     )
 
 
 class Harness(Plugin[HarnessParameters]):
     """Suspends links of the model from the world, and raises and lowers one of them with a winch.
 
-    The winch follows ``/<model>/harness/velocity`` (Float32) in m/s. A message on
-    ``/<model>/harness/detach`` detaches the joint in ``<detach>``. The message is a Bool with the
-    value true. If the plugin tag contains ``<ros>``, the message is an Empty, and the topics are in
-    the plugin's namespace.
+    The winch moves at the velocity that it receives on ``/<model>/harness/velocity`` (Float32, in
+    m/s). A message with the value true on ``/<model>/harness/detach`` (Bool) detaches the joint
+    that ``<detach>`` names. If the plugin tag contains ``<ros>``, the type of this topic is Empty,
+    and both topics are in the plugin's namespace.
 
     Each joint acts as a rope, which pulls but does not push. While the robot stands on the ground,
     the rope is slack and exerts no force. A taut rope holds the link rigidly, as a prismatic joint

@@ -21,28 +21,29 @@ class JointPoseTrajectoryParameters:
     service: str = tag(
         "serviceName",
         default="set_joint_trajectory",
-        doc="Service of type SetJointTrajectory, an alternative to the topic.",
+        doc="Name of a service of type SetJointTrajectory, which accepts the same trajectories "
+        "as the topic.",
     )
     update_rate: float = tag(
         "updateRate",
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Rate at which trajectory points are applied. 0: every step.",
+        doc="Rate at which joint positions are set. If 0, they are set at every simulation step.",
     )
 
 
 class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
-    """Sets joint positions to the points of a trajectory, without simulating forces.
+    """Sets joints directly to the positions of a trajectory, without simulating forces.
 
     The trajectory starts at its header stamp or on arrival, whichever is later. Each point is
-    applied after its ``time_from_start``. In Gazebo, each time is measured from the previous point
-    instead.
+    applied when its ``time_from_start`` has passed since the start of the trajectory. In Gazebo,
+    this time is measured from the previous point instead.
 
-    The root link is not moved, so ``header.frame_id`` must be empty, the root link, ``world`` or
-    ``map``. Trajectories with a different frame, and service requests with ``set_model_pose``, are
-    rejected. Original plugin: ``gazebo_ros_joint_pose_trajectory`` in the package
-    ``gazebo_plugins``.
+    The plugin does not move the root link. The ``header.frame_id`` must therefore be empty, the
+    root link, ``world`` or ``map``. Trajectories with any other frame are rejected, and so are
+    service requests with ``set_model_pose``. Original plugin: ``gazebo_ros_joint_pose_trajectory``
+    in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (

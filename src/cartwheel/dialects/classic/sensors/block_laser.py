@@ -49,10 +49,10 @@ class BlockLaserParameters:
 
 
 class BlockLaser(Plugin[BlockLaserParameters]):
-    """Publishes the points hit by a ray sensor as a PointCloud.
+    """Publishes the points that the rays of a ray sensor hit, as PointCloud messages.
 
-    Points have x forward, y left and z up. The point cloud contains only the points that were hit.
-    Original plugin: ``gazebo_ros_block_laser`` in the package ``gazebo_plugins``.
+    In the sensor's frame, x points forward, y left and z up. A ray without a hit adds no point to
+    the point cloud. Original plugin: ``gazebo_ros_block_laser`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)

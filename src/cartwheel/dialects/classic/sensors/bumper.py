@@ -32,14 +32,14 @@ class BumperParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. 0: the sensor's `<update_rate>`.",
+        doc="Publish rate. If 0, the sensor's `<update_rate>` applies.",
     )
 
 
 class Bumper(Plugin[BumperParameters]):
     """Publishes the contacts of a sensor's collisions as ContactsState messages.
 
-    Messages are also published without contact. The field ``states`` is then empty. Original
+    If there is no contact, messages are published too. Their field ``states`` is empty. Original
     plugin: ``gazebo_ros_bumper`` in the package ``gazebo_plugins``.
     """
 

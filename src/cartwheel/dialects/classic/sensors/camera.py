@@ -52,27 +52,36 @@ class CameraParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Frame rate, at most the sensor's rate. 0: the sensor's rate.",
+        doc="Frame rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate applies.",
     )
     hack_baseline: float = tag(
         "hackBaseline",
         "hack_baseline",
         default=0.0,
         unit="m",
-        doc="Distance to the left camera of a stereo pair, for the projection matrix P.",
+        doc="Distance from the left camera of a stereo pair to this camera, for the projection "
+        "matrix P.",
     )
     focal_length: float = tag(
         "focalLength",
         "focal_length",
         default=0.0,
         unit="px",
-        doc="Focal length in the camera matrix K. 0: computed from the field of view.",
+        doc="Focal length in the camera matrix K. If 0, it is computed from the field of view.",
     )
     cx: float = tag(
-        "Cx", "cx", default=0.0, unit="px", doc="x of the principal point. 0: (width + 1) / 2."
+        "Cx",
+        "cx",
+        default=0.0,
+        unit="px",
+        doc="x coordinate of the principal point; if 0, (width + 1) / 2.",
     )
     cy: float = tag(
-        "Cy", "cy", default=0.0, unit="px", doc="y of the principal point. 0: (height + 1) / 2."
+        "Cy",
+        "cy",
+        default=0.0,
+        unit="px",
+        doc="y coordinate of the principal point; if 0, (height + 1) / 2.",
     )
     cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="No effect.")
     k1: float = tag(
@@ -125,45 +134,46 @@ class CameraParameters:
     rectification: str = tag(
         "rectification_matrix",
         default="",
-        doc="Rectification matrix R: nine numbers, row by row (ROS 2). Default: identity.",
+        doc="Rectification matrix R: nine numbers, row by row (ROS 2 tag). Default: identity.",
     )
     p_fx: float | None = tag(
         "P_fx",
         default=None,
         unit="px",
-        doc="fx in the projection matrix P (ROS 2). Default: fx in K.",
+        doc="Element fx of the projection matrix P (ROS 2 tag). Default: fx in K.",
     )
     p_fy: float | None = tag(
         "P_fy",
         default=None,
         unit="px",
-        doc="fy in the projection matrix P (ROS 2). Default: fy in K.",
+        doc="Element fy of the projection matrix P (ROS 2 tag). Default: fy in K.",
     )
     p_cx: float | None = tag(
         "P_cx",
         default=None,
         unit="px",
-        doc="cx in the projection matrix P (ROS 2). Default: cx in K.",
+        doc="Element cx of the projection matrix P (ROS 2 tag). Default: cx in K.",
     )
     p_cy: float | None = tag(
         "P_cy",
         default=None,
         unit="px",
-        doc="cy in the projection matrix P (ROS 2). Default: cy in K.",
+        doc="Element cy of the projection matrix P (ROS 2 tag). Default: cy in K.",
     )
     p_tx: float | None = tag(
         "Tx",
         default=None,
-        doc="Tx in the projection matrix P (ROS 2). Default: -fx times the baseline.",
+        doc="Element Tx of the projection matrix P (ROS 2 tag). Default: -fx times "
+        "`<hackBaseline>`.",
     )
-    p_ty: float = tag("Ty", default=0.0, doc="Ty in the projection matrix P (ROS 2).")
+    p_ty: float = tag("Ty", default=0.0, doc="Element Ty of the projection matrix P (ROS 2 tag).")
     trigger_topic: str = tag(
         "triggerTopicName",
         default="image_trigger",
         doc="Topic of the Empty messages that trigger an image.",
     )
     triggered: bool = tag(
-        "triggered", default=False, doc="Publish an image only after a trigger message."
+        "triggered", default=False, doc="Whether to publish an image only after a trigger message."
     )
 
 
@@ -287,30 +297,31 @@ class DepthByTypeParameters(CameraParameters):
         "min_depth",
         default=0.4,
         unit="m",
-        doc="For sensors of type depth: depths at or below this value are -inf.",
+        doc="For sensors of type `depth`: depths at or below this value are published as -inf.",
     )
     max_depth: float = tag(
         "max_depth",
         default=math.inf,
         unit="m",
-        doc="For sensors of type depth: depths at or above this value are inf.",
+        doc="For sensors of type `depth`: depths at or above this value are published as inf.",
     )
 
 
 class Camera(RosCamera[DepthByTypeParameters]):
-    """Publishes the images of a camera sensor.
+    """Publishes the images of a camera sensor, and its calibration as CameraInfo messages.
 
-    The sensor looks along its x axis. Images are rendered only while one of the topics has
-    subscribers. The topics are in the namespace ``<cameraName>``. Each camera of a ``multicamera``
-    sensor has separate topics, such as ``<cameraName>/left/image_raw``. For a ``depth`` sensor, the
-    plugin also publishes depth images and points.
+    The camera looks along the x axis of the sensor. Images are rendered only while one of the
+    topics has subscribers. The topics are in the namespace ``<cameraName>``. Each camera of a
+    ``multicamera`` sensor has separate topics, such as ``<cameraName>/left/image_raw``. For a
+    ``depth`` sensor, the plugin also publishes depth images and point clouds.
 
-    ``image_raw/compressed`` contains JPEG or PNG images. The service ``set_camera_info`` replaces
-    the published CameraInfo but does not change the image. If the plugin tag is written for ROS 1,
-    ``imager_rate`` and the compression parameters can be changed with dynamic_reconfigure.
+    The messages on ``image_raw/compressed`` are JPEG or PNG images. The service ``set_camera_info``
+    replaces the published CameraInfo but does not change the image. If the plugin tag is written
+    for ROS 1, dynamic_reconfigure can change ``imager_rate`` and the compression parameters.
 
-    The image is distorted with the sensor's ``<distortion>``, or else with the plugin's
-    coefficients. ``camera_info`` contains the same coefficients.
+    Images are distorted with the coefficients in the sensor's ``<distortion>``. Without this tag,
+    they are distorted with the coefficients in the plugin's tags. The CameraInfo messages contain
+    the same coefficients.
 
     Original plugin: ``gazebo_ros_camera`` (with ``gazebo_ros_camera_utils``) in the package
     ``gazebo_plugins``, for ROS 1 and ROS 2.
@@ -339,9 +350,9 @@ class Camera(RosCamera[DepthByTypeParameters]):
 
 
 class TriggeredCamera(Camera):
-    """Publishes one image for each message on ``<cameraName>/image_trigger``.
+    """Publishes one camera image for each message on ``<cameraName>/image_trigger``.
 
-    Tags and topics are the same as for ``libgazebo_ros_camera.so``. Original plugins:
+    The tags and topics are the same as those of ``libgazebo_ros_camera.so``. Original plugins:
     ``gazebo_ros_triggered_camera`` and ``gazebo_ros_triggered_multicamera`` in the package
     ``gazebo_plugins``.
     """
@@ -356,16 +367,18 @@ class TriggeredCamera(Camera):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ProsilicaParameters(CameraParameters):
     poll_service: str = tag(
-        "pollServiceName", default="request_image", doc="No effect: the camera always streams."
+        "pollServiceName",
+        default="request_image",
+        doc="No effect: the camera always publishes continuously.",
     )
 
 
 class Prosilica(RosCamera[ProsilicaParameters]):
-    """Publishes the images of a Prosilica camera in streaming mode.
+    """Publishes the images of a Prosilica camera continuously (in streaming mode).
 
-    Topics are the same as for ``libgazebo_ros_camera.so``. Setting the parameter ``trigger_mode``
-    to ``polled`` has no effect, with a warning. Original plugin: ``gazebo_ros_prosilica`` in
-    the package ``gazebo_plugins``.
+    The topics are the same as those of ``libgazebo_ros_camera.so``. If the parameter
+    ``trigger_mode`` is ``polled``, Cartwheel reports a warning, and the camera still publishes
+    continuously. Original plugin: ``gazebo_ros_prosilica`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)

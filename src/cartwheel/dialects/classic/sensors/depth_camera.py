@@ -21,7 +21,7 @@ class DepthCameraParameters(CameraParameters):
     info_topic: str = tag(
         "cameraInfoTopicName",
         default="ir/camera_info",
-        doc="Topic of the CameraInfo for the colour images.",
+        doc="Topic of the CameraInfo messages for the colour images.",
     )
     depth_topic: str = tag(
         "depthImageTopicName", default="depth/image_raw", doc="Topic of the depth images."
@@ -29,24 +29,28 @@ class DepthCameraParameters(CameraParameters):
     depth_info_topic: str = tag(
         "depthImageCameraInfoTopicName",
         default="depth/camera_info",
-        doc="Topic of the CameraInfo for the depth images.",
+        doc="Topic of the CameraInfo messages for the depth images.",
     )
     points_topic: str = tag(
-        "pointCloudTopicName", default="points", doc="Topic of the point cloud (PointCloud2)."
+        "pointCloudTopicName", default="points", doc="Topic of the point clouds (PointCloud2)."
     )
     nearest: float = tag(
-        "pointCloudCutoff", default=0.4, unit="m", doc="Depths at or below this value are NaN."
+        "pointCloudCutoff",
+        default=0.4,
+        unit="m",
+        doc="Depths at or below this value are published as NaN.",
     )
     furthest: float = tag(
         "pointCloudCutoffMax",
         default=math.inf,
         unit="m",
-        doc="Depths at or above this value are NaN.",
+        doc="Depths at or above this value are published as NaN.",
     )
     millimetres: bool = tag(
         "useDepth16UC1Format",
         default=False,
-        doc="Publish depths as 16UC1 in mm, with 0 instead of NaN.",
+        doc="Whether to publish depth images with the encoding 16UC1: integers in mm, with 0 "
+        "instead of NaN.",
     )
     baseline: float = tag("baseline", default=0.0, unit="m", doc="No effect.")
     reflectance_topic: str = tag(
@@ -61,10 +65,10 @@ class DepthCameraParameters(CameraParameters):
 class DepthCamera(RosCamera[DepthCameraParameters]):
     """Publishes colour images, depth images and point clouds from a depth camera.
 
-    Depths are measured along the optical axis. Points have x right, y down and z forward, so
-    ``<frameName>`` should be an optical frame. The point cloud is organised: it contains one point
-    for each pixel, with the pixel's colour in ``rgb``. Reflectance and normals are not published,
-    as in Gazebo 11.
+    Depths are measured along the optical axis. In the frame of the points, x points right, y down
+    and z forward, so ``<frameName>`` should be an optical frame. The point cloud is organised: it
+    contains one point for each pixel, with the pixel's colour in ``rgb``. Reflectance and normals
+    are not published, as in Gazebo 11.
 
     Original plugin: ``gazebo_ros_depth_camera`` in the package ``gazebo_plugins``. See also REP 103
     and REP 118.
@@ -102,14 +106,17 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KinectParameters(DepthCameraParameters):
     furthest: float = tag(
-        "pointCloudCutoffMax", default=5.0, unit="m", doc="Depths at or above this value are NaN."
+        "pointCloudCutoffMax",
+        default=5.0,
+        unit="m",
+        doc="Depths at or above this value are published as NaN.",
     )
 
 
 class OpenniKinect(DepthCamera):
-    """Publishes colour images, depth images and points of a Kinect, by default up to 5 m.
+    """Publishes colour images, depth images and point clouds of a Kinect, by default up to 5 m.
 
-    Tags and topics are the same as for ``libgazebo_ros_depth_camera.so``. Original plugin:
+    The tags and topics are the same as those of ``libgazebo_ros_depth_camera.so``. Original plugin:
     ``gazebo_ros_openni_kinect`` in the package ``gazebo_plugins``.
     """
 

@@ -13,7 +13,7 @@ from cartwheel.dialects.tags import tag
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class F3DParameters:
-    body: str = tag("bodyName", role="link", doc="Link on which the wrench is measured.")
+    body: str = tag("bodyName", role="link", doc="Link whose force and torque are measured.")
     topic: str = tag(
         "topicName",
         default="f3d",
@@ -30,12 +30,11 @@ class F3DParameters:
 class F3D(Plugin[F3DParameters]):
     """Publishes the force and torque that contacts, attached objects and wrenches exert on a link.
 
-    Objects can be attached by plugins such as grippers, and wrenches applied by plugins or
-    services.
+    Plugins such as grippers can attach objects. Plugins and services can apply wrenches.
 
-    The torque is about the link's centre of mass. Both vectors are in the world frame. Gravity and
-    joint reaction forces are not included. A message is published at every step. Original plugin:
-    ``gazebo_ros_f3d`` in the package ``gazebo_plugins``.
+    The force and the torque are expressed in the world frame, and the torque is about the link's
+    centre of mass. Gravity and joint reaction forces are not included. A message is published at
+    every simulation step. Original plugin: ``gazebo_ros_f3d`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)

@@ -20,14 +20,16 @@ class FtSensorParameters:
         "joint_name",
         default="",
         role="joint",
-        doc="Joint on which the wrench is measured. Default: the sensor's joint.",
+        doc="Joint whose force and torque are measured. Default: the joint that contains the "
+        "sensor.",
     )
     body: str = tag(
         "body_name",
         default="",
         role="link",
-        doc="Link on which external forces are measured instead of a joint's wrench, as with "
-        "`libgazebo_ros_f3d.so` (ROS 2).",
+        doc="If set, the plugin measures the external force and torque on this link, as "
+        "`libgazebo_ros_f3d.so` does, instead of those of a joint. This tag comes from the "
+        "ROS 2 plugin.",
     )
     topic: str = tag(
         "topicName", "topic_name", default="wrench", doc="Topic of the WrenchStamped messages."
@@ -36,8 +38,9 @@ class FtSensorParameters:
         "frame_name",
         default="",
         role="frame",
-        doc="Frame ID of the wrench with `<body_name>`. A joint's wrench is in the frame of "
-        "its child link, as in Gazebo. Default: `world`.",
+        doc="Frame ID of the messages if `<body_name>` is set. Otherwise, this tag has no "
+        "effect: as in Gazebo, the frame is that of the joint's child link. Default: "
+        "`world`.",
     )
     noise: float = tag(
         "gaussianNoise",
@@ -51,17 +54,18 @@ class FtSensorParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. 0: the `<update_rate>` of the sensor that contains the plugin, or else "
-        "every step.",
+        doc="Publish rate. If 0, the `<update_rate>` of the sensor that contains the plugin "
+        "applies. Without a sensor, messages are then published at every simulation step.",
     )
 
 
 class FtSensor(Plugin[FtSensorParameters]):
     """Publishes the force and torque that a joint's child link exerts on its parent link.
 
-    The wrench is in the child link's frame, and the torque is about the joint. A hanging load
-    exerts a downward force. Fixed joints are supported without ``<preserveFixedJoint>``. Original
-    plugin: ``gazebo_ros_ft_sensor`` in the package ``gazebo_plugins``.
+    The force and the torque are expressed in the frame of the child link. The torque is about the
+    origin of the joint. For example, a load that hangs from the joint results in a downward force.
+    Fixed joints are supported without ``<preserveFixedJoint>``. Original plugin:
+    ``gazebo_ros_ft_sensor`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ft_sensor.so",)

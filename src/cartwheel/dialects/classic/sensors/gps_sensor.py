@@ -22,12 +22,13 @@ class GpsSensorParameters:
 
 
 class GpsSensor(Plugin[GpsSensorParameters]):
-    """Publishes the geographic position and the velocity of a ``gps`` sensor.
+    """Publishes the latitude, longitude, altitude and velocity that a ``gps`` sensor measures.
 
-    NavSatFix messages are published on ``~/out``. The velocity toward east, north and up is
-    published on ``~/vel``. The noise in the sensor's ``<gps>`` is applied, in m and m/s. The
-    position is relative to the world's ``<spherical_coordinates>``. Original plugin:
-    ``gazebo_ros_gps_sensor`` in the ROS 2 package ``gazebo_plugins``.
+    The position is published on ``~/out`` (NavSatFix). The velocity is published on ``~/vel``
+    (Vector3Stamped); its components point east, north and up. The world's
+    ``<spherical_coordinates>`` define the geographic position of the world's origin. The noise in
+    the sensor's ``<gps>`` is added to the position, in m, and to the velocity, in m/s. Original
+    plugin: ``gazebo_ros_gps_sensor`` in the ROS 2 package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)

@@ -21,10 +21,13 @@ class ImuParameters:
     service: str = tag(
         "serviceName",
         default="imu_service",
-        doc="Service of type Empty. Calls succeed and have no effect.",
+        doc="Name of a service of type Empty. Calls succeed but have no effect.",
     )
     frame: str = tag(
-        "frameName", default="", role="frame", doc="Frame ID of the messages. Default: the link."
+        "frameName",
+        default="",
+        role="frame",
+        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
     )
     noise: float = tag(
         "gaussianNoise",
@@ -51,16 +54,17 @@ class ImuParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. 0: every step.",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
 
 class Imu(Plugin[ImuParameters]):
-    """Publishes angular velocity, acceleration and orientation of an IMU on a link.
+    """Publishes the angular velocity, acceleration and orientation of an IMU on a link.
 
-    The acceleration includes the reaction to gravity, and both vectors are in the IMU frame (REP
-    145). Gazebo's plugin rotates the angular velocity the wrong way and omits gravity. Original
-    plugin: ``gazebo_ros_imu`` in the package ``gazebo_plugins``.
+    As REP 145 requires, the acceleration includes gravity: an IMU at rest measures 9.8 m/s²
+    upwards. The acceleration and the angular velocity are expressed in the IMU frame. Gazebo's
+    plugin omits gravity, and rotates the angular velocity in the wrong direction. Original plugin:
+    ``gazebo_ros_imu`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)

@@ -53,28 +53,31 @@ class ImuSensorParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
+        doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
+        "applies.",
     )
     initial_orientation: bool = tag(
         "initialOrientationAsReference",
         "initial_orientation_as_reference",
         default=False,
-        doc="Publish the orientation relative to the initial orientation instead of the world "
-        "(REP 145). The sensor's `<orientation_reference_frame>` takes precedence.",
+        doc="Whether to publish the orientation relative to the initial orientation instead of "
+        "the world (REP 145). The sensor's `<orientation_reference_frame>` takes "
+        "precedence.",
     )
 
 
 class ImuSensor(Plugin[ImuSensorParameters]):
     """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
-    With ``<ros>`` (ROS 2), the default topic is ``~/out``, which a ``<remapping>`` can rename.
-    Without ``<ros>`` (ROS 1), the topic is in the namespace ``<robotNamespace>``. If this tag is
-    missing and the model is part of a world file, the namespace is the model's name.
+    If the plugin tag contains ``<ros>``, it is treated as written for ROS 2: the default topic is
+    ``~/out``, which a ``<remapping>`` can rename. Otherwise, it is treated as written for ROS 1:
+    the topic is in the namespace ``<robotNamespace>``. If this tag is missing and the model is part
+    of a world file, the namespace is the model's name.
 
-    The orientation is relative to the world, or to the sensor's ``<orientation_reference_frame>``.
-    If ``<enable_orientation>`` is false, the orientation is not measured and the first element of
-    its covariance is -1. Original plugin: ``gazebo_ros_imu_sensor`` in the package
-    ``gazebo_plugins``. See also REP 145.
+    The orientation is relative to the world, or to the sensor's ``<orientation_reference_frame>``
+    if this tag is set. If ``<enable_orientation>`` is false, the orientation is not measured, and
+    the first element of its covariance is -1. Original plugin: ``gazebo_ros_imu_sensor`` in the
+    package ``gazebo_plugins``. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)

@@ -46,18 +46,18 @@ class JointStatePublisherParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
-        doc="Publish rate. 0: every step.",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
 
 class JointStatePublisher(Plugin[JointStatePublisherParameters]):
-    """Publishes positions and velocities of joints on ``joint_states``.
+    """Publishes the positions and velocities of joints on ``joint_states``.
 
     The topic is in the plugin's namespace. As in Gazebo Classic, the namespace is the model's name
-    if ``<robotNamespace>`` is empty, or if it is missing and the model is part of a world file. A
-    plugin tag for ROS 2, which contains ``<ros>``, ``<joint_name>`` or ``<update_rate>``, publishes
-    on ``/joint_states`` by default. Original plugin: ``gazebo_ros_joint_state_publisher`` in the
-    package ``gazebo_plugins``.
+    in two cases: if ``<robotNamespace>`` is empty, or if this tag is missing and the model is part
+    of a world file. A plugin tag that contains ``<ros>``, ``<joint_name>`` or ``<update_rate>`` is
+    treated as written for ROS 2: the default topic is then ``/joint_states``. Original plugin:
+    ``gazebo_ros_joint_state_publisher`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
@@ -99,12 +99,15 @@ class GzJointStatePublisherParameters:
         doc="Joint to publish. Repeat the tag for each joint. Default: all movable joints.",
     )
     update_rate: float = tag(
-        "update_rate", default=0.0, unit="Hz", doc="Publish rate. 0: every step."
+        "update_rate",
+        default=0.0,
+        unit="Hz",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
 
 class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
-    """Publishes positions, velocities and efforts of joints.
+    """Publishes the positions, velocities and efforts of joints as JointState messages.
 
     Original plugin: ``JointStatePublisher`` in gz-sim.
     """

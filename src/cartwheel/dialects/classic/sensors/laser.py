@@ -35,11 +35,11 @@ class LaserParameters:
 
 
 class Laser(Plugin[LaserParameters]):
-    """Publishes the ranges of a ray sensor as a LaserScan.
+    """Publishes the ranges that a ray sensor measures, as LaserScan messages.
 
-    As in Gazebo, a ``ray`` sensor measures the collision geometry, and a ``gpu_ray`` sensor
-    measures the visual geometry. All rays are measured simultaneously, so ``time_increment`` and
-    ``scan_time`` are 0. If the sensor has several rows, only the middle row is published.
+    As in Gazebo, a ``ray`` sensor detects collision shapes, and a ``gpu_ray`` sensor detects visual
+    shapes. All rays are measured simultaneously, so ``time_increment`` and ``scan_time`` are 0. If
+    the sensor has several rows of rays, only the middle row is published.
 
     Original plugins: ``gazebo_ros_laser`` and ``gazebo_ros_gpu_laser`` in the package
     ``gazebo_plugins``.

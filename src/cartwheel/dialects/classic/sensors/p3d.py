@@ -27,7 +27,7 @@ class P3DParameters:
         "frame_name",
         default="world",
         role="frame",
-        doc="Reference frame of pose and twist: a link, `world` or `map`.",
+        doc="Reference frame of the pose and the twist: a link, `world` or `map`.",
     )
     xyz_offset: tuple[float, float, float] = tag(
         "xyzOffset",
@@ -36,7 +36,7 @@ class P3DParameters:
         "xyz_offsets",
         default=(0.0, 0.0, 0.0),
         unit="m",
-        doc="Position offset, expressed in the reference frame.",
+        doc="Offset added to the position, expressed in the reference frame.",
     )
     rpy_offset: tuple[float, float, float] = tag(
         "rpyOffset",
@@ -45,7 +45,8 @@ class P3DParameters:
         "rpy_offsets",
         default=(0.0, 0.0, 0.0),
         unit="rad",
-        doc="Rotation applied to the orientation, about the axes of the reference frame.",
+        doc="Roll, pitch and yaw of a rotation that is applied to the orientation, about the "
+        "axes of the reference frame.",
     )
     noise: float = tag(
         "gaussianNoise",
@@ -59,16 +60,16 @@ class P3DParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate. 0: every step.",
+        doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
 
 class P3D(Plugin[P3DParameters]):
-    """Publishes the ground-truth pose and twist of a link as Odometry.
+    """Publishes the ground-truth pose and twist of a link as Odometry messages.
 
-    As in Gazebo, the twist is expressed in the reference frame instead of the link frame. If the
-    reference frame is a link, Gazebo rotates the twist the wrong way; Cartwheel does not. Original
-    plugin: ``gazebo_ros_p3d`` in the package ``gazebo_plugins``.
+    As in Gazebo, the twist is expressed in the axes of the reference frame ``<frameName>``, not of
+    the link. If the reference frame is a link, Gazebo rotates the twist in the wrong direction;
+    Cartwheel does not. Original plugin: ``gazebo_ros_p3d`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
@@ -137,10 +138,10 @@ class WorldOdometryParameters(P3DParameters):
 
 
 class WorldOdometry(P3D):
-    """Publishes a link's ground-truth pose in the world, with the twist in the link frame.
+    """Publishes the ground-truth pose of a link in the world, and its twist in the link frame.
 
-    Tags and topics are otherwise the same as for ``libgazebo_ros_p3d.so``. Original plugin:
-    ``gazebo_world_odometry`` in the package ``pal_gazebo_plugins``.
+    Apart from the twist, the plugin works like ``libgazebo_ros_p3d.so``, with the same tags and
+    topics. Original plugin: ``gazebo_world_odometry`` in the package ``pal_gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_world_odometry.so",)

@@ -28,9 +28,14 @@ class RangeParameters:
         role="frame",
         doc="Frame ID of the messages. Default: the sensor's link.",
     )
-    fov: float = tag("fov", default=0.05, unit="rad", doc="Field of view in the messages.")
+    fov: float = tag(
+        "fov",
+        default=0.05,
+        unit="rad",
+        doc="Field of view that the messages contain. It does not change the measurement.",
+    )
     radiation: Literal["ultrasound", "infrared"] = tag(
-        "radiation", default="ultrasound", doc="Radiation type in the messages."
+        "radiation", default="ultrasound", doc="Radiation type that the messages contain."
     )
     noise: float | None = tag(
         "gaussianNoise",
@@ -43,14 +48,16 @@ class RangeParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
-        doc="Publish rate, at most the sensor's rate. 0: the sensor's rate.",
+        doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
+        "applies.",
     )
 
 
 class Range(Plugin[RangeParameters]):
-    """Publishes the smallest range of a ray sensor, or its maximum range if nothing is hit.
+    """Publishes the smallest range that a ray sensor measures, as Range messages.
 
-    Original plugin: ``gazebo_ros_range`` in the package ``gazebo_plugins``.
+    If no ray hits an object, the maximum range is published. Original plugin: ``gazebo_ros_range``
+    in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_range.so",)

@@ -53,7 +53,7 @@ class RaySensorParameters:
         "min_intensity",
         "minIntensity",
         default=0.0,
-        doc="Intensities below this value are raised to it.",
+        doc="Minimum intensity. Lower intensities are replaced by this value.",
     )
     update_rate: float = tag(
         "updateRate",
@@ -65,11 +65,11 @@ class RaySensorParameters:
 
 
 class RaySensor(Plugin[RaySensorParameters]):
-    """Publishes the ranges of a ray sensor as LaserScan, PointCloud, PointCloud2 or Range.
+    """Publishes a ray sensor's ranges as LaserScan, PointCloud, PointCloud2 or Range messages.
 
-    A LaserScan contains the middle row. Point clouds contain only the points that were hit. A Range
-    is the minimum over all rays: inf if nothing was hit, -inf if an object is closer than the
-    minimum range (REP 117).
+    A LaserScan contains the middle row of rays. Point clouds contain no points for rays without a
+    hit. A Range is the smallest range of all rays. As in REP 117, it is inf without a hit, and -inf
+    if an object is closer than the minimum range.
 
     Original plugin: ``gazebo_ros_ray_sensor`` in the ROS 2 package ``gazebo_plugins``, with the
     conversions in ``gazebo_ros``.
