@@ -48,8 +48,9 @@ Gazebo whose tags and topics Cartwheel supports. The following rules apply to al
 - Unsupported tags are reported with file and line.
 - The namespace in `<robotNamespace>` or `<ros><namespace>` is added in front of every topic and
   service name that does not begin with `/`. `<ros><remapping>` renames topics and services.
-- In default names, `<model>`, `<world>`, `<link>`, `<joint>` and `<sensor>` stand for the names of
-  these elements. Any other name in angle brackets is a tag and stands for its value.
+- In names such as `/model/<model>/cmd_vel`, the words `<model>`, `<world>`, `<link>`, `<joint>` and
+  `<sensor>` stand for the names of these elements. A tag of the plugin, such as `<topic>`, stands
+  for its value.
 - A plugin that publishes sensor data is active only while one of its topics has subscribers. A
   plugin that drives joints or applies forces is always active. `<alwaysOn>` has no effect.
 - Folders in `filename` are ignored. The prefix `lib` and the extension `.so` are optional. The

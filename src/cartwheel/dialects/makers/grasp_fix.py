@@ -53,7 +53,11 @@ class GraspFixParameters:
         default=False,
         doc="Whether to disable the collisions of the attached object.",
     )
-    contact_topic: str = tag("contact_topic", default="", doc="No effect.")
+    contact_topic: str = tag(
+        "contact_topic",
+        default="",
+        doc="No effect: the plugin reads contacts directly from the simulation.",
+    )
 
 
 class GraspFix(Plugin[GraspFixParameters]):
