@@ -31,8 +31,8 @@ class CameraParameters:
         "camera_name",
         default="",
         role="namespace",
-        doc="Namespace of the topics. Default: the sensor's name, or no namespace if the plugin tag "
-        "contains tags with capital letters, such as `<imageTopicName>`.",
+        doc="Namespace of the topics. Default: the sensor's name, or no namespace if the plugin "
+        "tag contains tags with capital letters, such as `<imageTopicName>`.",
     )
     image_topic: str = tag(
         "imageTopicName", default="image_raw", role="topic", doc="Topic of the images."
