@@ -25,8 +25,8 @@ class GzContactParameters:
 class GzContact(Plugin[GzContactParameters]):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState messages.
 
-    If there is no contact, messages are published too. Their field ``states`` is empty. Original
-    plugin: ``Contact`` in gz-sim.
+    Messages are also published while there is no contact. Their field ``states`` is then empty.
+    Original plugin: ``Contact`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

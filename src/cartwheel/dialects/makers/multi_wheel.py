@@ -77,8 +77,8 @@ class MultiWheelParameters:
 class MultiWheelDrive(Plugin[MultiWheelParameters]):
     """Drives any number of left and right wheels as commanded by Twist messages.
 
-    All wheels on a side turn at the same speed. The plugin also publishes odometry. The odometry is
-    the ground-truth pose. Original plugin: ``diffdrive_plugin_multi_wheel`` in the package
+    All wheels on a side turn at the same speed. The plugin also publishes the ground-truth pose as
+    odometry. Original plugin: ``diffdrive_plugin_multi_wheel`` in the package
     ``hector_gazebo_plugins``.
     """
 

@@ -20,8 +20,8 @@ class FootContact(Plugin[FootContactParameters]):
     """Publishes the contact force on a robot's foot, in the frame of the foot's link.
 
     The topic is ``/visual/<sensor>/the_force``. The force is the sum over all contacts of the
-    sensor's collisions; in Gazebo it is their mean. Original plugin: ``foot_contact_plugin`` in the
-    package ``unitree_gazebo``.
+    sensor's collisions; in Gazebo, it is their mean. Original plugin: ``foot_contact_plugin`` in
+    the package ``unitree_gazebo``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)

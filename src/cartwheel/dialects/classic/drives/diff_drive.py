@@ -123,14 +123,14 @@ class DiffDriveParameters:
         "publish_odom",
         default=None,
         doc="Whether to publish the odometry as messages. Default: `true`, or `false` if the "
-        "plugin tag is written for ROS 2.",
+        "`<plugin>` is written for ROS 2.",
     )
     publish_odom_tf: bool | None = tag(
         "publishOdomTF",
         "publish_odom_tf",
         default=None,
         doc="Whether to publish the odometry as a transform on `/tf`. Default: `true`, or "
-        "`false` if the plugin tag is written for ROS 2.",
+        "`false` if the `<plugin>` is written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
@@ -169,8 +169,8 @@ class DiffDrive(Plugin[DiffDriveParameters]):
     Each wheel is driven by a velocity servo with the maximum torque ``<wheelTorque>``. A command
     stays in effect until the next command.
 
-    A plugin tag is treated as written for ROS 2 if it contains ``<ros>``, ``<left_joint>`` or
-    ``<right_joint>``, and otherwise as written for ROS 1. With a plugin tag for ROS 1, the topics
+    The ``<plugin>`` is treated as written for ROS 2 if it contains ``<ros>``, ``<left_joint>`` or
+    ``<right_joint>``, and otherwise as written for ROS 1. With a ``<plugin>`` for ROS 1, the topics
     are in a namespace with the model's name if the model is part of a world file and there is no
     ``<robotNamespace>``. Original plugin: ``gazebo_ros_diff_drive`` in the package
     ``gazebo_plugins``.

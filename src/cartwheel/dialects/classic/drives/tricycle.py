@@ -75,8 +75,8 @@ class TricycleParameters:
         "max_wheel_torque",
         default=None,
         unit="N m",
-        doc="Maximum torque of each motor. Default: 5, or 0.15 if the plugin tag is written "
-        "for ROS 2.",
+        doc="Maximum torque of each motor. Default: 5, or 0.15 if the `<plugin>` is written for "
+        "ROS 2.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
@@ -151,7 +151,7 @@ class TricycleParameters:
         "publish_odom",
         default=None,
         doc="Whether to publish the odometry and its transform. Default: `true`, or `false` if "
-        "the plugin tag is written for ROS 2.",
+        "the `<plugin>` is written for ROS 2.",
     )
     publish_wheel_tf: bool = tag(
         "publishWheelTF",
@@ -172,14 +172,14 @@ _ROS2 = {"ros"} | {name for name in tags_of(TricycleParameters) if name.islower(
 
 
 class ClassicTricycleDrive(Plugin[TricycleParameters]):
-    """Drives and steers the front wheel of a tricycle as commanded by Twist messages.
+    """Drives and steers a tricycle as commanded by Twist messages, and publishes odometry.
 
-    One wheel is driven and steered; the other two are passive. The plugin also publishes odometry.
+    One wheel is driven and steered. The other two wheels are passive.
 
-    A plugin tag is treated as written for ROS 2 if it contains ``<ros>`` or lower-case tags, such
-    as ``<steering_joint>``, and otherwise as written for ROS 1. With a plugin tag for ROS 1, the
-    topics are in a namespace with the model's name if the model is part of a world file and there
-    is no ``<robotNamespace>``. Original plugin: ``gazebo_ros_tricycle_drive`` in the package
+    The ``<plugin>`` is treated as written for ROS 2 if it contains ``<ros>`` or lower-case tags,
+    such as ``<steering_joint>``, and otherwise as written for ROS 1. With a ``<plugin>`` for ROS 1,
+    the topics are in a namespace with the model's name if the model is part of a world file and
+    there is no ``<robotNamespace>``. Original plugin: ``gazebo_ros_tricycle_drive`` in the package
     ``gazebo_plugins``.
     """
 

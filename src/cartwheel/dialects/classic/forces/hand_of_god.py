@@ -20,7 +20,7 @@ class HandOfGodParameters:
         "frame_id",
         default="hog",
         doc="Prefix of the frames `<frameId>_desired` (target) and `<frameId>_actual` (current "
-        "pose). If the plugin tag contains `<ros>`, the default is `world`.",
+        "pose). If the `<plugin>` contains `<ros>`, the default is `world`.",
     )
     stiffness: float = tag("kl", default=200.0, unit="N/m", doc="Stiffness of the linear spring.")
     turning: float = tag(
@@ -36,8 +36,8 @@ class HandOfGod(Plugin[HandOfGodParameters]):
     """Pulls a link to the pose of a tf frame with a critically damped spring.
 
     The target is the pose of the frame ``<frameId>_desired`` relative to ``world``. Until tf
-    provides this transform, the link is not pulled. The spring has no second end: no other body
-    receives a reaction force. The link's pose is published as the frame ``<frameId>_actual``.
+    provides this transform, the link is not pulled. The spring acts only on this link: no other
+    body receives a reaction force. The link's pose is published as the frame ``<frameId>_actual``.
     Original plugin: ``gazebo_ros_hand_of_god`` in the package ``gazebo_plugins``.
     """
 

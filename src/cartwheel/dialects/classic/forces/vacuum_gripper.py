@@ -37,7 +37,7 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
 
     The held link keeps its pose relative to the cup, as with a fixed joint. In Gazebo, the link is
     pulled towards the cup instead. The services ``on`` and ``off`` switch the gripper on and off.
-    If the plugin tag contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and
+    If the ``<plugin>`` contains ``<link_name>`` (ROS 2), the service ``switch`` replaces ``on`` and
     ``off``. Original plugin: ``gazebo_ros_vacuum_gripper`` in the package ``gazebo_plugins``.
     """
 

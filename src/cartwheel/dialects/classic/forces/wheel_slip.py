@@ -48,10 +48,10 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
     """Makes wheels slip on the ground, in proportion to the friction force.
 
     The slip speed is ``rim speed * slip compliance * friction force / normal force``, in the
-    lateral and in the longitudinal direction. A wheel that is not turning does not slip. The
-    friction coefficient limits the force, and therefore the slip.
+    lateral and the longitudinal direction. A wheel that is not turning does not slip. The friction
+    coefficient limits the force, and therefore the slip.
 
-    If the plugin tag of `libgazebo_ros_wheel_slip.so` contains ``<ros>`` (ROS 2), the plugin
+    If the ``<plugin>`` of `libgazebo_ros_wheel_slip.so` contains ``<ros>`` (ROS 2), the plugin
     publishes the slip of each wheel on ``wheel_slip``. The lateral slip is an angle in rad, and the
     longitudinal slip is a fraction of the rim speed. Without ``<ros>`` (ROS 1), dynamic_reconfigure
     can change the slip compliances of all wheels. Its topics and services are under

@@ -53,8 +53,8 @@ class Harness(Plugin[HarnessParameters]):
 
     The winch moves at the velocity that it receives on ``/<model>/harness/velocity`` (Float32, in
     m/s). A message with the value true on ``/<model>/harness/detach`` (Bool) detaches the joint
-    that ``<detach>`` names. If the plugin tag contains ``<ros>``, the type of this topic is Empty,
-    and both topics are in the plugin's namespace.
+    that ``<detach>`` names. If the ``<plugin>`` contains ``<ros>``, the type of this topic is
+    Empty, and both topics are in the plugin's namespace.
 
     Each joint acts as a rope, which pulls but does not push. While the robot stands on the ground,
     the rope is slack and exerts no force. A taut rope holds the link rigidly, as a prismatic joint

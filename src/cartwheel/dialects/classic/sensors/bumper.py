@@ -39,8 +39,8 @@ class BumperParameters:
 class Bumper(Plugin[BumperParameters]):
     """Publishes the contacts of a sensor's collisions as ContactsState messages.
 
-    If there is no contact, messages are published too. Their field ``states`` is empty. Original
-    plugin: ``gazebo_ros_bumper`` in the package ``gazebo_plugins``.
+    Messages are also published while there is no contact. Their field ``states`` is then empty.
+    Original plugin: ``gazebo_ros_bumper`` in the package ``gazebo_plugins``.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)

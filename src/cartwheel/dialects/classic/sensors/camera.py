@@ -31,8 +31,8 @@ class CameraParameters:
         "camera_name",
         default="",
         role="namespace",
-        doc="Namespace of the topics. Default: the sensor's name, or no namespace if the plugin "
-        "tag contains tags with capital letters, such as `<imageTopicName>`.",
+        doc="Namespace of the topics. Default: the sensor's name, or no namespace if the "
+        "`<plugin>` contains tags with capital letters, such as `<imageTopicName>`.",
     )
     image_topic: str = tag(
         "imageTopicName", default="image_raw", role="topic", doc="Topic of the images."
@@ -316,10 +316,10 @@ class Camera(RosCamera[DepthByTypeParameters]):
     ``depth`` sensor, the plugin also publishes depth images and point clouds.
 
     The messages on ``image_raw/compressed`` are JPEG or PNG images. The service ``set_camera_info``
-    replaces the published CameraInfo but does not change the image. With a plugin tag for ROS 1,
-    dynamic_reconfigure can change ``imager_rate`` and the compression parameters. A plugin tag is
-    treated as written for ROS 2 if it contains ``<ros>``, or if all its tags are lower case and one
-    contains ``_``, and otherwise as written for ROS 1.
+    replaces the published CameraInfo but does not change the image. With a ``<plugin>`` for ROS 1,
+    dynamic_reconfigure can change ``imager_rate`` and the compression parameters. The ``<plugin>``
+    is treated as written for ROS 2 if it contains ``<ros>``, or if all its tags are lower case and
+    one contains ``_``, and otherwise as written for ROS 1.
 
     Images are distorted with the coefficients in the sensor's ``<distortion>``. Without this tag,
     they are distorted with the coefficients in the plugin's tags. The CameraInfo messages contain

@@ -69,7 +69,7 @@ class ImuSensorParameters:
 class ImuSensor(Plugin[ImuSensorParameters]):
     """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
-    If the plugin tag contains ``<ros>``, it is treated as written for ROS 2: the default topic is
+    If the ``<plugin>`` contains ``<ros>``, it is treated as written for ROS 2: the default topic is
     ``~/out``, which a ``<remapping>`` can rename. Otherwise, it is treated as written for ROS 1:
     the topic is in the namespace ``<robotNamespace>``. If this tag is missing and the model is part
     of a world file, the namespace is the model's name.

@@ -55,8 +55,8 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
 
     The topic is in the plugin's namespace. As in Gazebo Classic, the namespace is the model's name
     in two cases: if ``<robotNamespace>`` is empty, or if this tag is missing and the model is part
-    of a world file. A plugin tag that contains ``<ros>``, ``<joint_name>`` or ``<update_rate>`` is
-    treated as written for ROS 2: the default topic is then ``/joint_states``. Original plugin:
+    of a world file. A ``<plugin>`` that contains ``<ros>``, ``<joint_name>`` or ``<update_rate>``
+    is treated as written for ROS 2: the default topic is then ``/joint_states``. Original plugin:
     ``gazebo_ros_joint_state_publisher`` in the package ``gazebo_plugins``.
     """
 
