@@ -6,9 +6,11 @@ the other end does not notice that the parent has exited.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import weakref
+from pathlib import Path
 from typing import Protocol
 
 
@@ -31,6 +33,46 @@ def keep_socket(sock: socket.socket) -> None:
 def keep_object(owner: Parental) -> None:
     """Calls the object's `leave_to_parent` in forked processes."""
     _objects.add(owner)
+
+
+class AddressSockets:
+    """Keeps all sockets of a server out of forked processes, if a library opens them.
+
+    Args:
+        address: Address of the server, which no other server uses.
+    """
+
+    def __init__(self, address: tuple[str, int]) -> None:
+        self._address = address
+        keep_object(self)
+
+    def leave_to_parent(self) -> None:
+        """Replaces the sockets at both ends by the null device.
+
+        The library's objects close the file descriptors at some time, so their numbers must not
+        become free for other files.
+        """
+        null = os.open(os.devnull, os.O_RDWR)
+        for file in Path("/dev/fd").iterdir():
+            with contextlib.suppress(OSError):  # Not a socket, or the descriptor of this listing.
+                if self._uses(int(file.name)):
+                    os.dup2(null, int(file.name), inheritable=False)
+        os.close(null)
+
+    def _uses(self, descriptor: int) -> bool:
+        sock = socket.socket(fileno=descriptor)
+        try:
+            return self._address in (sock.getsockname(), _peer(sock))
+        finally:
+            sock.detach()
+
+
+def _peer(sock: socket.socket) -> object:
+    """Address of the other end; None for a listening socket."""
+    try:
+        return sock.getpeername()
+    except OSError:
+        return None
 
 
 def _after_fork() -> None:

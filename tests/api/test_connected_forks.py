@@ -53,6 +53,48 @@ world.run(0.5)
 world.close()
 assert world.time == 1.0
 """
+_PAGE = """
+import socket, urllib.request
+from websockets.sync.client import connect
+import viser
+
+url = world.show()
+def page_works():
+    with urllib.request.urlopen(url, timeout=60) as answer:
+        return answer.status == 200
+def addresses():
+    for name in os.listdir("/dev/fd"):
+        try:
+            with socket.socket(fileno=os.dup(int(name))) as each:
+                yield each.getsockname()
+        except OSError:
+            pass
+def ours():
+    return [each for each in addresses() if each and each[0].startswith("127.")]
+
+protocol = f"viser-v{viser.__version__}"
+with connect(url.replace("http", "ws"), subprotocols=[protocol], max_size=None) as browser:
+    browser.recv(60)
+    # The gate, the server behind it, and both ends of two connections.
+    assert len(ours()) >= 6, ours()
+    child = os.fork()
+    if not child:
+        faulthandler.dump_traceback_later(40, exit=True)
+        own = browser.socket.detach()
+        os.close(own)
+        assert ours() == [], ours()
+        with cw.World("empty", viewer=0) as other:
+            url = other.show()
+            assert page_works()
+            other.run(0.1)
+        sys.exit(7)
+    assert ended(child) == 7
+    assert page_works()
+    assert browser.ping().wait(60)
+world.run(0.5)
+world.close()
+assert world.time == 1.0
+"""
 _IN_CALLBACK = """
 parent = os.getpid()
 children = []
@@ -91,7 +133,9 @@ def _started(script, file):
     )
 
 
-@pytest.mark.parametrize("script", [_CHILD, _IN_CALLBACK], ids=["between runs", "in a callback"])
+@pytest.mark.parametrize(
+    "script", [_CHILD, _IN_CALLBACK, _PAGE], ids=["between runs", "in a callback", "web interface"]
+)
 def test_a_fork_leaves_the_connections_to_the_parent(script, tmp_path):
     with _started(_WORLD + script, tmp_path / "drive.mcap") as parent:
         _, errors = parent.communicate(timeout=100)

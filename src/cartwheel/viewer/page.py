@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from cartwheel.codes.recording import UPLOAD_REFUSED, VIEWER_FAULT
 from cartwheel.errors import UNCLASSIFIED, CartwheelError, Code, Diagnostic
+from cartwheel.forks import AddressSockets
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import hidden_host
 from cartwheel.viewer import viser_internals
@@ -70,7 +71,10 @@ class Page:
         logging.getLogger("websockets").addHandler(logging.NullHandler())
         host = hidden_host()
         self.server: Any = _quietly(lambda: viser.ViserServer(host, 0, verbose=False))
-        self._gate = Gate(listener, access, (host, self.server.get_port()), refused=refused)
+        hidden = (host, self.server.get_port())
+        # viser opens these sockets itself.
+        self._parental = AddressSockets(hidden)
+        self._gate = Gate(listener, access, hidden, refused=refused)
         self.url = access.url("http", listener.getsockname()[1])
         """URL for browsers."""
         self._jobs: queue.SimpleQueue[tuple[Callable[[], object], int | None] | None]
