@@ -7,15 +7,9 @@ import pytest
 
 from cartwheel.codes.wires import PEER_LIMIT
 from cartwheel.codes.wires import SLOW_SUBSCRIBER as SLOW
-from cartwheel.errors import (
-    DescriptionError,
-    Diagnostic,
-    Once,
-    Origin,
-    Reporter,
-    UnknownNameError,
-    likely,
-)
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, UnknownNameError
+from cartwheel.reporting import Once, Reporter
+from cartwheel.similar_names import likely
 
 PLACE = Origin(file="a.urdf", line=3)
 

@@ -47,3 +47,23 @@ def mapped(future: Future[S], function: Callable[[S], T]) -> Future[T]:
 
     future.add_done_callback(take)
     return made
+
+
+def raise_exit(error: BaseException) -> None:
+    """Raises the SystemExit of a signal handler again; does nothing for other errors.
+
+    ``sys.exit`` in a plugin is an error of the plugin. A signal handler that calls it may interrupt
+    the code of any plugin, and must end the program.
+    """
+    if not isinstance(error, SystemExit):
+        return
+    import signal
+
+    handlers = [signal.getsignal(number) for number in signal.valid_signals()]
+    functions = [getattr(each, "func", each) for each in handlers]  # of `functools.partial`
+    codes = {getattr(each, "__code__", None) for each in functions} - {None}
+    trace = error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code in codes:
+            raise error
+        trace = trace.tb_next

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
-import threading
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from cartwheel.budget import Budget
+from cartwheel.similar_names import LONGEST, SIMILAR, closest, suggested
 
 Severity = Literal["info", "warning", "error"]
-
-_SIMILAR = 0.6
-"""Minimum similarity of two names for a suggestion."""
-_LONGEST = 500
-"""Maximum length of a name that is shown in full and compared with other names."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -353,13 +346,13 @@ class UnknownNameError(CartwheelError):
         origin: Origin | None = None,
     ) -> None:
         known = sorted(set(existing))
-        shown = name if len(name) <= _LONGEST else f"{name[:_LONGEST]}…"
-        close = _close(name, known, _SIMILAR)
+        shown = name if len(name) <= LONGEST else f"{name[:LONGEST]}…"
+        close = closest(name, known, SIMILAR)
         super().__init__(
             f'{kind} "{shown}" does not exist',
             code=code,
             origin=origin,
-            hint=_suggested(close, known),
+            hint=suggested(close, known),
             values={"kind": kind, "name": shown, "meant": close[0] if close else ""},
         )
 
@@ -405,156 +398,3 @@ def fault(
         values={**(values or {}), "cause": cause},
         details="".join(traceback.format_exception(error)).rstrip(),
     )
-
-
-class Once:
-    """Selects the warnings to show: each one once, and different warnings at a limited rate.
-
-    Two warnings are the same if their codes, locations and values are equal. Values may contain
-    names chosen by remote clients, so the number of warnings is limited, but a warning after a
-    flood is still shown. Suppressed warnings are counted. Thread-safe.
-
-    Args:
-        most: Different warnings in a burst; after that, one every 10 s.
-    """
-
-    PAUSE = 10.0
-    """Interval between warnings after the burst, s."""
-
-    def __init__(self, most: int) -> None:
-        self._budget = Budget(most, 1 / self.PAUSE)
-        self._most = most
-        self._shown: dict[int, None] = {}
-        """Hashes of the latest warnings, because their values may be long."""
-        self._left_out = 0
-        self._lock = threading.Lock()
-
-    def __call__(self, diagnostic: Diagnostic) -> Diagnostic | None:
-        """Returns the warning with the number of suppressed warnings, or None if it is suppressed.
-
-        The number is also in its values, as ``left_out``.
-        """
-        left_out = self._take(_identity(diagnostic))
-        if left_out is None:
-            return None
-        if left_out < 0:
-            more = f" (from now on, at most one such warning is shown every {self.PAUSE:g} s)"
-            return replace(diagnostic, message=diagnostic.message + more)
-        if not left_out:
-            return diagnostic
-        return replace(
-            diagnostic,
-            message=f"{diagnostic.message} (warnings not shown: {left_out})",
-            values={**diagnostic.values, "left_out": left_out},
-        )
-
-    def allows(self, key: Hashable) -> bool:
-        """Whether a warning with this key is shown, before the warning is created."""
-        return self._take(hash(key)) is not None
-
-    def _take(self, key: int) -> int | None:
-        """Number of warnings suppressed before; -1 for the last in a burst; None if suppressed."""
-        with self._lock:
-            if key in self._shown:
-                return None
-            if not self._budget.take():
-                self._left_out += 1
-                return None
-            self._shown[key] = None
-            if len(self._shown) > self._most:
-                del self._shown[next(iter(self._shown))]
-            elif len(self._shown) == self._most:
-                return -1
-            left_out, self._left_out = self._left_out, 0
-            return left_out
-
-
-class Reporter:
-    """Reports each diagnostic once, as selected by `Once`. Thread-safe.
-
-    Args:
-        report: Called with each diagnostic to show.
-        most: As for `Once`.
-        title: The source of the diagnostics, as a prefix to each message.
-    """
-
-    def __init__(
-        self, report: Callable[[Diagnostic], object], most: int, *, title: str = ""
-    ) -> None:
-        self._report = report
-        self._once = Once(most)
-        self._before = f"{title}: " if title else ""
-
-    def __call__(self, diagnostic: Diagnostic) -> None:
-        """Reports a diagnostic that has not been reported yet."""
-        if shown := self._once(diagnostic):
-            self.always(shown)
-
-    def always(self, diagnostic: Diagnostic) -> None:
-        """Reports a diagnostic even if it has been reported before."""
-        self._report(replace(diagnostic, message=f"{self._before}{diagnostic.message}"))
-
-
-def _identity(diagnostic: Diagnostic) -> int:
-    if diagnostic.code is UNCLASSIFIED:
-        return hash((diagnostic.message, diagnostic.origin))
-    return hash((diagnostic.code.number, diagnostic.origin, diagnostic.sorted_values))
-
-
-def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
-    """A sentence that suggests the most similar name in `existing`, or an empty string."""
-    meant = meant_one(name, existing, cutoff=cutoff)
-    return f'Did you mean "{meant}"?' if meant else ""
-
-
-def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
-    """The most similar name in `existing`, or an empty string."""
-    close = _close(name, list(existing), cutoff)
-    return close[0] if close else ""
-
-
-def meant(name: str, existing: Iterable[str]) -> str:
-    """The name that `suggestion` suggests; empty if no name is similar."""
-    return meant_one(name, existing, cutoff=_SIMILAR)
-
-
-def suggestion(name: str, existing: Iterable[str]) -> str:
-    """A sentence that suggests the most similar name in `existing`, or lists all names."""
-    known = list(existing)
-    return _suggested(_close(name, known, _SIMILAR), known)
-
-
-def _suggested(close: Sequence[str], known: Sequence[str]) -> str:
-    if not known:
-        return "Valid names: none."
-    if close:
-        return f'Did you mean "{close[0]}"?'
-    shown = ", ".join(known[:12])
-    return f"Valid names: {shown}{', …' if len(known) > 12 else ''}."
-
-
-def _close(name: str, known: list[str], cutoff: float) -> list[str]:
-    """The most similar name; empty for overlong names, which remote clients may send."""
-    if len(name) > _LONGEST:
-        return []
-    return difflib.get_close_matches(name, known, n=1, cutoff=cutoff)
-
-
-def raise_exit(error: BaseException) -> None:
-    """Raises the SystemExit of a signal handler again; does nothing for other errors.
-
-    ``sys.exit`` in a plugin is an error of the plugin. A signal handler that calls it may interrupt
-    the code of any plugin, and must end the program.
-    """
-    if not isinstance(error, SystemExit):
-        return
-    import signal
-
-    handlers = [signal.getsignal(number) for number in signal.valid_signals()]
-    functions = [getattr(each, "func", each) for each in handlers]  # of `functools.partial`
-    codes = {getattr(each, "__code__", None) for each in functions} - {None}
-    trace = error.__traceback__
-    while trace is not None:
-        if trace.tb_frame.f_code in codes:
-            raise error
-        trace = trace.tb_next

@@ -14,6 +14,7 @@ REPRESENTATIVE = {
     "bridges": "tests/bridges/test_apart_link.py",
     "checks": "tests/checks/test_checks.py",
     "cli": "tests/cli/test_gazebo_arguments.py",
+    "component": "tests/component/test_component.py",
     "control": "tests/control/test_registry.py",
     "description": "tests/description/test_loading.py",
     "devices": "tests/devices/cameras/test_camera_services.py",

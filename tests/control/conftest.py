@@ -33,7 +33,7 @@ def box(name: str = "box") -> RobotDescription:
     return RobotDescription(name=name, links=(link,), canonical_link="link", origin=ORIGIN)
 
 
-def load(path: Path, arguments: dict[str, str], _: list[Path]) -> RobotDescription:
+def load(path: Path, *, arguments: dict[str, str], **_: list[Path]) -> RobotDescription:
     """Stands in for reading a file: its name decides what comes."""
     if path.name == "bad.urdf":
         raise DescriptionError(

@@ -16,7 +16,8 @@ from cartwheel.description.elements import numbers, xml
 from cartwheel.description.files import install_rules as installed
 from cartwheel.description.files import missing_packages as missing
 from cartwheel.dialects.ros_control.substitution import substitute
-from cartwheel.errors import CartwheelError, suggestion
+from cartwheel.errors import CartwheelError
+from cartwheel.similar_names import suggestion
 
 MOST = 3.0
 """s of CPU time. Each takes a minute and more where a search begins anew at each character."""

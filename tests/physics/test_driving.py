@@ -9,7 +9,7 @@ import pytest
 from cartwheel.description import load_text
 from cartwheel.description.model import Physics
 from cartwheel.geometry import Pose
-from cartwheel.world.bodies import _MOTOR_REFERENCE
+from cartwheel.world.actuation import _MOTOR_REFERENCE
 from cartwheel.world.build import DEFAULT_STEP
 
 COMMAND = "/part2_cmr/cmd_vel"

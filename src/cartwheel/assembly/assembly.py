@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from cartwheel.assembly.viewer_on_demand import ViewerOnDemand
     from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.control.server import ControlServer
-    from cartwheel.description.model import RobotDescription
     from cartwheel.gazebo import GazeboApi
     from cartwheel.gazebo.robot_descriptions import RobotDescriptions
     from cartwheel.gazebo.robot_states import RobotStates
@@ -140,9 +139,10 @@ class Assembly:
             ControlError: The socket cannot be created.
         """
         from cartwheel.control.server import ControlServer
+        from cartwheel.description import load_robot
 
         world = world_title(self.session.simulation.world)
-        server = ControlServer(self.session, title=title, load=_load_robot, world=world, ros=ros)
+        server = ControlServer(self.session, title=title, load=load_robot, world=world, ros=ros)
         self._stack.enter_context(self._at_end(server.close))
         self._control = server
 
@@ -396,11 +396,3 @@ class Assembly:
             RecordingError: A recording has failed.
         """
         self._stack.close()
-
-
-def _load_robot(
-    path: Path, values: Mapping[str, str], package_path: Sequence[Path]
-) -> RobotDescription:
-    from cartwheel.description import load_robot
-
-    return load_robot(path, arguments=values, package_path=package_path)

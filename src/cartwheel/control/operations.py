@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,8 +37,8 @@ _MOST_WAITING = 1000
 
 T = TypeVar("T")
 Answer = dict[str, Any]
-Load = Callable[[Path, Mapping[str, str], Sequence[Path]], RobotDescription]
-"""Reads a description from a file, with ``name:=value`` arguments and package folders."""
+Load = Callable[..., RobotDescription]
+"""Reads a file, with the keywords `arguments` and `package_path` of `load_robot`."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -185,8 +185,8 @@ class Operations:
         }
         description = self._load(
             path,
-            parameters.texts("arguments"),
-            [Path(folder) for folder in parameters.list_of_texts("package_path")],
+            arguments=parameters.texts("arguments"),
+            package_path=[Path(folder) for folder in parameters.list_of_texts("package_path")],
         )
         pose = placed(description.pose, given)
         wanted = parameters.text("model", "") or None

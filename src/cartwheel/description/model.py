@@ -3,6 +3,8 @@
 SI units. Frames follow SDF: a link's pose is relative to its model; the pose of a visual,
 collision, inertial or sensor is relative to its link, and a joint's to its child link
 (`Joint.pose`). Every element contains its location in the user's file.
+
+The file is long because it is one table of types, which readers look up together.
 """
 
 # ruff: noqa: RUF009  (the defaults that are called for, such as Pose(), are frozen themselves)

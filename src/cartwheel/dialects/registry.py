@@ -20,12 +20,8 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
-from cartwheel.errors import (
-    CartwheelError,
-    StaticModelError,
-    UnknownNameError,
-    meant_one,
-)
+from cartwheel.errors import CartwheelError, StaticModelError, UnknownNameError
+from cartwheel.similar_names import meant_one
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
 

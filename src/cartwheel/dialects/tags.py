@@ -12,7 +12,8 @@ from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element
 from cartwheel.dialects.tag_roles import JOINT_ROLES, Role, TagRole
-from cartwheel.errors import Diagnostic, Origin, PluginError, Value, meant_one
+from cartwheel.errors import Diagnostic, Origin, PluginError, Value
+from cartwheel.similar_names import meant_one
 
 C = TypeVar("C")
 

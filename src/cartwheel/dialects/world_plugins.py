@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import functools
 
+from cartwheel.calls import raise_exit
 from cartwheel.codes import devices, running
 from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.sensor_tags import SYSTEMS
 from cartwheel.dialects.plugin_files import PluginFiles
-from cartwheel.errors import CartwheelError, Diagnostic, fault, raise_exit
+from cartwheel.errors import CartwheelError, Diagnostic, fault
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
 

@@ -18,12 +18,12 @@ from typing import Protocol
 
 import h11
 
-from cartwheel.errors import Once
 from cartwheel.forks import keep_socket
 from cartwheel.gate.access import Access, Refusal
 from cartwheel.gate.frames import FrameError, Frames, Room
 from cartwheel.gate.relay import relay
 from cartwheel.gate.request import HEAD_SIZE, Request, RequestError, next_event, read_request
+from cartwheel.reporting import Once
 
 MOST_WAITING = 128
 """Maximum number of connections whose request is incomplete. A new one replaces the oldest."""

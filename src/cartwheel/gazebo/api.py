@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from cartwheel.errors import CartwheelError, Reporter
+from cartwheel.errors import CartwheelError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.forces import Pushes
 from cartwheel.gazebo.metrics import Metrics
@@ -16,6 +16,7 @@ from cartwheel.gazebo.requests import REPORTED, answering
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import StateCommands, States, StateTopics
 from cartwheel.graph import Service
+from cartwheel.reporting import Reporter
 from cartwheel.session import Session
 
 NODE = "gazebo"

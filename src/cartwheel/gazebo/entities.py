@@ -9,8 +9,9 @@ import numpy as np
 
 from cartwheel.codes.graph import ENTITY_AMBIGUOUS, ENTITY_UNKNOWN
 from cartwheel.description.model import Joint, Light, Link, RobotDescription
-from cartwheel.errors import GraphError, UnknownNameError, suggestion
+from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
+from cartwheel.similar_names import suggestion
 from cartwheel.simulation import LinkHandle, PlacedModel, Simulation
 from cartwheel.world.entry import scoped
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.errors import CartwheelError, Reporter, UnknownNameError
+from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.forces import Pushes
 from cartwheel.gazebo.metrics import Metrics
@@ -28,6 +28,7 @@ from cartwheel.gazebo.state import States, StateTopics
 from cartwheel.gazebo.world_services import WorldServices
 from cartwheel.graph import Service
 from cartwheel.messages import header, message_class
+from cartwheel.reporting import Reporter
 from cartwheel.session import Session
 
 NODE = "gazebo"

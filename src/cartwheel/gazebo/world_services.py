@@ -13,12 +13,13 @@ from cartwheel.codes.graph import (
     SPAWN_INVALID,
 )
 from cartwheel.description.model import Light, RobotDescription
-from cartwheel.errors import GraphError, Reporter
+from cartwheel.errors import GraphError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import Answer, Offer, pose
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.geometry import Pose
 from cartwheel.messages.times import nanoseconds
+from cartwheel.reporting import Reporter
 from cartwheel.simulation import Simulation
 
 _PACKAGE = "ros_gz_interfaces/srv"

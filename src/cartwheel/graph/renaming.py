@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.codes import devices
-from cartwheel.errors import Diagnostic, Origin, suggestion
+from cartwheel.errors import Diagnostic, Origin
 from cartwheel.messages.fields import fields
+from cartwheel.similar_names import suggestion
 
 CLOCK = "rosgraph_msgs/msg/Clock"
 IMAGES = ("/compressed", "/compressedDepth")

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID
-from cartwheel.errors import GraphError, meant, suggestion
+from cartwheel.errors import GraphError
 from cartwheel.messages.fields import FILLER, Field, fields
 from cartwheel.messages.store import message_class
+from cartwheel.similar_names import meant, suggestion
 
 _ROS1_NAMES: dict[str, dict[str, str | None]] = {
     "builtin_interfaces/msg/Time": {"secs": "sec", "nsecs": "nanosec"},

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from cartwheel.calls import raise_exit
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
-from cartwheel.errors import Diagnostic, Once, PluginError, SimulationError, fault, raise_exit
+from cartwheel.errors import Diagnostic, PluginError, SimulationError, fault
 from cartwheel.options import STRICT
+from cartwheel.reporting import Once
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.models.population import Population

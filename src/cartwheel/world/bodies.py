@@ -6,68 +6,25 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from cartwheel.codes import world as world_codes
-from cartwheel.description.inertia import tensor
-from cartwheel.description.model import (
-    Collision,
-    Inertial,
-    Joint,
-    Link,
-    Plane,
-    RobotDescription,
-)
+from cartwheel.description.model import Collision, Joint, Link, Plane, RobotDescription
 from cartwheel.errors import WorldError
-from cartwheel.geometry import (
-    IDENTITY,
-    Array,
-    Pose,
-    Vec3,
-    matrix_from_quat,
-    quat_from_matrix,
-    rotate,
-    to_wxyz,
-)
+from cartwheel.geometry import Pose, Vec3, rotate
 from cartwheel.world import contact, joints
-from cartwheel.world.entry import (
-    DRIVE_AXES,
-    ROTOR,
-    SHIFT,
-    TURN,
-    TYRE,
-    BodyDrive,
-    CameraMount,
-    ModelEntry,
-    Motor,
-    part_name,
-    scoped,
-)
+from cartwheel.world.actuation import add_requested
+from cartwheel.world.entry import SHIFT, TURN, TYRE, ModelEntry, part_name, scoped
+from cartwheel.world.inertials import set_inertial
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets, pose_arguments, solids
 from cartwheel.world.tyres import Axle, axle_of, lowest, tread_of, tyre
 from cartwheel.world.visuals import add_visual
 
 COLLISION_GROUP = 4
-_CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
-"""Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
-_MOTOR_REFERENCE = (0.01, 1.0)
-_MOTOR_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 TYRE_MASS = 1e-6
 """Mass of a tyre that slips on its wheel, kg: small enough to have no effect."""
 _TYRE_SHARE = 0.02
 """Inertia of a slipping tyre as a fraction of the model's mass."""
-ROTOR_INERTIA = 1e6
-"""kg m²; large enough that no load slows a rotor."""
-_STRONGEST = 1e6
-"""N m or N; limit of a motor without a stated limit."""
-_THINNEST = 1e-6
-"""Minimum ratio of a body's smallest to largest moment of inertia."""
-_LEAST = 1e-12
-"""Minimum moment of inertia, kg m²; the engine treats smaller values as zero."""
-_POINT = 1e-6
-"""Inertia of a point mass divided by its mass, m²: the engine requires a positive value."""
-_WORLD_SITE = "world::site"
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,13 +109,7 @@ class BodyBuilder:
         for joint in loops:
             joints.close_loop(self._spec, entry, joint)
         self._exclude(entry, description)
-        self._add_mimics(entry)
-        for motor in entry.motors.values():
-            self._add_motor(entry, motor)
-        for drive in entry.drives:
-            self._add_drive(entry, bodies[drive.link], drive)
-        for camera in entry.cameras:
-            self._add_camera(entry, bodies[camera.link], camera)
+        add_requested(self._spec, entry, bodies)
 
     def _grow(
         self, entry: ModelEntry, branch: _Branch, joint: Joint | None, *, senses: bool
@@ -194,7 +145,7 @@ class BodyBuilder:
         trunk: bool,
     ) -> None:
         if link.inertial is not None:
-            _set_inertial(body, link.inertial)
+            set_inertial(body, link.inertial)
         if not link.gravity:
             body.gravcomp = 1.0
         for visual in link.visuals:
@@ -295,85 +246,6 @@ class BodyBuilder:
                 if joined or not (collides(first) and collides(second)):
                     self._spec.add_exclude(bodyname1=body(first), bodyname2=body(second))
 
-    def _add_mimics(self, entry: ModelEntry) -> None:
-        for joint in entry.description.joints:
-            mimic = entry.mimics.get(joint.name, joint.mimic)
-            if mimic is not None and joint.type != "fixed" and not entry.description.static:
-                joints.couple(
-                    self._spec,
-                    scoped(entry.name, joint.name, "mimic"),
-                    scoped(entry.name, joint.name),
-                    scoped(entry.name, mimic.joint),
-                    ratio=mimic.multiplier,
-                    offset=mimic.offset,
-                )
-
-    def _add_motor(self, entry: ModelEntry, motor: Motor) -> None:
-        name = scoped(entry.name, motor.joint)
-        if motor.mode == "velocity":
-            self._add_rotor(entry, motor)
-            return
-        arguments: dict[str, Any] = {}
-        if motor.max_effort is not None:
-            arguments = {"forcelimited": True, "forcerange": [-motor.max_effort, motor.max_effort]}
-        actuator = self._spec.add_actuator(
-            name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, **arguments
-        )
-        actuator.set_to_motor()
-        # The damping is set at run time.
-        actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
-        self._add_rotor(entry, motor)
-
-    def _add_rotor(self, entry: ModelEntry, motor: Motor) -> None:
-        """Adds a rotor that turns at a motor's velocity and drags the joint by dry friction."""
-        name = scoped(entry.name, motor.joint, ROTOR)
-        joint = entry.description.joint(motor.joint)
-        limits = [] if motor.max_effort is None else [motor.max_effort]
-        stated = None if joint is None or motor.beyond else joint.axis.effort
-        if stated is not None and stated > 0:
-            limits.append(stated)
-        body = self._spec.worldbody.add_body(name=name)
-        body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
-        body.explicitinertial = True
-        body.mass = 1.0
-        body.inertia = [ROTOR_INERTIA] * 3
-        body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
-        coupling = self._spec.add_tendon(
-            name=name,
-            frictionloss=min(limits, default=_STRONGEST),
-            solref_friction=list(_MOTOR_REFERENCE),
-            solimp_friction=list(_MOTOR_IMPEDANCE),
-        )
-        coupling.wrap_joint(scoped(entry.name, motor.joint), 1.0)
-        coupling.wrap_joint(name, -1.0)
-
-    def _add_drive(self, entry: ModelEntry, body: Any, drive: BodyDrive) -> None:
-        name = scoped(entry.name, drive.link, drive.name)
-        body.add_site(name=name, pos=list(drive.centre))
-        if not any(site.name == _WORLD_SITE for site in self._spec.worldbody.sites):
-            self._spec.worldbody.add_site(name=_WORLD_SITE)
-        for index, axis in enumerate(DRIVE_AXES):
-            gear = [0.0] * 6
-            gear[index] = 1.0
-            # Relative to the world's site, the actuators measure and act in world axes.
-            self._spec.add_actuator(
-                name=scoped(name, axis),
-                target=name,
-                refsite=_WORLD_SITE,
-                trntype=mujoco.mjtTrn.mjTRN_SITE,
-                gear=gear,
-            ).set_to_velocity(kv=0.0)
-
-    def _add_camera(self, entry: ModelEntry, body: Any, camera: CameraMount) -> None:
-        lens = camera.intrinsics
-        turned = camera.pose @ Pose((0, 0, 0), quat_from_matrix(_CAMERA_AXES))
-        fovy = 2 * np.arctan(np.tan(lens.horizontal_fov / 2) * lens.height / lens.width)
-        body.add_camera(
-            name=scoped(entry.name, camera.name),
-            fovy=float(np.degrees(fovy)),
-            **pose_arguments(turned),
-        )
-
 
 def _add_tyre(entry: ModelEntry, wheel: Any, link: Link, axle: Axle) -> Any:
     """Adds the tyre that touches the ground in place of a wheel, and rotates and shifts with
@@ -411,41 +283,3 @@ def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str
     if carrier is not None:
         return scoped(entry.name, carrier.name), surface.fdir1
     return scoped(entry.name, link.name), rotate(collision.pose.orientation, surface.fdir1)
-
-
-def _possible(inertia: Array) -> Array:
-    """An inertia matrix whose largest moment does not exceed the sum of the others.
-
-    Thin plates are exactly at this limit, and rounded digits exceed it. Larger violations are
-    rejected when the file is read.
-    """
-    moments, axes = np.linalg.eigh(inertia)
-    lowest = max(_THINNEST * float(moments[2]), _LEAST)
-    if moments[0] < lowest:
-        # An infinitely thin rod or a massless frame: the engine divides by all three moments.
-        moments = np.maximum(moments, lowest)
-        inertia = (axes * moments) @ axes.T
-    excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)
-    if excess <= 0:
-        return inertia
-    return np.asarray(inertia - excess * np.outer(axes[:, 2], axes[:, 2]))
-
-
-def _set_inertial(body: Any, inertial: Inertial) -> None:
-    rotation = matrix_from_quat(inertial.pose.orientation)
-    inertia = tensor(inertial.diagonal, inertial.products)
-    if not inertia.any():
-        inertia = np.eye(3) * _POINT * inertial.mass
-    turned = rotation @ _possible(inertia) @ rotation.T
-    body.explicitinertial = True
-    body.mass = inertial.mass
-    body.ipos = list(inertial.pose.position)
-    body.iquat = list(to_wxyz(IDENTITY))
-    body.fullinertia = [
-        turned[0, 0],
-        turned[1, 1],
-        turned[2, 2],
-        turned[0, 1],
-        turned[0, 2],
-        turned[1, 2],
-    ]

@@ -14,7 +14,8 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Origin, WorldError
 from cartwheel.world import chains, contact, joints, pairs
-from cartwheel.world.bodies import ROTOR_INERTIA, BodyBuilder
+from cartwheel.world.actuation import ROTOR_INERTIA
+from cartwheel.world.bodies import BodyBuilder
 from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets

@@ -17,11 +17,12 @@ from cartwheel.bridges.apart.ring import Put, RingWriter
 from cartwheel.bridges.mirror import Arrivals
 from cartwheel.calls import answered, mapped
 from cartwheel.codes.wires import MESSAGE_NOT_SENT
-from cartwheel.errors import Diagnostic, Reporter
+from cartwheel.errors import Diagnostic
 from cartwheel.graph import Graph, Service, Subscription
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 from cartwheel.messages.definition import Definition
 from cartwheel.messages.learnt import needed
+from cartwheel.reporting import Reporter
 
 _TOLD = 500
 """Maximum number of different warnings."""

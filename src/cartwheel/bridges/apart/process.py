@@ -14,10 +14,11 @@ from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Handler, Link
 from cartwheel.bridges.apart.ring import RingFiles, RingWriter
 from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_FAULT, BRIDGE_SLOW
-from cartwheel.errors import CartwheelError, ControlError, Diagnostic, Reporter
+from cartwheel.errors import CartwheelError, ControlError, Diagnostic
 from cartwheel.forks import keep_socket
 from cartwheel.graph import Graph
 from cartwheel.options import caller
+from cartwheel.reporting import Reporter
 
 _START = 60.0
 """Timeout in s for the process to start and to connect."""

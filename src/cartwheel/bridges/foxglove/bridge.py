@@ -27,11 +27,12 @@ from cartwheel.codes.wires import (
     PACKAGE_MISSING,
     SLOW_SUBSCRIBER,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, Reporter
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gate.access import Access, refused_page
 from cartwheel.gate.gate import Gate
 from cartwheel.gate.listening import hidden_host, listen
 from cartwheel.options import FOXGLOVE, FOXGLOVE_PORT
+from cartwheel.reporting import Reporter
 
 PORT = 8765
 """Default port of Foxglove."""

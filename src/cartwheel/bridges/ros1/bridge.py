@@ -35,10 +35,11 @@ from cartwheel.codes.wires import (
     ROS_NODE_ENDED,
     TYPE_UNSUPPORTED,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, Reporter, UnknownNameError
+from cartwheel.errors import CartwheelError, Diagnostic, UnknownNameError
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
+from cartwheel.reporting import Reporter
 
 READER = "ros1"
 """Node name of the bridge in the graph."""

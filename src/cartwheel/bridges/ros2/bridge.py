@@ -33,16 +33,11 @@ from cartwheel.codes.wires import (
     ROS_NODE_NAME_INVALID,
     TYPE_UNSUPPORTED,
 )
-from cartwheel.errors import (
-    CartwheelError,
-    Diagnostic,
-    GraphError,
-    Reporter,
-    UnknownNameError,
-)
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, UnknownNameError
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages import decode_cdr
 from cartwheel.messages.ros2.types import is_ros1_only, ros2_service, ros2_type
+from cartwheel.reporting import Reporter
 
 READER = "ros2"
 """Node name of the bridge in the graph."""

@@ -9,7 +9,8 @@ from typing import Any
 
 from cartwheel.codes import command
 from cartwheel.description.files.regular_files import read_regular_text
-from cartwheel.errors import CartwheelError, Origin, meant
+from cartwheel.errors import CartwheelError, Origin
+from cartwheel.similar_names import meant
 
 _MAX_BYTES = 1_000_000
 _LISTS = ("select", "ignore")

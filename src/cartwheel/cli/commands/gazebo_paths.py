@@ -12,7 +12,8 @@ from xml.etree import ElementTree
 
 from cartwheel.codes.command import WORLD_NOT_FOUND
 from cartwheel.description.files.package_folders import share
-from cartwheel.errors import CartwheelError, meant_one
+from cartwheel.errors import CartwheelError
+from cartwheel.similar_names import meant_one
 
 _LEVELS = 4
 """Maximum number of folders between a workspace's source folder and a package."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -112,5 +111,5 @@ def play(options: Options) -> None:
     recording.close()
 
 
-def _refuse(_: Path, __: Mapping[str, str], ___: Sequence[Path]) -> NoReturn:
+def _refuse(*_: object, **__: object) -> NoReturn:
     raise RecordingError("models cannot be spawned during playback", code=PLAYBACK_READ_ONLY)

@@ -17,7 +17,8 @@ from cartwheel.codes.command import OPTION_INVALID, OUTPUT_SLOW, SIMULATION_ENDE
 from cartwheel.codes.graph import FIELD_UNKNOWN
 from cartwheel.codes.wires import MESSAGE_UNREAD
 from cartwheel.control import ControlClient, Sample
-from cartwheel.errors import CartwheelError, GraphError, suggestion
+from cartwheel.errors import CartwheelError, GraphError
+from cartwheel.similar_names import suggestion
 
 
 def print_list(sim: str | None, *, verbose: bool) -> None:

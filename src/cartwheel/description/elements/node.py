@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements import numbers
@@ -308,91 +308,6 @@ def copied(node: Node) -> Element:
         attributes=tuple(node.attributes.items()),
         children=tuple(copied(child) for child in node.children),
         origin=node.origin,
-    )
-
-
-def unread(
-    node: Node, harmless: Mapping[tuple[str, str], str] | None = None
-) -> Iterator[Diagnostic]:
-    """A warning for each part below `node` that no reader used.
-
-    Args:
-        node: A root.
-        harmless: Reasons for parts without an effect, by the element's tag and the child's tag, or
-            the attribute's name after an ``@``: these are reported as info.
-    """
-    known = harmless or {}
-    yield from node.notes
-    for name, value in node.attributes.items():
-        if name in node._asked_attributes or name.startswith("xmlns"):
-            continue
-        if not value.strip():
-            continue  # Gazebo saves its worlds with <pose frame=''>, which has no meaning.
-        if ":" in name:
-            yield _foreign(name, node.origin)
-            continue
-        yield _ignored(
-            f'attribute "{name}" of <{node.tag}>',
-            node.origin,
-            reason=known.get((node.tag, f"@{name}")),
-            meant=numbers.likely(name, node._asked_attributes),
-            form='"{}"',
-            values={"tag": node.tag, "attribute": name},
-        )
-    for child in node.children:
-        if child._read:
-            yield from unread(child, harmless)
-            continue
-        if ":" in child.tag:
-            yield _foreign(child.tag, child.origin)
-            continue
-        reason = known.get((node.tag, child.tag))
-        values = {"tag": child.tag, "parent": node.tag}
-        if reason is None and child.tag in node._asked_children:
-            yield codes.TAG_REPEATED.diagnostic(
-                f"<{child.tag}> is repeated in <{node.tag}>, so only the first is used",
-                origin=child.origin,
-                values=values,
-            )
-            continue
-        yield _ignored(
-            f"<{child.tag}> in <{node.tag}>",
-            child.origin,
-            reason=reason,
-            meant=numbers.likely(child.tag, node._asked_children),
-            form="<{}>",
-            values=values,
-        )
-
-
-def _ignored(
-    what: str,
-    origin: Origin,
-    *,
-    reason: str | None,
-    meant: str | None,
-    form: str,
-    values: Mapping[str, Value],
-) -> Diagnostic:
-    """The diagnostic for a part without effect; if `reason` is set, the part is known."""
-    if reason is not None:
-        return codes.TAG_IGNORED.diagnostic(
-            f"{what} has no effect: {reason}", origin=origin, severity="info", values=values
-        )
-    return codes.TAG_IGNORED.diagnostic(
-        f"{what} is unknown and ignored",
-        origin=origin,
-        hint=f"Did you mean {form.format(meant)}?" if meant else "",
-        values={**values, "meant": meant or ""},
-    )
-
-
-def _foreign(name: str, origin: Origin) -> Diagnostic:
-    """Names with a prefix are left to other programs, as SDF specifies."""
-    return codes.NOT_SIMULATED.diagnostic(
-        f"{name} has no effect: names with a prefix are reserved for other programs",
-        origin=origin,
-        values={"tag": name},
     )
 
 

@@ -14,7 +14,8 @@ from xml.parsers import expat
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import numbers
-from cartwheel.description.elements.node import Node, copied, needs_xacro, to_element, unread
+from cartwheel.description.elements.node import Node, copied, needs_xacro, to_element
+from cartwheel.description.elements.unread import unread
 from cartwheel.errors import DescriptionError, Origin, Value
 
 __all__ = [

@@ -11,7 +11,7 @@ lambdas, or xacro's symbol tables, which are evaluated lazily.
 """
 
 from cartwheel.description.expressions.budget import Budget, ExpressionError
+from cartwheel.description.expressions.evaluator import Evaluator
 from cartwheel.description.expressions.functions import BUILTINS, MATH, Function
-from cartwheel.description.expressions.syntax import Evaluator
 
 __all__ = ["BUILTINS", "MATH", "Budget", "Evaluator", "ExpressionError", "Function"]

@@ -17,7 +17,7 @@ from cartwheel.description.expressions.operations import (
 )
 
 if TYPE_CHECKING:
-    from cartwheel.description.expressions.syntax import Evaluator
+    from cartwheel.description.expressions.evaluator import Evaluator
 
 MAX_FACTORIAL = 500
 """Argument of math.factorial; its result has 3,768 bits."""

@@ -1,17 +1,18 @@
-"""Compiles an expression to closures, one for each node of its syntax tree."""
+"""Compiles an expression to closures, one for each node of its syntax tree.
+
+The file is long because it has one function for each kind of node, which call each other.
+"""
 
 from __future__ import annotations
 
 import ast
 import threading
 import warnings
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, cast
 
-from cartwheel.description.expressions.budget import Budget, ExpressionError, bits, room
-from cartwheel.description.expressions.functions import CLASSES, Function, sort
+from cartwheel.description.expressions.budget import ExpressionError, bits, room
 from cartwheel.description.expressions.operations import (
     BINARY,
     COMPARISONS,
@@ -20,9 +21,9 @@ from cartwheel.description.expressions.operations import (
     filled_dict,
     filled_set,
     hashed,
-    methods_of,
     snapshot,
 )
+from cartwheel.description.expressions.scope import Lambda, Scope, entry, not_allowed
 
 MAX_LENGTH = 5000
 """Maximum length of an expression. The longest in public robots has some 300 characters."""
@@ -30,125 +31,11 @@ _KEPT_LENGTH = 300
 """Maximum length of an expression whose closure is cached; the closure of the longest takes 1 MB.
 """
 MAX_NESTING = 100
-MAX_CALLS = 30
-"""Maximum depth of nested lambda calls."""
 
 _lock = threading.Lock()
 
 
-class Evaluator:
-    """Evaluates expressions for one expansion.
-
-    Args:
-        budget: The shared limits.
-        namespace: Type of xacro's tables, whose entries are read as attributes.
-        dotted: Type of the dicts whose values are read as attributes.
-    """
-
-    def __init__(self, budget: Budget, *, namespace: type, dotted: type) -> None:
-        self.budget = budget
-        self.namespace = namespace
-        self.dotted = dotted
-        budget.opaque = (namespace,)
-        self._calls = 0
-
-    def evaluate(self, text: str, names: Mapping[str, Any]) -> Any:
-        """The value of an expression.
-
-        Args:
-            text: The expression, in Python's syntax.
-            names: The values of its names.
-
-        Raises:
-            ExpressionError: The expression is not allowed, or its value is too large.
-            SyntaxError: The text is not an expression.
-            Exception: Errors of the operation itself, such as ZeroDivisionError or TypeError.
-        """
-        self.budget.spend()
-        value = compiled(text.strip())(_Scope(self, names, {}))
-        if type(value) not in (float, int, bool, str):
-            self.budget.weigh(value)
-        return value
-
-    def call(self, called: Any, args: list[Any], named: dict[str, Any]) -> Any:
-        """Calls an allowed function."""
-        self.budget.spend()
-        found = CLASSES.get(called) if isinstance(called, type) else called
-        if isinstance(found, Function):
-            return found.run(self, *args, **named)
-        if isinstance(found, _Lambda):
-            if self._calls >= MAX_CALLS:
-                raise ExpressionError(
-                    f"lambda calls are nested more than {MAX_CALLS} levels deep",
-                    values={"kind": "lambda", "most": MAX_CALLS},
-                )
-            self._calls += 1
-            try:
-                return found.run(args, named)
-            finally:
-                self._calls -= 1
-        kind = type(called).__name__
-        raise ExpressionError(f"a value of type {kind} cannot be called", values={"refused": kind})
-
-    def method(self, value: Any, name: str, args: list[Any], named: dict[str, Any]) -> Any:
-        """Calls a method of a value, or a function of a namespace."""
-        if isinstance(value, self.namespace):
-            return self.call(self.attribute(value, name), args, named)
-        self.budget.spend()
-        if isinstance(value, list) and name == "sort":
-            return sort(self, value, *args, **named)
-        known = methods_of(value)
-        if isinstance(value, str):
-            self.budget.spend(len(value) // 500)
-        if name in known:
-            return self.budget.result(known[name](self.budget, value, *args, **named))
-        if isinstance(value, self.dotted) and not hasattr(dict, name):
-            return self.call(self.attribute(value, name), args, named)
-        raise not_allowed(
-            f"{type(value).__name__}.{name}()",
-            hint=f"Allowed methods: {', '.join(sorted(known))}." if known else None,
-        )
-
-    def attribute(self, value: Any, name: str) -> Any:
-        """An entry of a namespace, or of a dict from YAML."""
-        if name.startswith("_"):
-            raise not_allowed(f'"{name}"')
-        if isinstance(value, self.namespace):
-            return _entry(value, name)
-        if isinstance(value, self.dotted) and not hasattr(dict, name):
-            return getattr(value, name)
-        if isinstance(value, int | float | complex) and name in ("real", "imag"):
-            return getattr(value, name)
-        raise not_allowed(
-            f'"{type(value).__name__}.{name}"',
-            hint=f"Call it: .{name}(…)." if name in methods_of(value) else None,
-        )
-
-
-def not_allowed(part: str, *, hint: str | None = None) -> ExpressionError:
-    """The error for a part that is not allowed; the value omits the quotes in the message."""
-    return ExpressionError(
-        f"{part} is not allowed in an expression", hint=hint, values={"refused": part.strip('"')}
-    )
-
-
-@dataclass(slots=True)
-class _Scope:
-    evaluator: Evaluator
-    names: Mapping[str, Any]
-    local: dict[str, Any]
-    """Names in comprehensions and lambdas."""
-
-    def inner(self) -> _Scope:
-        return _Scope(self.evaluator, self.names, dict(self.local))
-
-
-_Code = Callable[[_Scope], Any]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Lambda:
-    run: Callable[[list[Any], dict[str, Any]], Any]
+_Code = Callable[[Scope], Any]
 
 
 def compiled(text: str) -> _Code:
@@ -218,19 +105,12 @@ def _name(node: ast.Name, _: int) -> _Code:
     if name.startswith("__"):
         raise not_allowed(f'"{name}"')
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         if scope.local and name in scope.local:
             return scope.local[name]
-        return _entry(scope.names, name)
+        return entry(scope.names, name)
 
     return run
-
-
-def _entry(names: Any, name: str) -> Any:
-    try:
-        return names[name]
-    except KeyError:
-        raise NameError(f"name '{name}' is not defined", name=name) from None
 
 
 def _attribute(node: ast.Attribute, depth: int) -> _Code:
@@ -243,7 +123,7 @@ def _attribute(node: ast.Attribute, depth: int) -> _Code:
 def _subscript(node: ast.Subscript, depth: int) -> _Code:
     inner, key = _code(node.value, depth), _code(node.slice, depth)
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         value, index = inner(scope), key(scope)
         evaluator = scope.evaluator
         evaluator.budget.spend()
@@ -269,7 +149,7 @@ def _binary(node: ast.BinOp, depth: int) -> _Code:
     left, right = _code(node.left, depth), _code(node.right, depth)
     plain = FLOATS.get(type(node.op).__name__)
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         budget = scope.evaluator.budget
         budget.spend()
         a, b = left(scope), right(scope)
@@ -289,7 +169,7 @@ def _bool(node: ast.BoolOp, depth: int) -> _Code:
     codes = [_code(each, depth) for each in node.values]
     stop = isinstance(node.op, ast.Or)
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         value: Any = None
         for code in codes:
             value = code(scope)
@@ -307,7 +187,7 @@ def _compare(node: ast.Compare, depth: int) -> _Code:
         for op, each in zip(node.ops, node.comparators, strict=True)
     ]
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         left, result = first(scope), True
         budget = scope.evaluator.budget
         for operation, code in rest:
@@ -327,7 +207,7 @@ def _choice(node: ast.IfExp, depth: int) -> _Code:
     return lambda scope: yes(scope) if test(scope) else no(scope)
 
 
-def _items(nodes: list[ast.expr], depth: int) -> Callable[[_Scope], list[Any]]:
+def _items(nodes: list[ast.expr], depth: int) -> Callable[[Scope], list[Any]]:
     codes = [
         (_code(each.value, depth), True)
         if isinstance(each, ast.Starred)
@@ -335,7 +215,7 @@ def _items(nodes: list[ast.expr], depth: int) -> Callable[[_Scope], list[Any]]:
         for each in nodes
     ]
 
-    def run(scope: _Scope) -> list[Any]:
+    def run(scope: Scope) -> list[Any]:
         made: list[Any] = []
         for code, starred in codes:
             if starred:
@@ -360,7 +240,7 @@ def _tuple(node: ast.Tuple, depth: int) -> _Code:
 def _set(node: ast.Set, depth: int) -> _Code:
     items = _items(node.elts, depth)
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         return {hashed(scope.evaluator.budget, each) for each in items(scope)}
 
     return run
@@ -372,7 +252,7 @@ def _dict(node: ast.Dict, depth: int) -> _Code:
         for key, value in zip(node.keys, node.values, strict=True)
     ]
 
-    def run(scope: _Scope) -> Any:
+    def run(scope: Scope) -> Any:
         budget = scope.evaluator.budget
         made: dict[Any, Any] = {}
         for key, code in pairs:
@@ -395,7 +275,7 @@ def _call(node: ast.Call, depth: int) -> _Code:
     items = _items(node.args, depth)
     named = [(each.arg, _code(each.value, depth)) for each in node.keywords]
 
-    def words(scope: _Scope) -> dict[str, Any]:
+    def words(scope: Scope) -> dict[str, Any]:
         made: dict[str, Any] = {}
         for name, code in named:
             made.update(_mapping(code(scope)) if name is None else {name: code(scope)})
@@ -420,7 +300,7 @@ def _lambda(node: ast.Lambda, depth: int) -> _Code:
     defaults = [_code(each, depth) for each in given.defaults]
     body = _code(node.body, depth)
 
-    def make(scope: _Scope) -> Any:
+    def make(scope: Scope) -> Any:
         standard = dict(
             zip(names[len(names) - len(defaults) :], [d(scope) for d in defaults], strict=True)
         )
@@ -432,14 +312,14 @@ def _lambda(node: ast.Lambda, depth: int) -> _Code:
                 raise TypeError(f"the lambda expects {len(names)} arguments")
             return body(inner)
 
-        return _Lambda(run)
+        return Lambda(run)
 
     return make
 
 
 def _loop(
-    loops: list[ast.comprehension], depth: int, visit: Callable[[_Scope, list[Any]], None]
-) -> Callable[[_Scope], list[Any]]:
+    loops: list[ast.comprehension], depth: int, visit: Callable[[Scope, list[Any]], None]
+) -> Callable[[Scope], list[Any]]:
     """Runs `visit` in each iteration of nested loops; it appends to the returned list."""
     for loop in loops:
         if loop.is_async:
@@ -449,7 +329,7 @@ def _loop(
         for each in loops
     ]
 
-    def rounds(scope: _Scope, level: int, made: list[Any]) -> None:
+    def rounds(scope: Scope, level: int, made: list[Any]) -> None:
         if level == len(parts):
             visit(scope, made)
             room(len(made))
@@ -461,7 +341,7 @@ def _loop(
             if all(test(scope) for test in tests):
                 rounds(scope, level + 1, made)
 
-    def run(scope: _Scope) -> list[Any]:
+    def run(scope: Scope) -> list[Any]:
         made: list[Any] = []
         rounds(scope.inner(), 0, made)
         scope.evaluator.budget.items(len(made))
@@ -470,18 +350,18 @@ def _loop(
     return run
 
 
-def _target(node: ast.expr) -> Callable[[_Scope, Any], None]:
+def _target(node: ast.expr) -> Callable[[Scope, Any], None]:
     if isinstance(node, ast.Name):
         name = node.id
 
-        def assign(scope: _Scope, value: Any) -> None:
+        def assign(scope: Scope, value: Any) -> None:
             scope.local[name] = value
 
         return assign
     if isinstance(node, ast.Tuple | ast.List):
         targets = [_target(each) for each in node.elts]
 
-        def spread(scope: _Scope, value: Any) -> None:
+        def spread(scope: Scope, value: Any) -> None:
             parts = snapshot(scope.evaluator.budget, value)
             if len(parts) != len(targets):
                 raise ValueError(f"{len(parts)} values cannot be assigned to {len(targets)} names")
@@ -503,7 +383,7 @@ def _comprehension(node: ast.ListComp | ast.GeneratorExp, depth: int) -> _Code:
 def _set_comprehension(node: ast.SetComp, depth: int) -> _Code:
     element = _code(node.elt, depth)
 
-    def visit(scope: _Scope, made: list[Any]) -> None:
+    def visit(scope: Scope, made: list[Any]) -> None:
         made.append(hashed(scope.evaluator.budget, element(scope)))
 
     loop = _loop(node.generators, depth, visit)
@@ -513,7 +393,7 @@ def _set_comprehension(node: ast.SetComp, depth: int) -> _Code:
 def _dict_comprehension(node: ast.DictComp, depth: int) -> _Code:
     key, value = _code(node.key, depth), _code(node.value, depth)
 
-    def visit(scope: _Scope, made: list[Any]) -> None:
+    def visit(scope: Scope, made: list[Any]) -> None:
         made.append((hashed(scope.evaluator.budget, key(scope)), value(scope)))
 
     loop = _loop(node.generators, depth, visit)

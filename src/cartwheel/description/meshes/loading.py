@@ -35,7 +35,8 @@ from cartwheel.description.meshes.submesh import (
     scale_submesh,
     unique_rows,
 )
-from cartwheel.errors import Origin, meant, suggestion
+from cartwheel.errors import Origin
+from cartwheel.similar_names import meant, suggestion
 
 __all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
 

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from cartwheel.codes import tags as codes
 from cartwheel.codes.files import SDF_VERSION
 from cartwheel.description.elements.numbers import LARGEST, position
-from cartwheel.errors import DescriptionError, Diagnostic, Origin, meant, suggestion
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose, Quat, quat_normalize
+from cartwheel.similar_names import meant, suggestion
 
 if TYPE_CHECKING:
     from cartwheel.description.elements.xml import Node

@@ -10,8 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cartwheel.codes import tags as codes
-from cartwheel.errors import DescriptionError, Origin, meant, suggestion
+from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Pose
+from cartwheel.similar_names import meant, suggestion
 
 MODEL = "__model__"
 WORLD = "world"

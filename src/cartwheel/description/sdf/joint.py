@@ -12,8 +12,9 @@ from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.sensors import read_sensor
-from cartwheel.errors import DescriptionError, Value, meant, suggestion
+from cartwheel.errors import DescriptionError, Value
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
+from cartwheel.similar_names import meant, suggestion
 
 _TYPES: dict[str, JointType] = {
     "revolute": "revolute",

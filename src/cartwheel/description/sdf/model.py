@@ -10,12 +10,7 @@ from cartwheel.codes import files, tags
 from cartwheel.description.elements.xml import Node, unread
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Element, Joint, Sensor
-from cartwheel.description.sdf.context import (
-    Context,
-    read_pose,
-    reference_of,
-    require_name,
-)
+from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import MODEL, WORLD, Frames
 from cartwheel.description.sdf.gearbox import mesh_gears
 from cartwheel.description.sdf.harmless import HARMLESS
@@ -31,7 +26,8 @@ from cartwheel.description.sdf.links.link import read_link
 from cartwheel.description.sdf.parts import add_frame, attach, check_mimic, left_out
 from cartwheel.description.sdf.sensors import read_plugins
 from cartwheel.description.sdf.unplaced import Model, name_apart
-from cartwheel.errors import DescriptionError, meant, suggestion
+from cartwheel.errors import DescriptionError
+from cartwheel.similar_names import meant, suggestion
 
 MAX_NESTING = 32
 

@@ -13,7 +13,8 @@ from cartwheel.description.sdf.context import Context, read_pose, reference_of, 
 from cartwheel.description.sdf.frames import Frames
 from cartwheel.description.sdf.joint import joint_frame
 from cartwheel.description.sdf.links.inertia import judged_inertia
-from cartwheel.errors import DescriptionError, meant, suggestion
+from cartwheel.errors import DescriptionError
+from cartwheel.similar_names import meant, suggestion
 
 
 def frames_of(

@@ -12,7 +12,8 @@ from dataclasses import replace
 from cartwheel.codes import devices
 from cartwheel.description.model import Collision, Link, Sensor
 from cartwheel.description.urdf.tree import Tree
-from cartwheel.errors import Diagnostic, meant, suggestion
+from cartwheel.errors import Diagnostic
+from cartwheel.similar_names import meant, suggestion
 
 _LUMP = "_fixed_joint_lump__"
 

@@ -16,7 +16,7 @@ from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
 from cartwheel.description.model import Box, Collision, Inertial, Joint, Link, Mesh, Visual
 from cartwheel.description.sdf.links.inertia import WATER, inertial_of
-from cartwheel.description.urdf.link import UrdfContext
+from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.description.urdf.tree import WORLD, Tree
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose

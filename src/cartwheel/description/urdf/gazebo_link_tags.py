@@ -16,7 +16,7 @@ from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.surface import not_negative, read_surface
 from cartwheel.description.sdf.sensors import read_sensor
-from cartwheel.description.urdf.link import UrdfContext
+from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 LINK_TAGS = (

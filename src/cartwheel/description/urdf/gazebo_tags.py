@@ -15,14 +15,14 @@ from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Joint, Link, PluginTag
 from cartwheel.description.sdf.inserting import INSERTED
 from cartwheel.description.sdf.sensors import read_plugin, read_sensor
+from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.description.urdf.gazebo_link_tags import (
     LINK_TAGS,
     LinkTags,
     read_link_tags,
     warn_idle,
 )
-from cartwheel.description.urdf.link import UrdfContext
-from cartwheel.errors import meant, suggestion
+from cartwheel.similar_names import meant, suggestion
 
 JOINT_TAGS = (
     "stopCfm", "stopErp", "springReference", "springStiffness", "fudgeFactor", "provideFeedback",

@@ -9,9 +9,10 @@ from cartwheel.codes import robot, tags
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
-from cartwheel.description.urdf.link import UrdfContext, read_origin
-from cartwheel.errors import DescriptionError, meant, suggestion
+from cartwheel.description.urdf.context import UrdfContext, read_origin
+from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, Vec3
+from cartwheel.similar_names import meant, suggestion
 
 TYPES: dict[str, JointType] = {
     "revolute": "revolute",

@@ -17,17 +17,14 @@ from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
 from cartwheel.description.sdf.inserting import insert
 from cartwheel.description.urdf.collision_names import check_contact_sensors, name_collisions
+from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
+from cartwheel.description.urdf.inertia import judged_inertia
 from cartwheel.description.urdf.joint import check_mimics, read_joint
-from cartwheel.description.urdf.link import (
-    ReadLink,
-    UrdfContext,
-    judged_inertia,
-    read_link,
-    read_materials,
-)
+from cartwheel.description.urdf.link import ReadLink, read_link
+from cartwheel.description.urdf.material import read_materials
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Pose

@@ -12,8 +12,9 @@ from pathlib import Path
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import near_files
-from cartwheel.errors import Code, DescriptionError, Origin, Value, meant, suggestion
+from cartwheel.errors import Code, DescriptionError, Origin, Value
 from cartwheel.options import xacro_argument
+from cartwheel.similar_names import meant, suggestion
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

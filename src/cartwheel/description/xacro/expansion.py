@@ -17,14 +17,8 @@ from cartwheel.description.xacro.errors import Failure, code_of, explain
 from cartwheel.description.xacro.module import fresh_xacro
 from cartwheel.description.xacro.replacements import replace_functions
 from cartwheel.description.xacro.unprefixed import PREFIX, prefixed
-from cartwheel.errors import (
-    CartwheelError,
-    DescriptionError,
-    Diagnostic,
-    Origin,
-    meant,
-    suggestion,
-)
+from cartwheel.errors import CartwheelError, DescriptionError, Diagnostic, Origin
+from cartwheel.similar_names import meant, suggestion
 
 MAX_ELEMENTS = 100_000
 """Maximum number of elements that macros create: about 50 times that of the largest robots."""

@@ -11,7 +11,8 @@ from typing import Any
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.dialects.tags import shown
-from cartwheel.errors import Code, Origin, PluginError, Value, meant_one
+from cartwheel.errors import Code, Origin, PluginError, Value
+from cartwheel.similar_names import meant_one
 
 _MISSING: Any = object()
 _MOST_COUNT = 1_000_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cartwheel.codes import devices
 from cartwheel.component import Component
 from cartwheel.description.model import Sensor
-from cartwheel.errors import meant, suggestion
+from cartwheel.similar_names import meant, suggestion
 from cartwheel.world.entry import scoped
 
 

@@ -6,13 +6,11 @@ A file is read when its type is used for the first time. Nothing is searched bef
 from __future__ import annotations
 
 import os
-import re
-import stat
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn, Protocol
+from typing import Any, Protocol
 
 from cartwheel.codes.graph import (
     MESSAGE_DEFINITION_INVALID,
@@ -21,65 +19,23 @@ from cartwheel.codes.graph import (
     MESSAGE_TYPE_UNKNOWN,
 )
 from cartwheel.errors import CartwheelError, Diagnostic, GraphError, Origin, UnknownNameError
-from cartwheel.messages.definition import RECORDING, Definition, Dialect
-from cartwheel.messages.learnt import (
-    ACTION_PARTS,
-    ROS1_ACTION_PARTS,
-    learnt,
-    parts_of,
-    recorded,
-    register,
-)
-from cartwheel.messages.library.parsing import (
-    LARGEST,
-    decode_text,
-    is_type_name,
-    parse_definition,
-)
+from cartwheel.messages.definition import RECORDING, Definition
+from cartwheel.messages.learnt import learnt, parts_of, recorded, register
+from cartwheel.messages.library.checks import check_sizes, nested_first, reject
+from cartwheel.messages.library.files import content, dialect_of, parse_file, stems
+from cartwheel.messages.library.parsing import decode_text, is_type_name
 from cartwheel.messages.ros1.types import ros1_store
 from cartwheel.messages.ros2.types import ros2_name
-from cartwheel.messages.store import (
-    FIRST,
-    TWIN,
-    action_parts,
-    is_bundled,
-    loaded,
-    message_class,
-    type_name,
-)
+from cartwheel.messages.store import FIRST, TWIN, is_bundled, loaded, message_class, type_name
 from cartwheel.options import PACKAGE_PATH
 
 MOST_TYPES = 300
 """Maximum number of types that one type contains."""
 MOST_TEXT = 8 << 20
 """Maximum size of the definitions of one type in bytes."""
-MOST_ELEMENTS = 20_000
-"""Maximum number of messages, strings and numbers in a type with empty sequences."""
-MOST_BYTES = 64 << 20
-"""Maximum size of the fixed arrays of numbers in a type."""
-MOST_LEVELS = 50
-"""Maximum nesting depth of messages."""
 _MOST_COPIES = 8
 """Number of packages with the same name that are compared."""
 _MOST_MISSING = 1000
-_SEPARATOR = re.compile(r"^[ \t]*---[ \t]*$", re.MULTILINE)
-_ROS1_SIGNS = (b"catkin", b"message_generation", b"message_runtime")
-_ROS2_SIGNS = (b"ament_", b"rosidl_")
-_XML_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
-_ROS1_ACTION = {
-    "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{name}Goal goal\n",
-    "ActionResult": (
-        "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{name}Result result\n"
-    ),
-    "ActionFeedback": (
-        "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{name}Feedback feedback\n"
-    ),
-    "Action": (
-        "{name}ActionGoal action_goal\n{name}ActionResult action_result\n"
-        "{name}ActionFeedback action_feedback\n"
-    ),
-}
-"""Types that ROS 1 generates for an action. Source: actionlib_msgs, genaction."""
 
 BUNDLED = frozenset(
     {
@@ -212,7 +168,7 @@ class TypeLibrary:
                     self._missing.add(name)
                 return False
             ordered = self._with_nested(wanted)
-            _check_sizes(ordered)
+            check_sizes(ordered)
             register(ordered)
             self._found.update(each.name for each in ordered)
             self._found.add(name)
@@ -237,7 +193,7 @@ class TypeLibrary:
                     continue
                 found = self._definitions_of(field.type)
                 if not found:
-                    _fail(
+                    reject(
                         outer,
                         f'the type "{field.type}" of the field "{field.name}" was not found',
                         field.line,
@@ -250,20 +206,20 @@ class TypeLibrary:
                         waiting.append(each)
                         size += len(each.text)
                 if len(read) > MOST_TYPES + len(wanted) or size > MOST_TEXT:
-                    _fail(
+                    reject(
                         outer,
                         f"the type contains more than {MOST_TYPES} types, or more than "
                         f"{MOST_TEXT} bytes of definitions",
                         field.line,
                     )
-        return _sorted(read)
+        return nested_first(read)
 
     # -- files
 
     def _definitions_of(self, name: str) -> list[Definition]:
         """The definitions in the file of a type; empty if there is no such file."""
         package, kind, last = name.split("/")
-        for folder_kind, stem in _stems(kind, last):
+        for folder_kind, stem in stems(kind, last):
             files = list(self._files(package, folder_kind, stem))
             if files:
                 found = self._read(files[0], folder_kind, stem)
@@ -295,25 +251,11 @@ class TypeLibrary:
                 origin=origin,
                 values={"type": f"{file.package}/{kind}/{stem}", "name": str(file.path)},
             )
-        text = decode_text(_content(file.path, origin), origin)
-        dialect = _dialect_of(file.folder)
+        text = decode_text(content(file.path, origin), origin)
+        dialect = dialect_of(file.folder)
         own_header = os.path.lexists(file.folder / "msg" / "Header.msg")
         name = f"{file.package}/{kind}/{stem}"
-        if kind == "msg":
-            parts = [(name, text, 1)]
-        else:
-            parts = list(_split(name, text, origin))
-        made = [
-            parse_definition(
-                part,
-                content,
-                Origin(file=origin.file, line=line),
-                dialect=dialect,
-                own_header=own_header,
-            )
-            for part, content, line in parts
-        ]
-        return [*made, *_generated(name, made, origin)] if kind == "action" else made
+        return parse_file(name, text, origin, dialect=dialect, own_header=own_header)
 
     def _compare_copies(
         self, files: list[_File], kind: str, stem: str, used: list[Definition]
@@ -366,167 +308,6 @@ class TypeLibrary:
             )
 
 
-def _stems(kind: str, last: str) -> Iterator[tuple[str, str]]:
-    """The folders and file names that may define a type."""
-    if kind == "srv":
-        yield "srv", re.sub(r"_(Request|Response)\Z", "", last)
-    elif kind == "action":
-        yield "action", re.sub(rf"_({'|'.join(ACTION_PARTS)})\Z", "", last)
-    else:
-        yield "msg", last
-        for part in sorted(ROS1_ACTION_PARTS, key=len, reverse=True):
-            if last.endswith(part) and last != part:
-                yield "action", last.removesuffix(part)
-                return
-
-
-def _split(name: str, text: str, origin: Origin) -> Iterator[tuple[str, str, int]]:
-    """The parts of a service or action, with the lines at which they begin."""
-    is_service = "/srv/" in name
-    titles = ("Request", "Response") if is_service else ("Goal", "Result", "Feedback")
-    parts = _SEPARATOR.split(text)
-    if len(parts) != len(titles):
-        raise GraphError(
-            f'{"a service" if is_service else "an action"} definition must contain "---" '
-            f"{len(titles) - 1} times (got {len(parts) - 1})",
-            code=MESSAGE_DEFINITION_INVALID,
-            origin=origin,
-            values={"type": name, "count": len(parts) - 1},
-        )
-    line = 1
-    for title, part in zip(titles, parts, strict=True):
-        yield f"{name}_{title}", part.removeprefix("\n"), line + part.startswith("\n")
-        line += part.count("\n")
-
-
-def _generated(name: str, parts: list[Definition], origin: Origin) -> Iterator[Definition]:
-    """The types that ROS 1 and ROS 2 generate for an action."""
-    package, _, last = name.split("/")
-    for part, text in action_parts(name):
-        yield parse_definition(part, text, origin)
-    for definition in parts:
-        yield Definition(
-            name=f"{package}/msg/{last}{definition.name.rpartition('_')[2]}",
-            dialect=definition.dialect,
-            text=definition.text,
-            origin=definition.origin,
-            constants=definition.constants,
-            fields=definition.fields,
-        )
-    for part, text in _ROS1_ACTION.items():
-        yield parse_definition(f"{package}/msg/{last}{part}", text.format(name=last), origin)
-
-
-def _content(path: Path, origin: Origin) -> bytes:
-    try:
-        # A pipe would block, and a device may be endless.
-        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:  # noqa: PTH123
-            if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                return file.read(LARGEST + 1)
-            reason = "it is not a regular file"
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-    raise GraphError(
-        f"the file cannot be read: {reason}",
-        code=MESSAGE_DEFINITION_INVALID,
-        origin=origin,
-        values={"name": str(path)},
-    )
-
-
-def _dialect_of(folder: Path) -> Dialect | None:
-    """The ROS version for which a package is built, if its manifest states only one."""
-    try:
-        with (folder / "package.xml").open("rb") as file:
-            text = _XML_COMMENT.sub(b"", file.read(1 << 16))
-    except OSError:
-        return None
-    first = any(sign in text for sign in _ROS1_SIGNS)
-    second = any(sign in text for sign in _ROS2_SIGNS)
-    if first == second:
-        return None
-    return "ros1" if first else "ros2"
-
-
-# -- checks
-
-
-def _sorted(read: dict[str, Definition]) -> list[Definition]:
-    """Sorts definitions so that nested types come first.
-
-    Raises:
-        GraphError: A type contains itself, or is nested too deeply.
-    """
-    ordered: list[Definition] = []
-    done: set[str] = set()
-    left = dict(read)
-    for _ in range(MOST_LEVELS):
-        flat = [
-            each
-            for each in left.values()
-            if all(used.type in done or used.type not in read for used in each.uses)
-        ]
-        ordered += flat
-        done.update(each.name for each in flat)
-        left = {name: each for name, each in left.items() if name not in done}
-        if not left or not flat:
-            break
-    if left:
-        one = min(left.values(), key=lambda each: each.name)
-        used = next(used for used in one.uses if used.type in left)
-        _fail(
-            one,
-            f'the type contains itself in the field "{used.name}"'
-            if not flat
-            else f"messages are nested more than {MOST_LEVELS} times",
-            used.line,
-            field=used.name,
-        )
-    return ordered
-
-
-def _check_sizes(ordered: list[Definition]) -> None:
-    """Rejects types whose messages are large even with empty sequences."""
-    sizes: dict[str, tuple[int, int]] = {}
-    for each in ordered:
-        elements, size = 1, 0
-        for field in each.fields:
-            count = field.length if field.length is not None else 0 if field.array else 1
-            if field.is_message:
-                # Built-in types are small.
-                inner, content = sizes.get(field.type) or _bundled_size(field.type)
-                elements += 1 + count * inner
-                size += count * content
-            elif field.is_text or not field.array:
-                elements += max(count, 1)
-            else:
-                elements += 1
-                size += count * 8
-            if elements > MOST_ELEMENTS or size > MOST_BYTES:
-                _fail(
-                    each,
-                    f"a message has more than {MOST_ELEMENTS} fields (including nested messages), "
-                    f"or arrays of more than {MOST_BYTES} bytes",
-                    field.line,
-                    field=field.name,
-                )
-        sizes[each.name] = elements, size
-
-
-def _bundled_size(name: str) -> tuple[int, int]:
-    known = learnt(name)
-    if known is None:
-        message_class(name)
-        known = recorded(name, loaded().fielddefs[name])
-    elements, size = 1, 0
-    for field in known.fields:
-        count = field.length if field.length is not None else 0 if field.array else 1
-        inner, content = _bundled_size(field.type) if field.is_message else (1, 8)
-        elements += count * inner if field.is_message or field.is_text else 1
-        size += count * content
-    return elements, size
-
-
 def _built_in(name: str) -> Iterator[Definition]:
     """The built-in type, and those of other releases of ROS with the same name."""
     package, _, rest = name.partition("/")
@@ -557,15 +338,3 @@ def _graph_fields(definition: Definition) -> list[object]:
         if each.name != "structure_needs_at_least_one_member"
         and (definition.name, each.name) != ("std_msgs/msg/Header", "seq")
     ]
-
-
-def _fail(
-    definition: Definition, message: str, line: int, *, hint: str | None = None, **values: str
-) -> NoReturn:
-    raise GraphError(
-        message,
-        code=MESSAGE_DEFINITION_INVALID,
-        origin=Origin(file=definition.origin.file, line=line),
-        hint=hint,
-        values={"type": definition.name, **values},
-    )

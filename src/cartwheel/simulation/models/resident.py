@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
+from cartwheel.calls import raise_exit
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import Origin, WorldError, fault, raise_exit
+from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import MotorHandle

@@ -9,7 +9,8 @@ from cartwheel.checks import plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
-from cartwheel.errors import Diagnostic, meant_one
+from cartwheel.errors import Diagnostic
+from cartwheel.similar_names import meant_one
 
 _CLASSIC = re.compile(r"(?:lib)?(gazebo_ros_\w+)(?:\.so)?")
 

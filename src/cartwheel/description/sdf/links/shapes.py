@@ -22,8 +22,9 @@ from cartwheel.description.model import (
 from cartwheel.description.sdf.context import Context, not_simulated, positive
 from cartwheel.description.shapes.outline import OutlineError, convex_pieces
 from cartwheel.description.shapes.terrain import ELEVATION_MODELS, TerrainError, heights_of
-from cartwheel.errors import CartwheelError, DescriptionError, Origin, meant, suggestion
+from cartwheel.errors import CartwheelError, DescriptionError, Origin
 from cartwheel.geometry import Vec3
+from cartwheel.similar_names import meant, suggestion
 
 SHAPES = (
     "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "plane", "mesh", "heightmap",

@@ -1,0 +1,85 @@
+"""URDF's ``<inertial>``: masses, and inertias that are physically possible."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cartwheel.codes import robot
+from cartwheel.description.elements.xml import Node
+from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
+from cartwheel.description.model import Inertial
+from cartwheel.description.urdf.context import UrdfContext, read_origin
+from cartwheel.errors import DescriptionError
+
+
+def read_inertial(node: Node) -> Inertial:
+    mass = node.require_child("mass").number_of("value")
+    if mass > HEAVIEST:
+        raise node.fail(f"a mass must be at most {HEAVIEST:g} kg (got {mass:g})")
+    tensor = node.child("inertia")
+    values = {
+        key: tensor.number_of(key, 0.0) if tensor is not None else 0.0
+        for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    }
+    return Inertial(mass=mass, pose=read_origin(node), origin=node.origin, **values)
+
+
+def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfContext) -> Inertial:
+    """A link's inertia, or the nearest physically possible one.
+
+    Many published arms contain a link with an impossible inertia. Gazebo uses whatever is stated;
+    an energy-conserving engine cannot.
+
+    Args:
+        inertial: Inertial with a positive mass.
+        link: Link name.
+        rigid: Whether the link is fixed to another link, so that its inertia is only part of a sum.
+        ctx: Receives the diagnostics.
+
+    Raises:
+        DescriptionError: No principal moment is positive.
+    """
+    i = inertial
+    diagonal, products = i.diagonal, i.products
+    moments = principal_moments(diagonal, products)
+    found = impossibility(moments)
+    if found is None:
+        return inertial
+    message, hint = found
+    if not any((*diagonal, *products)):
+        if rigid:
+            ctx.report(
+                robot.INERTIA_IMPOSSIBLE.diagnostic(
+                    f'link "{link}" is a point mass: its inertia is 0',
+                    origin=i.origin,
+                    severity="info",
+                    values={"link": link},
+                )
+            )
+        return inertial  # a rotating part without any inertia gets one as a whole
+    if moments[2] <= 0:
+        raise DescriptionError(
+            f'link "{link}": {message}',
+            code=robot.INERTIA_IMPOSSIBLE,
+            origin=i.origin,
+            hint=hint,
+            values={"link": link, "moments": moments},
+        )
+    (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
+    made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
+    smaller = principal_moments(made.diagonal, made.products)
+    ctx.report(
+        robot.INERTIA_IMPOSSIBLE.diagnostic(
+            f'link "{link}": {message}; Cartwheel increases the smaller moments to '
+            f"{smaller[0]:.4g} and {smaller[1]:.4g}",
+            origin=i.origin,
+            hint=hint,
+            severity="info" if rigid else "warning",
+            values={"link": link, "moments": moments, "used": smaller},
+        )
+    )
+    return made
+
+
+def _listed(values: tuple[float, ...]) -> str:
+    return " ".join(f"{value:g}" for value in values)

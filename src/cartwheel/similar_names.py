@@ -1,0 +1,50 @@
+"""Suggestions: the existing name that is most similar to an unknown one."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+SIMILAR = 0.6
+"""Minimum similarity of two names for a suggestion."""
+LONGEST = 500
+"""Maximum length of a name that is shown in full and compared with other names."""
+
+
+def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
+    """A sentence that suggests the most similar name in `existing`, or an empty string."""
+    meant = meant_one(name, existing, cutoff=cutoff)
+    return f'Did you mean "{meant}"?' if meant else ""
+
+
+def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
+    """The most similar name in `existing`, or an empty string."""
+    close = closest(name, list(existing), cutoff)
+    return close[0] if close else ""
+
+
+def meant(name: str, existing: Iterable[str]) -> str:
+    """The name that `suggestion` suggests; empty if no name is similar."""
+    return meant_one(name, existing, cutoff=SIMILAR)
+
+
+def suggestion(name: str, existing: Iterable[str]) -> str:
+    """A sentence that suggests the most similar name in `existing`, or lists all names."""
+    known = list(existing)
+    return suggested(closest(name, known, SIMILAR), known)
+
+
+def suggested(close: Sequence[str], known: Sequence[str]) -> str:
+    if not known:
+        return "Valid names: none."
+    if close:
+        return f'Did you mean "{close[0]}"?'
+    shown = ", ".join(known[:12])
+    return f"Valid names: {shown}{', …' if len(known) > 12 else ''}."
+
+
+def closest(name: str, known: list[str], cutoff: float) -> list[str]:
+    """The most similar name; empty for overlong names, which remote clients may send."""
+    if len(name) > LONGEST:
+        return []
+    return difflib.get_close_matches(name, known, n=1, cutoff=cutoff)

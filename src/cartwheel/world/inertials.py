@@ -1,0 +1,56 @@
+"""Mass and inertia of a MuJoCo body."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cartwheel.description.inertia import tensor
+from cartwheel.description.model import Inertial
+from cartwheel.geometry import IDENTITY, Array, matrix_from_quat, to_wxyz
+
+_THINNEST = 1e-6
+"""Minimum ratio of a body's smallest to largest moment of inertia."""
+_LEAST = 1e-12
+"""Minimum moment of inertia, kg m²; the engine treats smaller values as zero."""
+_POINT = 1e-6
+"""Inertia of a point mass divided by its mass, m²: the engine requires a positive value."""
+
+
+def _possible(inertia: Array) -> Array:
+    """An inertia matrix whose largest moment does not exceed the sum of the others.
+
+    Thin plates are exactly at this limit, and rounded digits exceed it. Larger violations are
+    rejected when the file is read.
+    """
+    moments, axes = np.linalg.eigh(inertia)
+    lowest = max(_THINNEST * float(moments[2]), _LEAST)
+    if moments[0] < lowest:
+        # An infinitely thin rod or a massless frame: the engine divides by all three moments.
+        moments = np.maximum(moments, lowest)
+        inertia = (axes * moments) @ axes.T
+    excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)
+    if excess <= 0:
+        return inertia
+    return np.asarray(inertia - excess * np.outer(axes[:, 2], axes[:, 2]))
+
+
+def set_inertial(body: Any, inertial: Inertial) -> None:
+    rotation = matrix_from_quat(inertial.pose.orientation)
+    inertia = tensor(inertial.diagonal, inertial.products)
+    if not inertia.any():
+        inertia = np.eye(3) * _POINT * inertial.mass
+    turned = rotation @ _possible(inertia) @ rotation.T
+    body.explicitinertial = True
+    body.mass = inertial.mass
+    body.ipos = list(inertial.pose.position)
+    body.iquat = list(to_wxyz(IDENTITY))
+    body.fullinertia = [
+        turned[0, 0],
+        turned[1, 1],
+        turned[2, 2],
+        turned[0, 1],
+        turned[0, 2],
+        turned[1, 2],
+    ]
