@@ -77,9 +77,9 @@ class PosePublisher(Plugin[PosePublisherParameters]):
 
     Each pose is relative to its parent: the pose of a link is relative to the model, and the poses
     of visuals, collisions and sensors are relative to their links. The frames are named
-    ``<model>``, ``<model>/<link>`` and ``<model>/<link>/<name>``, where ``<name>`` is the visual,
-    collision or sensor. Original plugin: ``PosePublisher`` in gz-sim. The message types are the
-    same as in ros_gz_bridge.
+    ``<model>``, ``<model>/<link>`` and ``<model>/<link>/<name>``, where ``<name>`` is the name of
+    the visual, collision or sensor. Original plugin: ``PosePublisher`` in gz-sim. The message types
+    are the same as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-pose-publisher-system",)

@@ -55,7 +55,8 @@ class FtSensorParameters:
         default=0.0,
         unit="Hz",
         doc="Publish rate. If 0, the `<update_rate>` of the sensor that contains the plugin "
-        "applies. Without a sensor, messages are then published at every simulation step.",
+        "applies. If no sensor contains the plugin, messages are then published at every "
+        "simulation step.",
     )
 
 
