@@ -5,8 +5,10 @@ import math
 import pytest
 from tests.coded import raises
 
+import cartwheel as cw
+from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import FIELD_VALUE_INVALID, MESSAGE_TYPE_UNKNOWN
-from cartwheel.codes.world import NUMBER_OUT_OF_RANGE
+from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, GraphError, SimulationError
 from cartwheel.messages import from_dict
 
@@ -81,3 +83,44 @@ def test_a_run_has_a_finite_duration(method, seconds, make):
     getattr(world, method)(-1e-12)
     getattr(world, method)(0)
     assert world.time == 0
+
+
+def test_a_closed_world_refuses_everything_but_its_results(make, rosbots):
+    world = make.world()
+    cart = world.spawn(rosbots, z=0.1)
+    clock = world.mailbox("/clock")
+    world.run(0.1)
+    pose, models = cart.pose, world.models
+    world.close()
+    for use in (
+        lambda: world.run(0.1),
+        lambda: world.spin(0.1),
+        lambda: world.spawn(rosbots),
+        lambda: world.model(cart.name),
+        lambda: world.publish("/part2_cmr/cmd_vel"),
+        lambda: cart.publish("/part2_cmr/cmd_vel"),
+        lambda: world.subscribe("/clock", print),
+        lambda: world.subscribe("/level", print, type="std_msgs/Float32"),
+        lambda: world.advertise("/level", "std_msgs/Float32"),
+        lambda: world.mailbox("/clock"),
+        world.reset,
+        world.show,
+        cart.delete,
+    ):
+        with raises(SIMULATION_CLOSED, SimulationError):
+            use()
+    world.stop()
+    world.close()
+    assert (cart.pose, world.models, world.time) == (pose, models, 0.1)
+    assert len(clock.drain()) == 10
+
+
+def test_options_of_ros2_and_mailboxes_are_checked(make):
+    with raises(OPTION_INVALID, CartwheelError, option="rmw", value="fastrtps"):
+        cw.World("empty", ros2=True, rmw="fastrtps")
+    world = make.world()
+    with raises(OPTION_INVALID, CartwheelError, option="rmw", value=""):
+        world.connect_ros2(rmw="")
+    for size in (0, -1):
+        with raises(NUMBER_OUT_OF_RANGE, CartwheelError, value=size):
+            world.mailbox("/clock", size=size)

@@ -104,6 +104,22 @@ def test_other_threads_use_the_world_meanwhile(on_thread: Any) -> None:
         assert world.models == ("ground_plane", "thing")
 
 
+def test_a_run_of_another_thread_does_not_change_the_speed(on_thread: Any) -> None:
+    with cw.World("empty") as world:
+        world.serve_commands()
+
+        def run() -> None:
+            until_running(world)
+            world.run(0.2)
+
+        on_thread(run)
+        start = time.perf_counter()
+        world.spin(1.0)
+        assert world.time == pytest.approx(1.0, abs=0.2)
+        # The other 0.8 s take at least as long in real time.
+        assert time.perf_counter() - start >= 0.75
+
+
 def test_another_thread_closes_the_world(tmp_path: Path, on_thread: Any) -> None:
     file = tmp_path / "a.mcap"
     world = cw.World("empty", record=file)

@@ -74,6 +74,15 @@ class RunningWorld:
                 raise
             error.add_note(str(failure))
 
+    def check_open(self) -> None:
+        """Refuses the use of a closed world.
+
+        Raises:
+            SimulationError: The world is closed.
+        """
+        if self.session.simulation.closed:
+            raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
+
     @contextlib.contextmanager
     def used(self) -> Iterator[Simulation]:
         """Exclusive access to the simulation for this thread.
@@ -82,8 +91,7 @@ class RunningWorld:
             SimulationError: The world is closed, or is connected and belongs to the parent process.
         """
         with self.lock:
-            if self.session.simulation.closed:
-                raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
+            self.check_open()
             try:
                 yield self.session.simulation
             finally:

@@ -18,6 +18,7 @@ from cartwheel.graph import Graph, Mailbox, Publisher, check_message
 from cartwheel.messages import from_dict, from_flat
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
@@ -208,8 +209,10 @@ class World(RunningWorld):
 
         Raises:
             UnknownNameError: No model has this name.
+            SimulationError: The world is closed.
         """
         with self.lock:
+            self.check_open()
             self.session.simulation.pose(name)
         return Model(self, name)
 
@@ -223,9 +226,11 @@ class World(RunningWorld):
 
         Raises:
             UnknownNameError: The topic does not exist.
+            SimulationError: The world is closed.
             GraphError: The message type does not have a given field, or `message` is not a message
                 of the topic's type.
         """
+        self.check_open()
         kind = self.graph.topic(topic).type
         if fields:
             message = from_flat(kind, fields)
@@ -251,8 +256,10 @@ class World(RunningWorld):
         Raises:
             UnknownNameError: The topic does not exist and no type is given, or the type does not
                 exist.
+            SimulationError: The world is closed.
             GraphError: The topic has a different type, or the definition of the type is invalid.
         """
+        self.check_open()
         simulation = self.session.simulation
 
         def guarded(message: Any) -> None:
@@ -275,9 +282,11 @@ class World(RunningWorld):
 
         Raises:
             UnknownNameError: The type does not exist.
+            SimulationError: The world is closed.
             GraphError: The topic exists with a different type, or the definition of the type is
                 invalid.
         """
+        self.check_open()
         full = self.message_class(type).__msgtype__
         return self.graph.advertise(topic, full, checked=True)
 
@@ -298,7 +307,18 @@ class World(RunningWorld):
 
         `get` waits only if a different thread runs the world. In the thread that runs it, no
         message can arrive while `get` waits, so an empty mailbox returns None at once.
+
+        Args:
+            topic: Name of an existing topic.
+            size: Capacity in messages, at least 1. A full mailbox drops the oldest message.
+
+        Raises:
+            UnknownNameError: The topic does not exist.
+            SimulationError: The world is closed.
+            CartwheelError: `size` is out of range.
         """
+        self.check_open()
+        check_size(size)
         return self.graph.mailbox(topic, size=size, can_come=self._run_by_another)
 
     def _run_by_another(self) -> bool:

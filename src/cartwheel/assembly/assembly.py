@@ -6,8 +6,9 @@ import contextlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
+from cartwheel.assembly.middleware import Rmw
 from cartwheel.assembly.names import world_title
 from cartwheel.assembly.observer import AtEnd, Observer
 from cartwheel.assembly.processes import Kind, Processes
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from cartwheel.gazebo.ros2_api import Ros2Api
     from cartwheel.session import Session
     from cartwheel.simulation.pacing import Pacer
-
-Rmw = Literal["dds", "zenoh"]
 
 
 def at_block_end(function: Callable[[], None]) -> contextlib.AbstractContextManager[object]:

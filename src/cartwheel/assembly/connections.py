@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cartwheel.assembly.assembly import Assembly, Rmw
+from cartwheel.assembly.assembly import Assembly
 from cartwheel.assembly.attendant import Attendant
 from cartwheel.assembly.driver import Driver
+from cartwheel.assembly.middleware import Rmw, check_rmw
 from cartwheel.assembly.names import world_title
 from cartwheel.assembly.observer import Observer
 from cartwheel.assembly.processes import Kind
@@ -114,6 +115,8 @@ class Connections:
         Raises:
             CartwheelError: An option is invalid.
         """
+        if plan.ros2 is not None:
+            check_rmw(plan.rmw)
         if plan.recordings:
             check_recordings(plan.recordings, plan.recording)
         if plan.foxglove is not None:
@@ -176,6 +179,7 @@ class Connections:
 
     def connect_ros2(self, node: str, rmw: Rmw) -> Ros2Connection:
         """See `Assembly.connect_ros2`."""
+        check_rmw(rmw)
         connection = self._assembly.connect_ros2(node, rmw)
         self._serve_reads()
         return connection

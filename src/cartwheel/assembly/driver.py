@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import signal
 import threading
 from collections.abc import Iterator
@@ -26,6 +25,7 @@ class Driver:
         self._simulation = simulation
         self._turns = turns
         self._pacer: Pacer | None = None
+        self._depth = 0
         self.connected = False
         """Whether the simulation has clients, which see that it waits between two runs."""
 
@@ -64,22 +64,26 @@ class Driver:
             SimulationError: The simulation diverged.
         """
         simulation, pacer = self._simulation, self.pacer
+        outer = pacer.until_ns, simulation.speed, simulation.command_time
         simulation.set_speed(speed)
 
         def restart() -> None:
             pacer.until_ns = duration_ns
 
-        outer = pacer.until_ns
         pacer.until_ns = None if duration_ns is None else simulation.time_ns + duration_ns
         simulation.on_reset.append(restart)
         sharing = self._turns.shared(simulation.post) if shared else contextlib.nullcontext()
+        self._depth += 1
         try:
             simulation.drain_queued()
             with sharing:
                 pacer.run()
         finally:
-            simulation.command_time = math.inf
-            pacer.until_ns = outer
+            self._depth -= 1
+            pacer.until_ns, speed_before, simulation.command_time = outer
+            if self._depth:
+                # Another thread's run, which lets this thread in, continues at its own speed.
+                simulation.set_speed(speed_before)
             if restart in simulation.on_reset:
                 simulation.on_reset.remove(restart)
 

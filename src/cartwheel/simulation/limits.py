@@ -102,6 +102,16 @@ def check_speed(speed: float | None) -> None:
         )
 
 
+def check_size(size: int) -> None:
+    """Rejects an invalid size of a queue.
+
+    Raises:
+        CartwheelError: The size is less than 1.
+    """
+    if size < 1:
+        raise _out_of_range("the size of a queue", "at least 1", size)
+
+
 def check_steps(count: int) -> None:
     """Rejects an invalid number of single steps.
 
