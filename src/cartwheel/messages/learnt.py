@@ -11,13 +11,19 @@ import functools
 import keyword
 import math
 import re
-from collections.abc import Iterable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Literal
 
 from cartwheel.codes.graph import MESSAGE_TYPE_IN_USE
 from cartwheel.errors import GraphError, Origin
-from cartwheel.messages.definition import RECORDING, DefinedConstant, DefinedField, Definition
-from cartwheel.messages.store import is_bundled, learning, loaded
+from cartwheel.messages.definition import (
+    RECORDING,
+    TIMES,
+    DefinedConstant,
+    DefinedField,
+    Definition,
+)
+from cartwheel.messages.store import is_bundled, learning, loaded, message_class
 
 _by_name: dict[str, Definition] = {}
 """All types in the order in which they were registered. Nothing is ever removed or replaced."""
@@ -96,6 +102,39 @@ def needed(name: str) -> Iterator[Definition]:
             stack.append((each, True))
             stack += [(used.type, False) for used in _by_name[each].uses if used.type in _by_name]
     yield from made.values()
+
+
+def text_with_nested(
+    full: str, version: Literal[1, 2], made: Any, title: Callable[[str], str]
+) -> str:
+    """The definition of a registered type with all nested types, as in recordings.
+
+    Args:
+        full: The type.
+        version: The version of ROS.
+        made: The typestore of that version, with the built-in types.
+        title: Returns a type's name for its heading.
+    """
+    texts: dict[str, str] = {}
+    waiting = [full]
+    while waiting:
+        name = waiting.pop()
+        if name in texts or (version == 1 and name in TIMES.values()):
+            continue
+        known = learnt(name)
+        if known is not None:
+            texts[name] = known.written(version)
+            waiting += [used.type for used in reversed(known.uses)]
+        else:
+            nested: dict[str, tuple[str, str]] = {}
+            if version == 2:
+                message_class(name)
+            texts[name], _ = made.gendefhash(name, nested, version)
+            texts.update({each: text for each, (text, _) in nested.items() if each not in texts})
+    line = "=" * 80
+    return texts.pop(full) + "".join(
+        f"{line}\nMSG: {title(name)}\n{text}" for name, text in texts.items()
+    )
 
 
 def parts_of(name: str) -> list[str]:

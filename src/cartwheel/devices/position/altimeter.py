@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cartwheel.component import Component, Scope
-from cartwheel.devices.noise import ErrorConfig, sensor_error
+from cartwheel.component import Scope
+from cartwheel.devices.noise import ErrorConfig
+from cartwheel.devices.position.link_sensor import LinkSensor
 from cartwheel.geometry import Vec3
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 _ALTIMETER = "ros_gz_interfaces/msg/Altimeter"
 
@@ -30,7 +31,7 @@ class AltimeterConfig:
     """Errors of the height, m, and of the vertical velocity, m/s."""
 
 
-class Altimeter(Component):
+class Altimeter(LinkSensor):
     """Publishes the height of an altimeter above its initial height, and its vertical velocity.
 
     Args:
@@ -42,28 +43,16 @@ class Altimeter(Component):
     """
 
     def __init__(self, scope: Scope, config: AltimeterConfig) -> None:
-        super().__init__(scope)
-        part = self.part
-        self._link, self._mount = part.link(config.link, origin=self.origin), config.mount
+        super().__init__(scope, config)
+        part, self._mount = self.part, config.mount
         described = part.description.link(config.link)
         assert described is not None
         self._reference = (part.start @ described.pose).apply(config.mount)[2]
-        self._frame = self.frame(config.frame)
-        self._error = sensor_error(part, config.error)
         self._Altimeter = message_class(_ALTIMETER)
-        self._publisher = self.advertise(
-            config.topic, _ALTIMETER, rate=config.rate or None, qos="sensor"
-        )
-        part.schedule(config.rate, after=self._measure, active=lambda: self._publisher.wanted)
-
-    def reset(self) -> None:
-        """Starts new drifts."""
-        super().reset()
-        self._error.restart()
+        self._publisher = self._offer(config.topic, _ALTIMETER)
 
     def _measure(self) -> None:
         place = self._link.pose.apply(self._mount)
         (_, _, rising), _ = self._link.motion_at(place)
         height, speed = self._error.add([place[2] - self._reference, rising])
-        moment = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._Altimeter(moment, height, speed, self._reference))
+        self._publisher.publish(self._Altimeter(self._header(), height, speed, self._reference))

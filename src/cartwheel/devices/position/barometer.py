@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.elementwise import Number, maximum, power
-from cartwheel.devices.noise import ErrorConfig, sensor_error
+from cartwheel.devices.noise import ErrorConfig
+from cartwheel.devices.position.link_sensor import LinkSensor
 from cartwheel.geometry import Vec3
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 SEA_LEVEL = 101325.0
 """Pressure at sea level, Pa."""
@@ -56,7 +57,7 @@ class PressureSensorConfig:
     """Error of the pressure, Pa."""
 
 
-class PressureSensor(Component):
+class PressureSensor(LinkSensor):
     """Publishes the air pressure of the International Standard Atmosphere at a sensor.
 
     Args:
@@ -68,28 +69,16 @@ class PressureSensor(Component):
     """
 
     def __init__(self, scope: Scope, config: PressureSensorConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config)
         self._config = config
-        self._link = self.part.link(config.link, origin=self.origin)
-        self._frame = self.frame(config.frame)
-        self._error = sensor_error(self.part, config.error)
         self._variance = float(self._error.variance[0])
         self._FluidPressure = message_class("sensor_msgs/msg/FluidPressure")
-        self._publisher = self.advertise(
-            config.topic, "sensor_msgs/msg/FluidPressure", rate=config.rate or None, qos="sensor"
-        )
-        self.part.schedule(config.rate, after=self._measure, active=lambda: self._publisher.wanted)
-
-    def reset(self) -> None:
-        """Starts a new drift."""
-        super().reset()
-        self._error.restart()
+        self._publisher = self._offer(config.topic, "sensor_msgs/msg/FluidPressure")
 
     def _measure(self) -> None:
         _, _, height = self._link.pose.apply(self._config.mount)
         (pressure,) = self._error.add([pressure_at(self._config.elevation + height)])
-        moment = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._FluidPressure(moment, pressure, self._variance))
+        self._publisher.publish(self._FluidPressure(self._header(), pressure, self._variance))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -114,7 +103,7 @@ class BarometricAltimeterConfig:
     """Error of the height, m."""
 
 
-class BarometricAltimeter(Component):
+class BarometricAltimeter(LinkSensor):
     """Publishes the height of a link, and the altitude and pressure that belong to it.
 
     Args:
@@ -126,41 +115,26 @@ class BarometricAltimeter(Component):
     """
 
     def __init__(self, scope: Scope, config: BarometricAltimeterConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config)
         self._config = config
-        self._link = self.part.link(config.link, origin=self.origin)
-        self._frame = self.frame(config.frame)
-        self._error = sensor_error(self.part, config.error)
         self._PointStamped = message_class("geometry_msgs/msg/PointStamped")
         self._Point = message_class("geometry_msgs/msg/Point")
         self._Altimeter = message_class("hector_uav_msgs/msg/Altimeter")
         self._heights, self._altitudes = (
-            self.advertise(topic, kind, rate=config.rate or None, qos="sensor")
-            if topic is not None
-            else None
+            self._offer(topic, kind) if topic is not None else None
             for topic, kind in (
                 (config.height_topic, "geometry_msgs/msg/PointStamped"),
                 (config.altitude_topic, "hector_uav_msgs/msg/Altimeter"),
             )
         )
-        self.part.schedule(config.rate, after=self._measure, active=self._wanted)
-
-    def reset(self) -> None:
-        """Starts a new drift."""
-        super().reset()
-        self._error.restart()
-
-    def _wanted(self) -> bool:
-        return any(each is not None and each.wanted for each in (self._heights, self._altitudes))
 
     def _measure(self) -> None:
         config = self._config
         (_, _, z), _ = self._link.place()
         (height,) = self._error.add([z])
-        moment = header(self.part.time_ns, self._frame)
         if self._heights is not None and self._heights.wanted:
-            self._heights.publish(self._PointStamped(moment, self._Point(0.0, 0.0, height)))
+            self._heights.publish(self._PointStamped(self._header(), self._Point(0.0, 0.0, height)))
         if self._altitudes is not None and self._altitudes.wanted:
             altitude = height + config.elevation
             pressure = pressure_by_qnh(altitude, config.qnh)
-            self._altitudes.publish(self._Altimeter(moment, altitude, pressure, config.qnh))
+            self._altitudes.publish(self._Altimeter(self._header(), altitude, pressure, config.qnh))

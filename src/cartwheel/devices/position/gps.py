@@ -7,11 +7,12 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.noise import ErrorConfig, sensor_error
+from cartwheel.devices.position.link_sensor import LinkSensor
 from cartwheel.geometry import Array, Vec3
 from cartwheel.graph import Publisher
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 _KNOWN_DIAGONAL = 2
 """``NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN``."""
@@ -59,7 +60,7 @@ class GpsConfig:
     """Field ``service`` of NavSatStatus."""
 
 
-class Gps(Component):
+class Gps(LinkSensor):
     """Publishes the geographic position and the velocity of a receiver on a link.
 
     Args:
@@ -71,11 +72,8 @@ class Gps(Component):
     """
 
     def __init__(self, scope: Scope, config: GpsConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config)
         self._config = config
-        self._link = self.part.link(config.link, origin=self.origin)
-        self._frame = self.frame(config.frame)
-        self._error = sensor_error(self.part, config.error)
         self._velocity_error = sensor_error(self.part, config.velocity_error)
         self._covariance = config.covariance
         if self._covariance is None:
@@ -84,28 +82,20 @@ class Gps(Component):
         self._status = message_class("sensor_msgs/msg/NavSatStatus")(config.status, config.service)
         self._Vector3Stamped = message_class("geometry_msgs/msg/Vector3Stamped")
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        rate = config.rate or None
-        self._fixes = self.advertise(
-            config.topic, "sensor_msgs/msg/NavSatFix", rate=rate, qos="sensor"
-        )
+        self._fixes = self._offer(config.topic, "sensor_msgs/msg/NavSatFix")
         self._velocities: Publisher | None = None
         if config.velocity_topic is not None:
-            self._velocities = self.advertise(
-                config.velocity_topic, "geometry_msgs/msg/Vector3Stamped", rate=rate
+            self._velocities = self._offer(
+                config.velocity_topic, "geometry_msgs/msg/Vector3Stamped", qos="default"
             )
-        self.part.schedule(config.rate, after=self._measure, active=self._wanted)
 
     def reset(self) -> None:
         """Starts new drifts."""
         super().reset()
-        self._error.restart()
         self._velocity_error.restart()
 
-    def _wanted(self) -> bool:
-        return self._fixes.wanted or (self._velocities is not None and self._velocities.wanted)
-
     def _measure(self) -> None:
-        moment = header(self.part.time_ns, self._frame)
+        moment = self._header()
         if self._fixes.wanted:
             x, y, z = self._error.add(self._link.pose.apply(self._config.mount))
             located = self._config.projection.locate_degrees((x, y, z))

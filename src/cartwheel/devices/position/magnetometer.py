@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cartwheel.component import Component, Scope
-from cartwheel.devices.noise import ErrorConfig, sensor_error
+from cartwheel.component import Scope
+from cartwheel.devices.noise import ErrorConfig
+from cartwheel.devices.position.link_sensor import LinkSensor
 from cartwheel.geometry import IDENTITY, Quat, Vec3, quat_conjugate, quat_multiply, rotate
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,7 +37,7 @@ class MagnetometerConfig:
     """Publish Vector3Stamped instead of MagneticField."""
 
 
-class Magnetometer(Component):
+class Magnetometer(LinkSensor):
     """Publishes the Earth's magnetic field in the frame of a magnetometer on a link.
 
     Args:
@@ -48,24 +49,15 @@ class Magnetometer(Component):
     """
 
     def __init__(self, scope: Scope, config: MagnetometerConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config)
         self._config = config
-        self._link = self.part.link(config.link, origin=self.origin)
-        self._frame = self.frame(config.frame)
-        self._error = sensor_error(self.part, config.error)
         self._covariance = np.diag(self._error.variance).ravel()
         kind = "sensor_msgs/msg/MagneticField"
         if config.as_vector:
             kind = "geometry_msgs/msg/Vector3Stamped"
         self._Message = message_class(kind)
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._publisher = self.advertise(config.topic, kind, rate=config.rate or None, qos="sensor")
-        self.part.schedule(config.rate, after=self._measure, active=lambda: self._publisher.wanted)
-
-    def reset(self) -> None:
-        """Starts a new drift."""
-        super().reset()
-        self._error.restart()
+        self._publisher = self._offer(config.topic, kind)
 
     def _measure(self) -> None:
         config = self._config
@@ -73,11 +65,10 @@ class Magnetometer(Component):
         mounted = quat_multiply(orientation, config.mount)
         field = self.part.world.magnetic_field if config.field is None else config.field
         measured = self._Vector3(*self._error.add(rotate(quat_conjugate(mounted), field)))
-        moment = header(self.part.time_ns, self._frame)
         if config.as_vector:
-            self._publisher.publish(self._Message(moment, measured))
+            self._publisher.publish(self._Message(self._header(), measured))
         else:
-            self._publisher.publish(self._Message(moment, measured, self._covariance))
+            self._publisher.publish(self._Message(self._header(), measured, self._covariance))
 
 
 def dipole_field(magnitude: float, azimuth: float, inclination: float) -> Vec3:

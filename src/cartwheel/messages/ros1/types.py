@@ -12,7 +12,7 @@ from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.definition import Definition
 from cartwheel.messages.fields import FILLER
-from cartwheel.messages.learnt import learnt, learnt_since
+from cartwheel.messages.learnt import learnt, learnt_since, text_with_nested
 from cartwheel.messages.store import learning, parsed_definitions, service_name, type_name
 
 _PRIMITIVES = {
@@ -87,30 +87,8 @@ def ros1_type(name: str) -> Ros1Type:
     if learnt(full) is None:
         text, md5 = ros1_store().generate_msgdef(full)
     else:
-        text, md5 = _learnt_text(full), _md5(_hashed_text(full))
+        text, md5 = text_with_nested(full, 1, ros1_store(), ros1_name), _md5(_hashed_text(full))
     return Ros1Type(name=ros1_name(full), md5=md5, definition=text)
-
-
-def _learnt_text(full: str) -> str:
-    """The definition of a type from a package, with all nested types."""
-    texts: dict[str, str] = {}
-    waiting = [full]
-    while waiting:
-        name = waiting.pop()
-        if name in texts or name in _PRIMITIVES:
-            continue
-        known = learnt(name)
-        if known is not None:
-            texts[name] = known.written(1)
-            waiting += [used.type for used in reversed(known.uses)]
-        else:
-            nested: dict[str, tuple[str, str]] = {}
-            texts[name], _ = ros1_store().gendefhash(name, nested, 1)
-            texts.update({each: text for each, (text, _) in nested.items() if each not in texts})
-    line = "=" * 80
-    return texts.pop(full) + "".join(
-        f"{line}\nMSG: {ros1_name(name)}\n{text}" for name, text in texts.items()
-    )
 
 
 @functools.cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 
 from cartwheel.messages.definition import short_name
-from cartwheel.messages.learnt import learnt
+from cartwheel.messages.learnt import learnt, text_with_nested
 from cartwheel.messages.ros2.types import is_ros1_only, ros2_type
 from cartwheel.messages.store import TWIN, loaded, message_class
 
@@ -19,32 +19,9 @@ def ros2_definition(name: str) -> str:
     """
     full = message_class(name).__msgtype__
     if learnt(full) is not None:
-        return _learnt_text(full)
+        return text_with_nested(full, 2, loaded(), short_name)
     text, _ = loaded().generate_msgdef(full, ros_version=2)
     return str(text).replace(f"{TWIN}/", "/")
-
-
-def _learnt_text(full: str) -> str:
-    """The definition of a type from a package, with all nested types."""
-    texts: dict[str, str] = {}
-    waiting = [full]
-    while waiting:
-        name = waiting.pop()
-        if name in texts:
-            continue
-        known = learnt(name)
-        if known is not None:
-            texts[name] = known.written(2)
-            waiting += [used.type for used in reversed(known.uses)]
-        else:
-            nested: dict[str, tuple[str, str]] = {}
-            message_class(name)
-            texts[name], _ = loaded().gendefhash(name, nested, 2)
-            texts.update({each: text for each, (text, _) in nested.items() if each not in texts})
-    line = "=" * 80
-    return texts.pop(full) + "".join(
-        f"{line}\nMSG: {short_name(name)}\n{text}" for name, text in texts.items()
-    )
 
 
 @functools.cache

@@ -65,6 +65,11 @@ def _is_nested(field: Any) -> bool:
 
 
 def _field(name: str, kind: Any) -> dict[str, Any]:
+    return {"name": name, "type": field_type(kind)}
+
+
+def field_type(kind: Any) -> dict[str, Any]:
+    """The members of the ROS 2 message ``FieldType`` for a field in the form of rosbags."""
     from rosbags.interfaces import Nodetype
 
     node, value = kind
@@ -80,11 +85,8 @@ def _field(name: str, kind: Any) -> dict[str, Any]:
         base, longest = value
         number = _NUMBERS[base] + (_BOUNDED_TEXT if longest else 0)
     return {
-        "name": name,
-        "type": {
-            "type_id": number + more,
-            "capacity": capacity,
-            "string_capacity": longest,
-            "nested_type_name": nested,
-        },
+        "type_id": number + more,
+        "capacity": capacity,
+        "string_capacity": longest,
+        "nested_type_name": nested,
     }
