@@ -151,7 +151,7 @@ def test_attributes_and_descendants():
     assert root.number_at("c/d", 0) == 4
     assert root.integer_at("c/d", 0) == 4
     assert root.optional_number_at("c/e") is None
-    assert root.pose_at("pose") == Pose((1, 2, 3))
+    assert root.require_child("pose").pose() == Pose((1, 2, 3))
     assert root.boolean_at("t", False)
     assert root.text_at("x", "none") == "none"
 

@@ -266,11 +266,6 @@ class Node:
         node = self._filled(path)
         return node.vec3() if node is not None else default
 
-    def pose_at(self, path: str) -> Pose:
-        """The pose at a path; identity if the element is missing."""
-        node = self.find(path)
-        return node.pose() if node is not None else Pose()
-
     def _filled(self, path: str) -> Node | None:
         """The descendant at a path if it is not empty: an empty element selects the default."""
         node = self.find(path)

@@ -73,12 +73,7 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
     if child == WORLD and node.attributes.get("type") == "fixed":
         child = node.text_at("parent").strip()
     if child == WORLD:
-        raise node.fail(
-            f'joint "{name}": the world cannot be the child',
-            "Swap <parent> and <child>.",
-            code=robot.JOINT_LINK_UNKNOWN,
-            values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
-        )
+        raise _world_child(node, name)
     if not frames.has(child) and child not in joints:
         raise NoLinkError(
             f'joint "{name}": child link "{child}" does not exist',
@@ -95,6 +90,15 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         origin=node.origin,
     )
     return frame
+
+
+def _world_child(node: Node, name: str) -> DescriptionError:
+    return node.fail(
+        f'joint "{name}": the world cannot be the child',
+        "Swap <parent> and <child>.",
+        code=robot.JOINT_LINK_UNKNOWN,
+        values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
+    )
 
 
 def joint_frame(name: str) -> str:
@@ -131,12 +135,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     if child == WORLD and kind == "fixed":
         parent, child = WORLD, parent  # the constraint is the same in both directions
     if child == WORLD:
-        raise node.fail(
-            f'joint "{name}": the world cannot be the child',
-            "Swap <parent> and <child>.",
-            code=robot.JOINT_LINK_UNKNOWN,
-            values={"joint": name, "end": "child", "name": WORLD, "meant": ""},
-        )
+        raise _world_child(node, name)
     if parent == child:
         raise node.fail(
             f'joint "{name}" connects link "{child}" to itself',

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -27,33 +27,29 @@ MAX_FILES = 200
 @rule(files_codes.ARGUMENT_UNUSED)
 def argument_unused(subject: Subject) -> Iterator[Diagnostic]:
     used = _uses(subject).words
-    for tree in subject.written:
-        for node in nodes.walk(tree):
-            name = nodes.name_of(node)
-            if node.tag == "xacro:arg" and _is_plain(name) and name not in used:
-                yield files_codes.ARGUMENT_UNUSED.diagnostic(
-                    message=f'argument "{name}" is declared but never used',
-                    values={"name": name},
-                    origin=node.origin,
-                    mark=f'name="{name}"',
-                    hint=f"Use it as $(arg {name}), or remove it.",
-                )
+    for node, name in _definitions(subject.written, "xacro:arg"):
+        if _is_plain(name) and name not in used:
+            yield files_codes.ARGUMENT_UNUSED.diagnostic(
+                message=f'argument "{name}" is declared but never used',
+                values={"name": name},
+                origin=node.origin,
+                mark=f'name="{name}"',
+                hint=f"Use it as $(arg {name}), or remove it.",
+            )
 
 
 @rule(files_codes.PROPERTY_UNUSED)
 def property_unused(subject: Subject) -> Iterator[Diagnostic]:
     used = _uses(subject).words
-    for tree in _own_trees(subject):
-        for node in nodes.walk(tree):
-            name = nodes.name_of(node)
-            if node.tag == "xacro:property" and _is_plain(name) and name not in used:
-                yield files_codes.PROPERTY_UNUSED.diagnostic(
-                    message=f'property "{name}" is never used',
-                    values={"name": name},
-                    origin=node.origin,
-                    mark=f'name="{name}"',
-                    hint="Use the property wherever its value is repeated, or remove it.",
-                )
+    for node, name in _definitions(_own_trees(subject), "xacro:property"):
+        if _is_plain(name) and name not in used:
+            yield files_codes.PROPERTY_UNUSED.diagnostic(
+                message=f'property "{name}" is never used',
+                values={"name": name},
+                origin=node.origin,
+                mark=f'name="{name}"',
+                hint="Use the property wherever its value is repeated, or remove it.",
+            )
 
 
 @rule(files_codes.PROPERTY_OVERWRITTEN)
@@ -86,42 +82,44 @@ def property_twice(subject: Subject) -> Iterator[Diagnostic]:
 @rule(files_codes.PARAMETER_UNUSED)
 def parameter_unused(subject: Subject) -> Iterator[Diagnostic]:
     uses = _uses(subject)
-    for tree in _own_trees(subject):
-        for node in nodes.walk(tree):
-            if (
-                node.tag != "xacro:macro"
-                or nodes.name_of(node).removeprefix("xacro:") not in uses.calls
-            ):
-                continue
-            for word in node.attributes.get("params", "").split():
-                name = _PARAMETER.match(word)
-                # Macros called here see the parameters too, so any use counts.
-                if name is not None and name[1] not in uses.words:
-                    yield files_codes.PARAMETER_UNUSED.diagnostic(
-                        message=f'macro "{nodes.name_of(node)}" never uses its parameter '
-                        f'"{name[1]}"',
-                        values={"name": name[1], "macro": nodes.name_of(node)},
-                        origin=node.origin,
-                        mark="params",
-                        hint=f"Use it as ${{{name[1]}}}, or remove it.",
-                    )
+    for node, macro in _definitions(_own_trees(subject), "xacro:macro"):
+        if macro.removeprefix("xacro:") not in uses.calls:
+            continue
+        for word in node.attributes.get("params", "").split():
+            name = _PARAMETER.match(word)
+            # Macros called here see the parameters too, so any use counts.
+            if name is not None and name[1] not in uses.words:
+                yield files_codes.PARAMETER_UNUSED.diagnostic(
+                    message=f'macro "{macro}" never uses its parameter "{name[1]}"',
+                    values={"name": name[1], "macro": macro},
+                    origin=node.origin,
+                    mark="params",
+                    hint=f"Use it as ${{{name[1]}}}, or remove it.",
+                )
 
 
 @rule(files_codes.MACRO_UNUSED)
 def macro_unused(subject: Subject) -> Iterator[Diagnostic]:
     called = _uses(subject).calls
-    for tree in _own_trees(subject):
+    for node, stated in _definitions(_own_trees(subject), "xacro:macro"):
+        name = stated.removeprefix("xacro:")
+        if name and name not in called:
+            params = node.attributes.get("params", "").split()
+            yield files_codes.MACRO_UNUSED.diagnostic(
+                message=f'macro "{name}" is never called',
+                values={"name": name},
+                origin=node.origin,
+                mark=f'name="{stated}"',
+                hint=f"Call it, as in <xacro:{name}{' …' if params else ''}/>, or remove it.",
+            )
+
+
+def _definitions(trees: Iterable[Node], tag: str) -> Iterator[tuple[Node, str]]:
+    """Yields the elements with a tag and their names."""
+    for tree in trees:
         for node in nodes.walk(tree):
-            name = nodes.name_of(node).removeprefix("xacro:")
-            if node.tag == "xacro:macro" and name and name not in called:
-                params = node.attributes.get("params", "").split()
-                yield files_codes.MACRO_UNUSED.diagnostic(
-                    message=f'macro "{name}" is never called',
-                    values={"name": name},
-                    origin=node.origin,
-                    mark=f'name="{nodes.name_of(node)}"',
-                    hint=f"Call it, as in <xacro:{name}{' …' if params else ''}/>, or remove it.",
-                )
+            if node.tag == tag:
+                yield node, nodes.name_of(node)
 
 
 def _is_plain(name: str) -> bool:

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 from cartwheel.codes import devices, running
 from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
 from cartwheel.devices.drives.rollers import has_rollers
-from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
     check_axis,
@@ -28,7 +28,7 @@ _ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
 _STATE = f"control_msgs{TWIN}/msg/MecanumDriveControllerState"
 
 
-class MecanumDriveController(Controller):
+class MecanumDriveController(WheelController):
     """Turns four mecanum wheels as Twist commands require, and publishes odometry.
 
     If the wheels model rollers, friction moves the robot; see `has_rollers`. Otherwise a servo
@@ -39,6 +39,7 @@ class MecanumDriveController(Controller):
     """
 
     types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
+    _wheels: MecanumWheels
 
     def configure(self, settings: Settings) -> None:
         ros2 = self.robot.ros2
@@ -134,20 +135,13 @@ class MecanumDriveController(Controller):
             )
 
     def start(self, time_ns: int) -> None:
-        self._command.stop()
-        self._odometry.start(time_ns)
-        self._wheels.restart()
+        super().start(time_ns)
         self._wheels.measure(0.0)
 
-    def update(self, time_ns: int, seconds: float) -> None:
-        self._wheels.measure(seconds)
-        self._odometry.publish(time_ns)
-        command = self._wheels.command(self._command.at(time_ns), seconds)
+    def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:
+        command = self._wheels.command(command, seconds)
         if self._state is not None and self._state.wanted:
             self._state.publish(self._state_message(time_ns, command))
-
-    def stop(self, time_ns: int) -> None:  # noqa: ARG002
-        self._wheels.stop()
 
     def _state_message(self, time_ns: int, command: Vec3) -> Any:
         message = zero(_STATE)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import ClassVar
 
 from cartwheel.devices.drives.steered_wheels import SteeredByAngle, SteeredByAngleConfig
-from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
     UP,
@@ -17,9 +17,10 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
     wheel_radius,
 )
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.geometry import Vec3
 
 
-class SteerDriveController(Controller):
+class SteerDriveController(WheelController):
     """One driven wheel and one steered joint, as in ROS 1.
 
     ``linear.x`` on ``cmd_vel`` is the speed, ``angular.z`` the steering angle. Source:
@@ -27,6 +28,7 @@ class SteerDriveController(Controller):
     """
 
     types: ClassVar[tuple[str, ...]] = ("steer_drive_controller/SteerDriveController",)
+    _wheels: SteeredByAngle
 
     def configure(self, settings: Settings) -> None:
         wheel = settings.text("rear_wheel", "rear_wheel_joint")
@@ -60,16 +62,6 @@ class SteerDriveController(Controller):
         )
         self._wheels = SteeredByAngle(config, driven, steering, self._odometry.reckoning)
 
-    def start(self, time_ns: int) -> None:
-        self._command.stop()
-        self._odometry.start(time_ns)
-        self._wheels.restart()
-
-    def update(self, time_ns: int, seconds: float) -> None:
-        self._wheels.measure(seconds)
-        self._odometry.publish(time_ns)
-        forward, _, angle = self._command.at(time_ns)
+    def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        forward, _, angle = command
         self._wheels.command(forward, angle, seconds)
-
-    def stop(self, time_ns: int) -> None:  # noqa: ARG002
-        self._wheels.stop()

@@ -9,9 +9,9 @@ import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.steered_wheels import SteeredAxle, SteeredAxleConfig
-from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
     UP,
@@ -20,13 +20,14 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
 )
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.geometry import Vec3
 from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
 
 _STATE = f"control_msgs{TWIN}/msg/SteeringControllerStatus"
 
 
-class SteeringController(Controller):
+class SteeringController(WheelController):
     """Driven and steered wheels, as in ROS 2's steering_controllers_library.
 
     Commands arrive on ``reference`` (TwistStamped), or with ``use_stamped_vel: false`` on
@@ -40,6 +41,7 @@ class SteeringController(Controller):
         "bicycle_steering_controller/BicycleSteeringController",
         "tricycle_steering_controller/TricycleSteeringController",
     )
+    _wheels: SteeredAxle
 
     def configure(self, settings: Settings) -> None:
         front = settings.boolean("front_steering", True)
@@ -106,15 +108,8 @@ class SteeringController(Controller):
         )
         self._wheels = SteeredAxle(config, driven, steering_joints, self._odometry.reckoning)
 
-    def start(self, time_ns: int) -> None:
-        self._command.stop()
-        self._odometry.start(time_ns)
-        self._wheels.restart()
-
-    def update(self, time_ns: int, seconds: float) -> None:
-        self._wheels.measure(seconds)
-        self._odometry.publish(time_ns)
-        forward, _, turn = self._command.at(time_ns)
+    def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        forward, _, turn = command
         self._wheels.command(forward, turn)
         if self._state.wanted:
             self._state.publish(self._state_message(time_ns))
@@ -132,9 +127,6 @@ class SteeringController(Controller):
         message.linear_velocity_command = np.array([each.command for each in traction])
         message.steering_angle_command = np.array([each.command for each in steering])
         return message
-
-    def stop(self, time_ns: int) -> None:  # noqa: ARG002
-        self._wheels.stop()
 
     def _axle(self, names: Sequence[str], interface: str) -> list[JointHardware]:
         """Claims the wheels of an axle; returns the left one first."""

@@ -7,18 +7,20 @@ from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.steered_wheels import SteeredWheel, SteeredWheelConfig
-from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import LEFT, UP, check_axis
 from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.geometry import Vec3
 
 
-class TricycleController(Controller):
+class TricycleController(WheelController):
     """A front wheel that is driven and steered. Source: tricycle_controller."""
 
     types: ClassVar[tuple[str, ...]] = ("tricycle_controller/TricycleController",)
+    _wheels: SteeredWheel
 
     def configure(self, settings: Settings) -> None:
         wheel = self.claim(settings.text("traction_joint_name"), "velocity")
@@ -56,18 +58,8 @@ class TricycleController(Controller):
         self._odometry = wheel_odometry(
             self, settings, transform=settings.boolean("enable_odom_tf", True)
         )
-        self._wheel = SteeredWheel(config, wheel, steering, self._odometry.reckoning)
+        self._wheels = SteeredWheel(config, wheel, steering, self._odometry.reckoning)
 
-    def start(self, time_ns: int) -> None:
-        self._command.stop()
-        self._odometry.start(time_ns)
-        self._wheel.restart()
-
-    def update(self, time_ns: int, seconds: float) -> None:
-        self._wheel.measure(seconds)
-        self._odometry.publish(time_ns)
-        forward, _, turn = self._command.at(time_ns)
-        self._wheel.command(forward, turn, seconds)
-
-    def stop(self, time_ns: int) -> None:  # noqa: ARG002
-        self._wheel.stop()
+    def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002
+        forward, _, turn = command
+        self._wheels.command(forward, turn, seconds)
