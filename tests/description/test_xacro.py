@@ -342,9 +342,27 @@ def test_messages_of_xacro_become_diagnostics(folder, capfd):
 <a b="${xacro.warning('look here')}"/>
 <xacro:include filename="no*.xacro"/>""",
     )
-    told = [placed(each) for each in expanded().diagnostics]
-    assert told == [f"robot.xacro:{line} warning xacro-message" for line in (2, 3, 4)]
+    told = expanded().diagnostics
+    assert [placed(each) for each in told] == [
+        f"robot.xacro:{line} warning xacro-message" for line in (2, 3, 4)
+    ]
+    assert told[1].values == {"text": "look here"}
     assert capfd.readouterr() == ("", "")
+
+
+def test_messages_of_one_line_are_told_apart_by_their_text(folder):
+    write(
+        "robot.xacro",
+        """<xacro:if value="${[xacro.warning('one')] and [xacro.warning('one')] and True}"/>
+<xacro:if value="${[xacro.warning('one')] and [xacro.warning('this is deprecated')] and True}"/>""",
+    )
+    told = [(placed(each), each.values["text"]) for each in expanded().diagnostics]
+    warning = "warning xacro-message"
+    assert told == [
+        (f"robot.xacro:2 {warning}", "one"),
+        (f"robot.xacro:3 {warning}", "one"),
+        (f"robot.xacro:3 {warning}", "this is deprecated"),
+    ]
 
 
 def test_missing_namespace_is_told(folder):
@@ -414,7 +432,8 @@ def test_what_is_deprecated_and_works_is_a_note(folder):
     found = expanded()
     assert dict(found.root.children[0].attributes) == {"r": "0.3"}
     (told,) = found.diagnostics
-    assert placed(told) == "robot.xacro:2 info xacro-deprecated"
+    assert placed(told) == "robot.xacro:2 info xacro-deprecated xacro.load_yaml"
+    assert told.values["name"] == "load_yaml"
 
 
 def test_a_robot_keeps_the_values_of_its_arguments_given_or_not():
@@ -467,6 +486,34 @@ def test_an_attribute_set_to_a_number(folder):
 def test_an_expression_with_quotes_is_told_as_a_whole(folder):
     write("robot.xacro", """<a b="${missing['key'] + 'x'}"/>""")
     assert failure().values["expression"] == "missing['key'] + 'x'"
+    write("robot.xacro", """<a b="${missing + 'a' 'when evaluating' + ''}"/>""")
+    assert failure().values["expression"] == "missing + 'a' 'when evaluating' + ''"
+
+
+def test_a_text_of_the_description_is_not_taken_for_an_error_of_xacro(folder):
+    write("robot.xacro", """<a b="${xacro.fatal('name \\'wheel\\' is not defined')}"/>""")
+    assert named(failure()) == "expression-invalid"
+    write("robot.xacro", """<a b="${xacro.fatal('Undefined substitution argument wheel')}"/>""")
+    assert named(failure()) == "expression-invalid"
+
+
+@pytest.mark.parametrize(
+    "expression", ["wheel_radius", "xacro.wheel", "1 if wheel else 2"], ids=["plain", "in", "if"]
+)
+def test_an_undefined_property_is_named(folder, expression):
+    write("robot.xacro", f'<a b="${{{expression}}}"/>')
+    with raises(files.XACRO_NAME_UNKNOWN, kind="property", expression=expression) as error:
+        expanded()
+    assert error.value.values["name"] in expression
+    assert error.value.origin.line == 2
+
+
+@pytest.mark.parametrize("text", ["$(arg wheel)", "${'$(arg wheel)' + 'x'}"])
+def test_an_argument_without_value_is_named(folder, text):
+    write("robot.xacro", f'<a b="{text}"/>')
+    with raises(files.XACRO_NAME_UNKNOWN, kind="argument", name="wheel") as error:
+        expanded()
+    assert error.value.origin.line == 2
 
 
 def test_tags_without_prefix_are_taken_as_ros_did_until_melodic(folder):

@@ -6,6 +6,7 @@ Only this module parses the package's messages.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -33,12 +34,23 @@ class Failure:
     """Parameters of the called macro."""
 
 
+class ArgumentError(Exception):
+    """An argument in ``$(arg …)`` without a value.
+
+    Args:
+        name: Its name.
+    """
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.name = name
+
+
 _LONGEST = 4000
 """Maximum characters of an error message to examine."""
 
 _UNDEFINED = re.compile(r"name '([^']*)' is not defined")
 _MACRO = re.compile(r"unknown macro name: xacro:(\S+)")
-_ARGUMENT = re.compile(r"Undefined substitution argument '?([\w.-]+)")
 _BLOCK = re.compile(r'Undefined block "([^"]*)"')
 _PARAMETER = re.compile(r'Invalid parameter "([^"]*)"')
 _MISSING = re.compile(r"Undefined parameters \[([^\]]*)\]")
@@ -46,14 +58,15 @@ _CONDITION = re.compile(r'Xacro conditional "(.*)" evaluated to "(.*)", which is
 _ATTRIBUTE = re.compile(r"(\S+): missing attribute '([^']*)'")
 _COMMAND = re.compile(r"Unknown substitution command \[(\S+)")
 _ENVIRONMENT = re.compile(r"environment variable '([^']*)' is not set")
-_EXPRESSION = re.compile(r"when evaluating expression '(.*?)'\s*(?:\Z|when evaluating)", re.DOTALL)
 
 
 def explain(failure: Failure) -> DescriptionError:
     """The error to report for a failed expansion."""
     # The error may quote a text as long as the file.
     text = str(failure.error)[:_LONGEST] or type(failure.error).__name__
-    inner = _innermost(failure.error)
+    inner = list(_chain(failure.error))[-1]
+    expression = _expression(failure.error)
+    evaluated = f" (in the expression ${{{expression}}})" if expression else ""
     origin = failure.origin
     message, hint = text.splitlines()[0], None
     code: Code = codes.XACRO_INVALID
@@ -77,21 +90,22 @@ def explain(failure: Failure) -> DescriptionError:
         if not failure.macros:
             hint = "No macro is defined here. Is a xacro:include missing?"
         code, values = _unknown("macro", f"xacro:{match[1]}", near)
-    elif match := _UNDEFINED.search(text):
-        message = f'the property "{match[1]}" is not defined' + _expression(text)
-        hint, near = _meant(match[1], [*failure.properties, *_FUNCTIONS])
-        if match[1] in failure.arguments:
-            hint = f"{match[1]} is an argument: use $(arg {match[1]})."
-        code, values = _unknown("property", match[1], near)
-        values["expression"] = _evaluated(text)
-    elif match := _ARGUMENT.search(text):
-        hint, near = _meant(match[1], failure.arguments)
-        message = f'the argument "{match[1]}" {"is not declared" if hint else "has no value"}'
+    elif isinstance(inner, NameError) and (name := _undefined(inner)):
+        message = f'the property "{name}" is not defined{evaluated}'
+        hint, near = _meant(name, [*failure.properties, *_FUNCTIONS])
+        if name in failure.arguments:
+            hint = f"{name} is an argument: use $(arg {name})."
+        code, values = _unknown("property", name, near)
+        values["expression"] = expression
+    elif isinstance(inner, ArgumentError):
+        name = inner.name
+        hint, near = _meant(name, failure.arguments)
+        message = f'the argument "{name}" {"is not declared" if hint else "has no value"}'
         hint = hint or (
-            f"Pass {xacro_argument(match[1])}, or set a default in the file: <xacro:arg "
-            f'name="{match[1]}" default="…"/>.'
+            f"Pass {xacro_argument(name)}, or set a default in the file: <xacro:arg "
+            f'name="{name}" default="…"/>.'
         )
-        code, values = _unknown("argument", match[1], near)
+        code, values = _unknown("argument", name, near)
     elif match := _BLOCK.search(text):
         message = f'the block "{match[1]}" is not defined'
         hint, near = _meant(match[1], failure.properties)
@@ -126,20 +140,15 @@ def explain(failure: Failure) -> DescriptionError:
         message = f'the environment variable "{match[1]}" is not set'
         hint = f"To use a default if it is not set: $(optenv {match[1]} default)."
         code, values = _unknown("environment variable", match[1], "")
-    elif _EXPRESSION.search(text):
-        reason = str(inner).splitlines()[0] if str(inner) else type(inner).__name__
-        reason = reason.replace("(<expression>, line 1)", "").strip()
-        message = f"{reason}{_expression(text)}"
-        code, values = codes.EXPRESSION_INVALID, {"cause": type(inner).__name__}
-        values["expression"] = _evaluated(text)
+    elif expression:
+        reason = inner.msg if isinstance(inner, SyntaxError) else str(inner)
+        reason = (reason.splitlines() or [type(inner).__name__])[0]
+        message = f"{reason}{evaluated}"
+        code = codes.EXPRESSION_INVALID
+        values = {"cause": type(inner).__name__, "expression": expression}
     elif isinstance(inner, IndexError | KeyError | AttributeError | AssertionError):
         message = f"xacro fails at this element: {type(inner).__name__}: {inner}"
     return DescriptionError(message, code=code, origin=origin, hint=hint, values=values)
-
-
-def code_of(message: str) -> Code:
-    """The code of a warning from xacro, or of a message printed by the description."""
-    return codes.XACRO_DEPRECATED if "deprecated" in message else codes.XACRO_MESSAGE
 
 
 def _unknown(kind: str, name: str, near: str) -> tuple[Code, dict[str, Value]]:
@@ -150,24 +159,28 @@ _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "eval", "cwd")
 _FUNCTIONS = ("pi", "sin", "cos", "tan", "sqrt", "radians", "degrees", "atan2", "abs", "load_yaml")
 
 
-def _innermost(error: BaseException) -> BaseException:
+def _chain(error: BaseException) -> Iterator[BaseException]:
+    """The error, and those that xacro wrapped in it."""
     for _ in range(50):
+        yield error
         inner = getattr(error, "exc", None)
         if not isinstance(inner, BaseException):
-            break
+            return
         error = inner
-    return error
 
 
-def _evaluated(text: str) -> str:
-    """The expression that failed; empty if unknown."""
-    match = _EXPRESSION.search(text)
-    return match[1].strip() if match else ""
+def _expression(error: BaseException) -> str:
+    """The innermost expression that failed; empty if none did."""
+    return next(
+        (each.expression for each in reversed(list(_chain(error))) if hasattr(each, "expression")),
+        "",
+    )
 
 
-def _expression(text: str) -> str:
-    evaluated = _evaluated(text)
-    return f" (in the expression ${{{evaluated}}})" if evaluated else ""
+def _undefined(error: NameError) -> str:
+    """The name that is not defined. In a namespace, only the message of xacro contains it."""
+    match = _UNDEFINED.search(str(error))
+    return error.name or (match[1] if match else "")
 
 
 def _meant(name: str, known: list[str] | tuple[str, ...]) -> tuple[str | None, str]:

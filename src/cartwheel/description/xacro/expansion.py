@@ -13,11 +13,11 @@ from cartwheel.description.elements.xml import Node
 from cartwheel.description.expressions import Budget
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.xacro.dom import Document, DomBuilder, Element, clone, size_of, to_node
-from cartwheel.description.xacro.errors import Failure, code_of, explain
+from cartwheel.description.xacro.errors import Failure, explain
 from cartwheel.description.xacro.module import fresh_xacro
 from cartwheel.description.xacro.replacements import replace_functions
 from cartwheel.description.xacro.unprefixed import PREFIX, prefixed
-from cartwheel.errors import CartwheelError, DescriptionError, Diagnostic, Origin
+from cartwheel.errors import CartwheelError, Code, DescriptionError, Diagnostic, Origin, Value
 from cartwheel.similar_names import meant, suggestion
 
 MAX_ELEMENTS = 100_000
@@ -94,7 +94,8 @@ class Run:
     values: dict[str, str] = field(default_factory=dict)
     """Values of the arguments seen so far, including defaults."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    seen: set[Diagnostic] = field(default_factory=set)
+    seen: set[tuple[object, ...]] = field(default_factory=set)
+    """Identities of the reported messages."""
     declared: set[str] = field(default_factory=set)
     files: list[str] = field(default_factory=list)
     place: Element | None = None
@@ -141,10 +142,18 @@ class Run:
         return self.place.origin if self.place is not None else Origin(file=self.file)
 
     def warn(self, message: str) -> None:
-        """Reports a message of xacro, once for each location."""
-        diagnostic = code_of(message).diagnostic(message, origin=self.origin())
-        if diagnostic not in self.seen:
-            self.seen.add(diagnostic)
+        """Reports a message of xacro or of the description, once for each location."""
+        self._report(codes.XACRO_MESSAGE, message, {"text": message})
+
+    def warn_of_deprecated(self, name: str, meant: str) -> None:
+        """Reports a deprecated name of a function, once for each location."""
+        message = f"{name}() without its namespace is deprecated: use {meant}()"
+        self._report(codes.XACRO_DEPRECATED, message, {"name": name, "meant": meant})
+
+    def _report(self, code: Code, message: str, values: dict[str, Value]) -> None:
+        diagnostic = code.diagnostic(message, origin=self.origin(), values=values)
+        if diagnostic.identity not in self.seen:
+            self.seen.add(diagnostic.identity)
             self.diagnostics.append(diagnostic)
 
     def warn_of_prefix(self, element: Element, tag: str, number: int = 1) -> None:

@@ -22,6 +22,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.expressions import Evaluator, ExpressionError
 from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.xacro.dom import Document, Element, replace_node
+from cartwheel.description.xacro.errors import ArgumentError
 from cartwheel.description.xacro.symbols import eval_extension_of, read_yaml, symbols_of
 from cartwheel.description.xacro.unprefixed import PREFIX, call_prefixed
 from cartwheel.errors import DescriptionError
@@ -96,7 +97,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         try:
             return str(substitution.resolve_args(text, context=context))
         except substitution.ArgException as error:
-            raise space.XacroException("Undefined substitution argument", exc=error) from error
+            raise space.XacroException(exc=ArgumentError(str(error))) from error
 
     def eval_text(text: str | None, symbols: Any) -> object:
         # Most texts contain no expression.
@@ -137,9 +138,9 @@ def replace_functions(module: ModuleType, run: Run) -> None:
                 values={**error.values, "expression": shown},
             ) from error
         except Exception as error:
-            raise space.XacroException(
-                exc=error, suffix=f"\nwhen evaluating expression '{shown}'"
-            ) from error
+            failure = space.XacroException(exc=error)
+            failure.expression = shown
+            raise failure from error
 
     def is_valid_name(name: str) -> bool:
         return name.isidentifier() and not keyword.iskeyword(name)
@@ -262,6 +263,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
             "warning": warning, "error": error, "print_location": print_location,
             "fatal": fatal, "tokenize": tokenize,
         },
+        deprecated=run.warn_of_deprecated,
     )  # fmt: skip
     space._global_symbols = symbols
     substitution._eval = eval_extension_of(substitution, evaluator)

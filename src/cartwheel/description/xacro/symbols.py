@@ -21,8 +21,19 @@ _DEPRECATED = (
 _MESSAGES = frozenset({"message", "warning", "error", "print_location"})
 
 
-def symbols_of(module: Any, functions: Mapping[str, Callable[..., Any]]) -> dict[str, Any]:
-    """The names in all expressions: xacro's own, with limited functions."""
+def symbols_of(
+    module: Any,
+    functions: Mapping[str, Callable[..., Any]],
+    *,
+    deprecated: Callable[[str, str], None],
+) -> dict[str, Any]:
+    """The names in all expressions: xacro's own, with limited functions.
+
+    Args:
+        module: The copy of xacro's module.
+        functions: Functions in the namespace ``xacro``.
+        deprecated: Reports the use of a deprecated name; its second argument is the current name.
+    """
 
     def offered(name: str, plain: Callable[..., Any]) -> Function:
         def run(evaluator: Evaluator, *args: Any, **named: Any) -> Any:
@@ -33,11 +44,11 @@ def symbols_of(module: Any, functions: Mapping[str, Callable[..., Any]]) -> dict
 
         return Function(f"xacro.{name}", run)
 
-    def deprecated(space: str, name: str) -> Function:
+    def outside(space: str, name: str) -> Function:
         current = spaces[space][name]
 
         def run(evaluator: Evaluator, *args: Any, **named: Any) -> Any:
-            module.warning(f"{name}() without its namespace is deprecated: use {space}.{name}()")
+            deprecated(name, f"{space}.{name}")
             return current.run(evaluator, *args, **named)
 
         return Function(name, run)
@@ -51,7 +62,7 @@ def symbols_of(module: Any, functions: Mapping[str, Callable[..., Any]]) -> dict
         **spaces,
         **MATH,
         **{name: BUILTINS[name] for name in _GLOBAL},
-        **{name: deprecated(space, name) for space, name in _DEPRECATED},
+        **{name: outside(space, name) for space, name in _DEPRECATED},
     }
 
 
