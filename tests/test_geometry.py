@@ -129,9 +129,9 @@ def test_orders_of_quaternions():
 
 @pytest.mark.parametrize("q", [(0, 0, 0, 0), (math.nan, 0, 0, 1), (math.inf, 0, 0, 0)])
 def test_what_is_no_rotation(q):
-    with pytest.raises(ValueError, match="not a rotation"):
+    with pytest.raises(ValueError):
         g.quat_normalize(q)
-    with pytest.raises(ValueError, match="no direction"):
+    with pytest.raises(ValueError):
         g.quat_from_axis_angle((0, 0, 0), 1.0)
 
 

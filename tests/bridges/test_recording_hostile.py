@@ -58,9 +58,9 @@ def test_a_bomb_is_refused_before_it_fills_memory(kind, monkeypatch):
     pack = PACKERS.get(kind, streamed)
     kind = kind.split()[0]
     assert len(decompress(pack(bytes(1 << 20)), kind)) == 1 << 20
-    with pytest.raises(ValueError, match="1 MiB"):
+    with pytest.raises(compression.TooLargeError):
         decompress(pack(bytes((1 << 20) + 1)), kind)
-    with pytest.raises(ValueError, match="1 MiB"):
+    with pytest.raises(compression.TooLargeError):
         decompress(pack(bytes(1 << 19)) * 3, kind)
 
 

@@ -81,6 +81,22 @@ def test_findings_of_a_macro_are_told_once_with_the_calls(bench):
     assert [each.values["link"] for each in found[0].also] == ["b", "c"]
 
 
+def test_findings_of_one_line_are_told_apart_by_their_values(bench):
+    links = "".join(
+        f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="9"/>'
+        f'</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
+        f'<child link="{name}"/></joint>'
+        for name in ("a", "b")
+    )
+    found = [
+        each
+        for each in bench.report(HEAD + LINK + links + "</robot>", "robot.xacro").findings
+        if each.code.name == "inertia-impossible"
+    ]
+    assert [each.values["link"] for each in found] == ["a", "b"]
+    assert len({str(each.origin) for each in found}) == 1
+
+
 def test_a_property_that_is_replaced_before_its_use_is_a_note(bench):
     def found(between):
         twice = (

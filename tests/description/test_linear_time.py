@@ -17,7 +17,7 @@ from cartwheel.description.files import install_rules as installed
 from cartwheel.description.files import missing_packages as missing
 from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import CartwheelError
-from cartwheel.similar_names import suggestion
+from cartwheel.similar_names import meant
 
 MOST = 3.0
 """s of CPU time. Each takes a minute and more where a search begins anew at each character."""
@@ -72,7 +72,7 @@ def test_spaces_in_a_list_of_what_is_installed():
 
 def test_long_names():
     names = [f"{'ab' * 3000}{i}" for i in range(300)]
-    assert suggestion("ba" * 3000, names).startswith("Valid names")
+    assert meant("ba" * 3000, names) == ""
     assert numbers.likely("ba" * 3000, names) is None
     assert spelling.meant("ba" * 3000, names) == ""
 

@@ -11,6 +11,10 @@ MOST_BYTES = 1 << 28
 enough for four large point clouds."""
 
 
+class TooLargeError(ValueError):
+    """Decompressed data that exceeds `MOST_BYTES`."""
+
+
 def _zstd() -> Any:
     if sys.version_info >= (3, 14):
         from compression import zstd
@@ -34,7 +38,8 @@ def decompress(data: bytes, kind: str) -> bytes:
     """Decompresses bytes. The kind is ``zstd``, ``lz4``, ``bz2``, ``none`` or empty.
 
     Raises:
-        ValueError: The data is damaged or exceeds `MOST_BYTES`, or the kind is unknown.
+        TooLargeError: The decompressed data exceeds `MOST_BYTES`.
+        ValueError: The data is damaged, or the kind is unknown.
     """
     if kind in ("", "none"):
         return data
@@ -82,6 +87,6 @@ def _unpacked(data: bytes, make: Callable[[], Any]) -> bytes:
             left -= len(parts[-1])
             data = b""
             if left < 0:
-                raise ValueError(f"the decompressed data exceeds {MOST_BYTES >> 20} MiB")
+                raise TooLargeError(f"the decompressed data exceeds {MOST_BYTES >> 20} MiB")
         data = unpacker.unused_data or b""
     return b"".join(parts)

@@ -24,7 +24,17 @@ _SAME = 1e-9
 
 
 class OutlineError(ValueError):
-    """Outlines that would take too long to fill."""
+    """Outlines that would take too long to fill.
+
+    Args:
+        kind: What there is too much of: ``points``, ``crossings`` or ``pieces``.
+        most: The limit.
+    """
+
+    def __init__(self, message: str, kind: str, most: int) -> None:
+        super().__init__(message)
+        self.kind = kind
+        self.most = most
 
 
 def convex_pieces(shape: Polyline) -> tuple[Loop, ...]:
@@ -101,7 +111,8 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
     # trapezoids.
     slanting = _slanting(edges)
     if len(edges) > MOST_EDGES:
-        raise OutlineError(f"the <polyline> has {len(edges)} points; the limit is {MOST_EDGES}")
+        message = f"the <polyline> has {len(edges)} points; the limit is {MOST_EDGES}"
+        raise OutlineError(message, "points", MOST_EDGES)
     levels = _levels(edges)
     open_pieces: dict[tuple[Edge, Edge], tuple[float, float]] = {}
     done: list[Loop] = []
@@ -119,7 +130,8 @@ def fill(edges: Sequence[Edge]) -> list[Loop]:
             # Between the same two edges, the trapezoid of the lower strip is extended.
             open_pieces[pair] = (open_pieces.get(pair, (low, high))[0], high)
         if len(done) > MOST_PIECES:
-            raise OutlineError(f"the <polyline> consists of more than {MOST_PIECES} convex pieces")
+            message = f"the <polyline> consists of more than {MOST_PIECES} convex pieces"
+            raise OutlineError(message, "pieces", MOST_PIECES)
     done += [_trapezoid(pair, *span) for pair, span in open_pieces.items()]
     return [piece for piece in done if len(piece) >= 3]
 
@@ -142,7 +154,8 @@ def _levels(edges: Sequence[Edge]) -> list[float]:
         within = (t > _SAME) & (t < 1 - _SAME) & (u > _SAME) & (u < 1 - _SAME)
         count += int(within.sum())
         if count > 2 * MOST_CROSSINGS:  # each crossing is found from both edges
-            raise OutlineError(f"the <polyline> crosses itself more than {MOST_CROSSINGS} times")
+            message = f"the <polyline> crosses itself more than {MOST_CROSSINGS} times"
+            raise OutlineError(message, "crossings", MOST_CROSSINGS)
         (_, y0), (_, y1) = slanting[i]
         found.update((y0 + t[within] * (y1 - y0)).tolist())
     return sorted(found)

@@ -202,7 +202,9 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
     try:
         pieces = convex_pieces(shape)
     except OutlineError as error:
-        raise nodes[0].fail(str(error), "Use a mesh instead.") from None
+        raise nodes[0].fail(
+            str(error), "Use a mesh instead.", values={"kind": error.kind, "most": error.most}
+        ) from None
     if not pieces:
         raise nodes[0].fail("all points of the polyline are on one line")
     return shape

@@ -1,0 +1,57 @@
+"""Repeated diagnostics of an SDF file: each is kept once, recognised by code, place and values."""
+
+from dataclasses import replace
+
+import pytest
+from tests.coded import coded
+
+from cartwheel.codes import robot, tags
+from cartwheel.description import load_text
+from cartwheel.description.sdf.reading import _distinct
+from cartwheel.errors import Origin
+
+LINK = '<link name="l"><inertial><mass>1</mass></inertial>{parts}</link>'
+
+
+def diagnostics(*parts):
+    """Those of a model whose link has these parts, all in line 1."""
+    link = LINK.format(parts="".join(parts))
+    return load_text(f'<sdf version="1.7"><model name="m">{link}</model></sdf>').diagnostics
+
+
+@pytest.mark.parametrize(
+    ("part", "code"),
+    [
+        ('<visual name="{}"/>', tags.VALUE_IGNORED),
+        ('<visual name="{}"><geometry/></visual>', tags.TAG_EMPTY),
+    ],
+)
+def test_diagnostics_of_one_line_differ_by_the_name_of_their_element(part, code):
+    told = coded(diagnostics(part.format("a"), part.format("b")), code)
+    assert [each.values["element"] for each in told] == ["a", "b"]
+    assert {str(each.origin) for each in told} == {"<string>:1"}
+
+
+@pytest.mark.parametrize("severity", ["info", "warning"])
+def test_diagnostics_are_distinct_by_their_values_whatever_their_words(severity):
+    first = robot.INERTIA_IMPOSSIBLE.diagnostic(
+        "words",
+        origin=Origin(file="m.sdf", line=3),
+        severity=severity,
+        values={"link": "a", "moments": (1.0, 1.0, 9.0)},
+    )
+    reordered = dict(reversed(first.values.items()))
+    same = replace(first, message="other words", hint="Try this.", values=reordered)
+    other = replace(first, values={**first.values, "link": "b"})
+    less = replace(first, values={"link": "a"})
+    assert list(_distinct([first, same, other, less, same])) == [first, other, less]
+    assert [each.values for each in _distinct([first, other])] == [first.values, other.values]
+
+
+def test_warnings_are_distinct_by_their_lines_but_notes_are_not():
+    warning = tags.TAG_EMPTY.diagnostic(
+        "words", origin=Origin(file="m.sdf", line=3), severity="warning", values={"tag": "geometry"}
+    )
+    later = replace(warning, origin=Origin(file="m.sdf", line=4))
+    note, later_note = (replace(each, severity="info") for each in (warning, later))
+    assert list(_distinct([warning, later, note, later_note])) == [warning, later, note]
