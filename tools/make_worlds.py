@@ -209,6 +209,7 @@ def _settled(
     stuck: list[list[str]], bricks: dict[str, tuple[float, ...]]
 ) -> dict[str, tuple[float, ...]]:
     """Drops bricks and returns the poses of those that come to rest."""
+    from cartwheel.codes.world import MODELS_OVERLAP
     from cartwheel.description import load_text
     from cartwheel.description.model import WorldDescription
     from cartwheel.simulation import Simulation
@@ -218,8 +219,11 @@ def _settled(
         described = load_text(text, file=str(ROOT / "worlds/rubble.world"))
         assert isinstance(described, WorldDescription)
         simulation = Simulation(described)
-        told = [each.message for each in simulation.diagnostics if "put into" in each.message]
-        buried = {message.split('"')[1] for message in told}
+        buried = {
+            str(each.values["model"])
+            for each in simulation.diagnostics
+            if each.code is MODELS_OVERLAP
+        }
         simulation.advance(10_000_000_000)
         before = {name: simulation.pose(name) for name in bricks}
         asleep = simulation.data.tree_asleep
