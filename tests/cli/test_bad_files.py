@@ -119,13 +119,21 @@ def test_no_simulation(program):
         assert f"[{SIMULATION_NOT_RUNNING}]" in done.stderr
 
 
-def test_a_fault_of_ours_asks_for_a_report(program):
+def faulty_version(program):
+    """What is printed where Cartwheel itself fails."""
     (program.folder / "sitecustomize.py").write_text(
         "import cartwheel.cli.console as c\n"
         "def say(text=''): raise ZeroDivisionError('so it goes')\n"
         "c.say = say\n"
     )
     program.environment["PYTHONPATH"] = str(program.folder)
-    done = program("version", status=1)
-    assert f"[{INTERNAL_FAULT}]" in done.stderr
-    assert "--verbose" in done.stderr
+    return program("version", status=1).stderr
+
+
+def test_a_fault_of_ours_is_told_as_one(program):
+    assert f"[{INTERNAL_FAULT}]" in faulty_version(program)
+
+
+@pytest.mark.wording
+def test_a_fault_of_ours_asks_for_a_report(program):
+    assert "--verbose" in faulty_version(program)

@@ -134,7 +134,7 @@ def _open(width: int, height: int) -> Any:
         f"cameras require OpenGL, which is not available on this computer ({'; '.join(reasons)})",
         hint=f"On Debian or Ubuntu: sudo apt-get install {' '.join(_PACKAGES)}. Only camera images "
         "require OpenGL.",
-        values={"packages": _PACKAGES},
+        values={"packages": _PACKAGES, "reasons": tuple(reasons)},
     )
 
 
