@@ -217,7 +217,7 @@ def _attach(
     graph, simulation = world.session.graph, world.session.simulation
     readers: dict[str, Reader] = {}
 
-    def tell(diagnostic: Any) -> None:
+    def show(diagnostic: Any) -> None:
         print(diagnostic.message, file=sys.stderr)
 
     for wire in wires:
@@ -242,7 +242,7 @@ def _attach(
             options,
             time_ns=lambda: simulation.time_ns,
             echo=wire == "foxglove",
-            report=tell,
+            report=show,
             handlers=handlers,
         )
         started = bridge.call("start")

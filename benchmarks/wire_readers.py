@@ -104,7 +104,7 @@ def _read_ros2(_: str, take: Callable[[str, bytes], None]) -> None:
 def _read_zenoh(_: str, take: Callable[[str, bytes], None]) -> None:
     import zenoh
 
-    from cartwheel.bridges.ros2.zenoh import PORT
+    from cartwheel.bridges.ros2.zenoh_session import PORT
     from cartwheel.messages.ros2.types import ros2_type
 
     configuration = zenoh.Config()

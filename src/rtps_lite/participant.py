@@ -8,10 +8,10 @@ import struct
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 
 from rtps_lite import discovery, wire
 from rtps_lite.alarm import Alarm
+from rtps_lite.builtin_endpoints import BuiltinEndpoints
 from rtps_lite.discovery import (
     Address,
     Endpoint,
@@ -38,9 +38,6 @@ _TICK = 0.05
 _AT_ONCE = 64
 _AT_ONCE_SECONDS = 0.005
 """Datagrams that are handled before anything else, and the time limit for this in s."""
-_GATHER = 0.03
-"""Delay in s during which changes of remote endpoints are collected."""
-_BUILTIN = EndpointQos(reliable=True, transient_local=True, depth=5000)
 
 
 class Participant:
@@ -76,9 +73,15 @@ class Participant:
             wire.VENDOR + os.urandom(2) + struct.pack("<I", os.getpid()) + os.urandom(4)
         )
         self.on_endpoints: Callable[[], None] = lambda: None
-        """Called when remote writers or readers appear or disappear."""
-        self._writers: dict[bytes, Writer] = {}
-        self._readers: dict[bytes, Reader] = {}
+        """Called each time that remote writers or readers appear or disappear."""
+        self._alarm = Alarm(loop)
+        self._outbox = Outbox(self._send, self._alarm.after)
+        self._room = Room()
+        self._builtin = BuiltinEndpoints(
+            self.prefix, send=self._send, outbox=self._outbox, room=self._room, found=self._found
+        )
+        self._writers: dict[bytes, Writer] = dict(self._builtin.writers)
+        self._readers: dict[bytes, Reader] = dict(self._builtin.readers)
         """By entity ID, including the built-in ones."""
         self._matcher = Matcher(self._network, self._writers, self._readers, warn)
         data = ParticipantData(
@@ -90,20 +93,10 @@ class Participant:
         )
         self._announcement = discovery.announcement(data, domain=domain)
         self._remotes = Remotes(warn=warn, lose=self._lose)
-        self._others_due = False
-        self._room = Room()
-        self._alarm = Alarm(loop)
-        self._outbox = Outbox(self._send, self._alarm.after)
         self._next_entity = 1
         self._closed = False
         self.malformed = 0
         """Number of invalid datagrams."""
-        self._publications = self._builtin_writer(discovery.PUBLICATIONS_WRITER)
-        self._subscriptions = self._builtin_writer(discovery.SUBSCRIPTIONS_WRITER)
-        self._builtin_reader(discovery.PUBLICATIONS_READER, partial(self._found, are_writers=True))
-        self._builtin_reader(
-            discovery.SUBSCRIPTIONS_READER, partial(self._found, are_writers=False)
-        )
 
     def start(self) -> None:
         """Starts discovery. Call it on the loop's thread."""
@@ -139,7 +132,7 @@ class Participant:
         writer = self._writers[endpoint.guid[12:]] = Writer(
             endpoint, self._send, outbox=self._outbox
         )
-        self._publications.write(discovery.encode_endpoint(endpoint))
+        self._builtin.announce(writer)
         for remote in self._remotes.responding():
             self._matcher.match_readers(writer, remote)
         return writer
@@ -157,18 +150,16 @@ class Participant:
         endpoint = self._endpoint(b"\x04", topic, type_, qos, user_data)
         reader = Reader(endpoint, self._send, take, room=self._room)
         self._readers[endpoint.guid[12:]] = reader
-        self._subscriptions.write(discovery.encode_endpoint(endpoint))
+        self._builtin.announce(reader)
         for remote in self._remotes.responding():
             self._matcher.match_writers(reader, remote)
         return reader
 
     def remove(self, endpoint: Writer | Reader) -> None:
         """Removes a writer or reader."""
-        guid = endpoint.endpoint.guid
         known = self._writers if isinstance(endpoint, Writer) else self._readers
-        announcer = self._publications if isinstance(endpoint, Writer) else self._subscriptions
-        if known.pop(guid[12:], None) is not None and not self._closed:
-            announcer.write(discovery.encode_key(guid), inline=discovery.disposed(guid), keyed=True)
+        if known.pop(endpoint.endpoint.guid[12:], None) is not None and not self._closed:
+            self._builtin.withdraw(endpoint)
 
     def others(self) -> tuple[list[Endpoint], list[Endpoint]]:
         """All writers and all readers of remote participants."""
@@ -193,15 +184,6 @@ class Participant:
         return Endpoint(
             guid=self.prefix + entity, topic=topic, type=type_, qos=qos, user_data=user_data
         )
-
-    def _builtin_writer(self, entity: bytes) -> Writer:
-        endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
-        self._writers[entity] = Writer(endpoint, self._send, outbox=self._outbox)
-        return self._writers[entity]
-
-    def _builtin_reader(self, entity: bytes, take: Callable[[Taken], None]) -> None:
-        endpoint = Endpoint(guid=self.prefix + entity, topic="", type="", qos=_BUILTIN)
-        self._readers[entity] = Reader(endpoint, self._send, take, room=self._room, again=True)
 
     # -- time
 
@@ -336,7 +318,7 @@ class Participant:
         self._remotes.add(remote)
         # Send it before all else, so that the receiver can assign the following messages.
         self._send((self._announcement,), remote.address)
-        self._greet(remote)
+        self._builtin.connect(remote)
         for wait in _AGAIN:
             self._loop.after(wait, lambda: self._announce_again(remote))
 
@@ -344,33 +326,11 @@ class Participant:
         """Connects the endpoints of a participant that has responded for the first time."""
         remote.knows_us = True
         self._matcher.match_remote(remote)
-        self._others_changed()
-
-    def _others_changed(self) -> None:
-        if not self._others_due:
-            self._others_due = True
-            self._loop.after(_GATHER, self._announce_others)
-
-    def _announce_others(self) -> None:
-        self._others_due = False
-        if not self._closed:
-            self.on_endpoints()
+        self.on_endpoints()
 
     def _announce_again(self, remote: Remote) -> None:
         if not remote.knows_us and self._remotes.by_prefix.get(remote.data.prefix) is remote:
             self._send((self._announcement,), remote.address)
-
-    def _greet(self, remote: Remote) -> None:
-        """Connects the built-in endpoints that exchange discovery data."""
-        for entity, other in (
-            (discovery.PUBLICATIONS_WRITER, discovery.PUBLICATIONS_READER),
-            (discovery.SUBSCRIPTIONS_WRITER, discovery.SUBSCRIPTIONS_READER),
-        ):
-            guid = remote.data.prefix
-            theirs = Endpoint(guid=guid + other, topic="", type="", qos=_BUILTIN)
-            self._writers[entity].match(theirs, remote.address, proved=False)
-            theirs = Endpoint(guid=guid + entity, topic="", type="", qos=_BUILTIN)
-            self._readers[other].match(theirs, remote.address)
 
     def _lose(self, prefix: Prefix) -> None:
         """Removes a participant and disconnects its endpoints."""
@@ -378,13 +338,10 @@ class Participant:
         if remote is None:
             return
         if not remote.knows_us:
-            # Only the built-in endpoints are connected.
-            builtin = (discovery.PUBLICATIONS_READER, discovery.SUBSCRIPTIONS_READER)
-            readers = (self._readers[entity] for entity in builtin)
-            disconnect((self._publications, self._subscriptions, *readers), prefix)
+            self._builtin.disconnect(prefix)
             return
         disconnect((*self._writers.values(), *self._readers.values()), prefix)
-        self._others_changed()
+        self.on_endpoints()
 
     def _found(self, taken: Taken, *, are_writers: bool) -> None:
         """Adds or removes an endpoint that a participant has announced."""
@@ -398,7 +355,7 @@ class Participant:
                 if guid is not None and self._remotes.remove_endpoint(known, guid):
                     for one in (self._readers if are_writers else self._writers).values():
                         one.unmatch(guid)
-                    self._others_changed()
+                    self.on_endpoints()
                 return
             endpoint = decode_endpoint(taken.payload, writer=are_writers)
         except MalformedError:
@@ -411,4 +368,4 @@ class Participant:
         if not remote.knows_us:
             return
         self._matcher.match_endpoint(endpoint, remote, is_writer=are_writers)
-        self._others_changed()
+        self.on_endpoints()

@@ -1,15 +1,14 @@
-"""A writer: sends samples to its readers, and keeps samples for repetition."""
+"""A writer: sends samples to its readers, and repeats those that a reader reports as missing."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 from rtps_lite import wire
 from rtps_lite.discovery import Address, Endpoint
+from rtps_lite.history import History, Sample
 from rtps_lite.outbox import Outbox, Parts, Send
 from rtps_lite.wire import UNKNOWN, Guid, Prefix
 
@@ -21,23 +20,6 @@ _REPLY = 0.001
 """Minimum interval in s between responses to a reader, which limits the traffic it can cause."""
 _SOON = 0.05
 """Delay in s of a reminder in place of a suppressed response."""
-_KEPT_BYTES = 64 << 20
-"""Maximum bytes of all samples that a writer keeps."""
-
-
-@dataclass(frozen=True, slots=True)
-class Sample:
-    """A written sample."""
-
-    payload: bytes
-    inline: bytes
-    to: Prefix | None
-    """The only receiving participant; None for all."""
-    written: bytes
-    """Encoded timestamp submessage."""
-    at: int
-    """Timestamp in ns."""
-    keyed: bool = False
 
 
 class ReaderProxy:
@@ -105,13 +87,8 @@ class Writer:
         self._outbox = outbox or Outbox(send)
         self._clock = clock
         self._last = 0
-        self._kept: OrderedDict[int, Sample] = OrderedDict()
-        self._kept_bytes = 0
+        self._history = History(endpoint.qos)
         self._count = 0
-
-    @property
-    def _keeps(self) -> bool:
-        return self.endpoint.qos.reliable
 
     # -- readers
 
@@ -129,9 +106,9 @@ class Writer:
             known.address = address
             return
         qos = self.endpoint.qos
-        self._expire()
+        self._history.expire(self._clock())
         history = qos.transient_local and endpoint.qos.transient_local
-        first = next(iter(self._kept), self._last + 1)
+        first = self._history.first(self._last + 1)
         proxy = ReaderProxy(endpoint, address, start=first if history else self._last + 1)
         if not qos.reliable:
             proxy.reliable = False
@@ -155,8 +132,7 @@ class Writer:
         if not self.proxies:
             self.on_readers()
             if not self.endpoint.qos.transient_local:
-                self._kept.clear()
-                self._kept_bytes = 0
+                self._history.clear()
 
     # -- samples
 
@@ -179,10 +155,11 @@ class Writer:
         payload += b"\0" * (-len(payload) % 4)
         now = self._clock()
         stamp = wire.timestamp(now // 10**9, (now % 10**9 << 32) // 10**9)
-        sample = Sample(payload, inline, to, stamp, now, keyed)
         self._last += 1
-        if self._keeps and (self.proxies or self.endpoint.qos.transient_local):
-            self._keep(self._last, sample)
+        sample = Sample(self._last, payload, inline, to, stamp, now, keyed)
+        qos = self.endpoint.qos
+        if qos.reliable and (self.proxies or qos.transient_local):
+            self._history.add(sample)
         reached: set[Prefix] = set()
         for proxy in self.proxies.values():
             prefix = proxy.guid[:12]
@@ -191,7 +168,7 @@ class Writer:
             elif prefix not in reached and proxy.greeted:
                 # One datagram is enough for all readers of a participant.
                 reached.add(prefix)
-                self._send_sample(self._last, sample, proxy, UNKNOWN)
+                self._send_sample(sample, proxy, UNKNOWN)
             if proxy.reliable and not proxy.remind_at:
                 proxy.remind_at = time.monotonic() + proxy.patience
 
@@ -240,7 +217,7 @@ class Writer:
         for number in acknack.missing:
             if number > self._last:
                 break
-            sample = self._kept.get(number)
+            sample = self._history.get(number)
             ours = sample is not None and sample.to in (None, guid[:12])
             if sample is not None and ours and number >= proxy.start:
                 proxy.wanted[number] = None
@@ -259,13 +236,12 @@ class Writer:
     def take_nack_frag(self, guid: Guid, nack: wire.NackFrag) -> None:
         """Handles a reader's report of missing fragments."""
         proxy = self.proxies.get(guid)
-        sample = self._kept.get(nack.number)
+        sample = self._history.get(nack.number)
         if proxy is None or sample is None or not proxy.reliable or not proxy.greeted:
             return
         if sample.to not in (None, guid[:12]) or nack.number < proxy.start:
             return
-        last = -(-len(sample.payload) // wire.LARGEST)
-        wanted = {number for number in nack.missing if 1 <= number <= last}
+        wanted = {number for number in nack.missing if 1 <= number <= sample.fragments}
         known = proxy.wanted.setdefault(nack.number, set()) if wanted else None
         if known is not None:
             known |= wanted
@@ -273,9 +249,9 @@ class Writer:
 
     def _greet(self, proxy: ReaderProxy) -> None:
         """Sends the kept samples to a new reader."""
-        for number, sample in self._kept.items():
-            if number > proxy.acked and number >= proxy.start:
-                self._send_sample(number, sample, proxy, proxy.guid[12:])
+        for sample in self._history:
+            if sample.number > proxy.acked and sample.number >= proxy.start:
+                self._send_sample(sample, proxy, proxy.guid[12:])
         proxy.remind_at = time.monotonic() + proxy.patience
 
     def _send_again(self, proxy: ReaderProxy) -> None:
@@ -288,10 +264,9 @@ class Writer:
             number = next(iter(proxy.wanted))
             fragments = proxy.wanted.pop(number)
             # It may have been discarded since.
-            sample = self._kept.get(number)
+            sample = self._history.get(number)
             if sample is not None:
-                reader = proxy.guid[12:]
-                yield from self._pieces(number, sample, proxy, reader, fragments)
+                yield from self._datagrams(sample, proxy, proxy.guid[12:], fragments)
 
     def _reply(self, proxy: ReaderProxy, lost: Sequence[int]) -> None:
         """Announces the kept samples, and those that are no longer kept."""
@@ -305,7 +280,7 @@ class Writer:
 
     def _count_gone(self, proxy: ReaderProxy) -> None:
         """Counts discarded samples that an unresponsive reader has not received."""
-        gone = next(iter(self._kept), self._last + 1) - 1
+        gone = self._history.first(self._last + 1) - 1
         before = max(proxy.gone, proxy.acked)
         if gone > before:
             proxy.gone = gone
@@ -320,26 +295,6 @@ class Writer:
         if lost:
             self.dropped += lost
             self.on_refusal()
-
-    def _keep(self, number: int, sample: Sample) -> None:
-        self._kept[number] = sample
-        self._kept_bytes += len(sample.payload)
-        while len(self._kept) > self.endpoint.qos.depth or (
-            self._kept_bytes > _KEPT_BYTES and len(self._kept) > 1
-        ):
-            self._forget_oldest()
-
-    def _forget_oldest(self) -> None:
-        _, oldest = self._kept.popitem(last=False)
-        self._kept_bytes -= len(oldest.payload)
-
-    def _expire(self) -> None:
-        """Discards expired samples."""
-        lifespan = self.endpoint.qos.lifespan
-        while self._kept and lifespan < math.inf:
-            if self._clock() - next(iter(self._kept.values())).at <= lifespan * 1e9:
-                break
-            self._forget_oldest()
 
     # -- datagrams
 
@@ -358,7 +313,7 @@ class Writer:
 
     def _heartbeat_of(self, proxy: ReaderProxy, *, final: bool) -> bytes:
         self._count += 1
-        first = max(next(iter(self._kept), self._last + 1), proxy.start)
+        first = max(self._history.first(self._last + 1), proxy.start)
         return wire.heartbeat(
             reader=proxy.guid[12:],
             writer=self._entity,
@@ -368,61 +323,20 @@ class Writer:
             final=final,
         )
 
-    def _send_sample(self, number: int, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
+    def _send_sample(self, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
         prefix, address = proxy.guid[:12], proxy.address
-        pieces = self._pieces(number, sample, proxy, reader)
-        size = len(sample.payload)
+        datagrams = self._datagrams(sample, proxy, reader)
 
         def lost() -> None:
             self._count_refused(prefix)
 
-        if size > wire.LARGEST or self._outbox.is_sending(self, address):
-            depth = self.endpoint.qos.depth
-            self._outbox.put(self, pieces, size, address, lost=lost, most=depth)
+        if sample.fragments > 1 or self._outbox.is_sending(self, address):
+            size, depth = len(sample.payload), self.endpoint.qos.depth
+            self._outbox.put(self, datagrams, size, address, lost=lost, most=depth)
         else:
-            self._outbox.put_between(next(pieces), address, lost)
+            self._outbox.put_between(next(datagrams), address, lost)
 
-    def _pieces(
-        self,
-        number: int,
-        sample: Sample,
-        proxy: ReaderProxy,
-        reader: bytes,
-        only: set[int] | None = None,
+    def _datagrams(
+        self, sample: Sample, proxy: ReaderProxy, reader: bytes, only: set[int] | None = None
     ) -> Iterator[Parts]:
-        """Datagrams of a sample, or of some of its fragments."""
-        if len(sample.payload) <= wire.LARGEST:
-            head = wire.message(
-                self._prefix,
-                sample.written,
-                wire.data_head(
-                    reader=reader,
-                    writer=self._entity,
-                    number=number,
-                    inline=sample.inline,
-                    size=len(sample.payload),
-                    keyed=sample.keyed,
-                ),
-                to=proxy.guid[:12],
-            )
-            yield head, sample.payload
-            return
-        whole = memoryview(sample.payload)
-        last = -(-len(whole) // wire.LARGEST)
-        for fragment in range(1, last + 1) if only is None else sorted(only):
-            part = whole[(fragment - 1) * wire.LARGEST : fragment * wire.LARGEST]
-            head = wire.message(
-                self._prefix,
-                sample.written,
-                wire.fragment_head(
-                    reader=reader,
-                    writer=self._entity,
-                    number=number,
-                    inline=sample.inline,
-                    fragment=fragment,
-                    length=len(part),
-                    size=len(whole),
-                ),
-                to=proxy.guid[:12],
-            )
-            yield head, part
+        return sample.datagrams(self.endpoint.guid, proxy.guid[:12], reader, only)

@@ -12,7 +12,7 @@ import threading
 from types import FrameType
 from typing import Any
 
-from cartwheel.bridges.apart import ring
+from cartwheel.bridges.apart import ring, ring_files
 from cartwheel.bridges.apart.ring import RingReader
 
 
@@ -20,7 +20,7 @@ class Steps:
     """Traces a thread, and calls a function before one of the steps that it makes in the ring.
 
     Args:
-        step: Which, from 0 on: each line of `ring` that the thread runs is one.
+        step: Which, from 0 on: each line of `ring` and `ring_files` that the thread runs is one.
         stop: Called there, once.
     """
 
@@ -31,7 +31,7 @@ class Steps:
 
     def trace(self, frame: FrameType, event: str, _: Any) -> Any:
         """For `sys.settrace`."""
-        if frame.f_code.co_filename != ring.__file__:
+        if frame.f_code.co_filename not in (ring.__file__, ring_files.__file__):
             return None
         if event == "line":
             self.count += 1
@@ -63,7 +63,7 @@ def main(files: str, linger: str, step: str = "") -> None:
             sys.stdin.readline()
 
     reader = RingReader(
-        ring.RingFiles.of(files),
+        ring_files.RingFiles.of(files),
         patient=False,
         take=take,
         on_fault=lambda error: _say(f"fault {error!r}"),

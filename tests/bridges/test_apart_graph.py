@@ -15,7 +15,8 @@ from cartwheel.bridges.apart import host as host_module
 from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
-from cartwheel.bridges.apart.ring import RingFiles, RingReader, RingWriter
+from cartwheel.bridges.apart.ring import RingReader, RingWriter
+from cartwheel.bridges.apart.ring_files import RingFiles
 from cartwheel.codes.graph import (
     ACTION_GONE,
     SERVICE_FAILED,

@@ -47,7 +47,7 @@ def test_calls_are_answered_and_tells_come_in_order(pair: Pair) -> None:
     pair.near.start()
     pair.far.start()
     for number in range(500):
-        pair.near.tell("note", number)
+        pair.near.notify("note", number)
     assert pair.near.call("told").result(_PATIENCE) == list(range(500))
     assert pair.near.call("add", 2, 3).result(_PATIENCE) == 5
 
@@ -149,7 +149,7 @@ def test_errors_of_the_user_cross_with_place_and_hint(pair: Pair) -> None:
     )
     with pytest.raises(RuntimeError, match="KeyError"):
         pair.near.call("fault").result(_PATIENCE)
-    pair.near.tell("fault")
+    pair.near.notify("fault")
     pair.near.call("refuse").exception(_PATIENCE)
     assert [type(fault) for fault in pair.faults] == [KeyError]
 
@@ -166,7 +166,7 @@ def test_the_end_of_the_other_is_heard_and_nobody_waits_for_ever(pair: Pair) -> 
         waiting.result(_PATIENCE)
     with raises(BRIDGE_ENDED, ControlError):
         pair.far.call("never").result(_PATIENCE)
-    pair.far.tell("never")
+    pair.far.notify("never")
 
 
 def test_what_nobody_reads_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -178,12 +178,12 @@ def test_what_nobody_reads_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     link = Link(near, name="near", on_end=ended.set, on_fault=faults.append)
     link.start()
     for _ in range(20):
-        link.tell_in_time("feedback", bytes(100_000))
+        link.notify_in_time("feedback", bytes(100_000))
     assert not link.loop.call(lambda: link._ended).result(_PATIENCE)
     assert 0 < link.dropped < 20
     waiting = link.call("never")
     for _ in range(30):
-        link.tell("much", bytes(100_000))
+        link.notify("much", bytes(100_000))
     assert ended.wait(_PATIENCE)
     assert [getattr(fault, "code", fault) for fault in faults] == [BRIDGE_SLOW, BRIDGE_SLOW]
     with pytest.raises(ControlError):
@@ -202,7 +202,7 @@ def test_what_waits_for_the_loop_itself_is_bounded(
     pair.far.start()
     pair.near.loop.post(lambda: go_on.wait(_PATIENCE))
     for _ in range(10_000):
-        pair.near.tell("small")
+        pair.near.notify("small")
     assert len(pair.near.loop._functions) < 2500
     late = pair.near.call("small")
     with pytest.raises(ControlError):
@@ -222,7 +222,7 @@ def test_dropped_feedback_is_counted_for_the_user(
     pair.far.handle("done", lambda: None)
     pair.near.start()
     for _ in range(50):
-        pair.near.tell_in_time("feedback", bytes(100_000))
+        pair.near.notify_in_time("feedback", bytes(100_000))
     pair.far.start()
     pair.near.call("done").result(_PATIENCE)
     told = threading.Event()

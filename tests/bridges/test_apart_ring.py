@@ -18,7 +18,8 @@ import pytest
 from tests.bridges.ring_reader import Steps
 
 from cartwheel.bridges.apart import ring
-from cartwheel.bridges.apart.ring import Put, RingFiles, RingReader, RingWriter
+from cartwheel.bridges.apart.ring import Put, RingReader, RingWriter
+from cartwheel.bridges.apart.ring_files import RingFiles
 
 Ends = Callable[..., tuple[RingWriter, RingReader, list[tuple[int, int, bytes]]]]
 _PATIENCE = 60.0
@@ -169,7 +170,8 @@ def test_what_was_put_before_the_writer_is_killed_is_read() -> None:
     """Whichever step it has come to."""
     program = (
         "import os, sys\n"
-        "from cartwheel.bridges.apart.ring import RingFiles, RingWriter\n"
+        "from cartwheel.bridges.apart.ring import RingWriter\n"
+        "from cartwheel.bridges.apart.ring_files import RingFiles\n"
         "from tests.bridges.ring_reader import Steps\n"
         "writer = RingWriter(RingFiles.of(sys.argv[1]))\n"
         "writer.put(1, 0, b'first')\n"

@@ -187,8 +187,13 @@ def test_a_caller_that_reads_no_answers_holds_up_nobody(bridge: Bridge, master: 
     sock = caller(run)
     sock.setblocking(False)
     callers = run.bridge._node._callers
+
+    def unsent() -> list[int]:
+        """Bytes that the loop could not send in a whole turn."""
+        return run.bridge._loop.call(lambda: [len(one._unsent) for one in callers]).result(60)
+
     # So much that the buffers of neither side hold it: the node stops to read.
-    while select.select([], [sock], [], 1.0)[1] or not any(one._unsent for one in callers):
+    while select.select([], [sock], [], 0.2)[1] or not any(left := unsent()) or left != unsent():
         with contextlib.suppress(BlockingIOError):
             requests = requests[sock.send(requests) :]
             assert requests

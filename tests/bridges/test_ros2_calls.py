@@ -9,10 +9,11 @@ from tests.bridges.ros2_peers import DOMAIN
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.dds import Dds, _Service
-from cartwheel.bridges.ros2.middleware import Reply, Served
+from cartwheel.bridges.ros2.middleware import Endpoint, Reply, Served
+from cartwheel.bridges.ros2.qos import DEFAULT
 from cartwheel.messages.ros2.types import ros2_service
 from rtps_lite import discovery, wire
-from rtps_lite.discovery import Endpoint, EndpointQos
+from rtps_lite.discovery import EndpointQos
 from rtps_lite.reader import Taken
 
 HERE = ("127.0.0.1", 9)
@@ -49,19 +50,20 @@ def loop() -> Patient:
 @pytest.fixture
 def service(loop: Patient, monkeypatch: pytest.MonkeyPatch) -> Iterator[_Service]:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN + 6))
-    dds = Dds(loop, node="node", namespace="/", tell=lambda _: None)
+    dds = Dds(loop, "/node", lambda _: None)
 
     def answer(_: bytes, reply: Reply) -> None:
         reply(RESPONSE)
 
-    made = dds.serve("/s", [Served(ros2_service("std_srvs/srv/Trigger"), answer)], depth=1)
+    type_ = ros2_service("std_srvs/srv/Trigger")
+    made = dds.serve(Endpoint(name="/s", type=type_, profile=DEFAULT), [Served(type_, answer)])
     loop.later.clear()
     yield made
     dds.close()
 
 
-def reader(number: int) -> Endpoint:
-    return Endpoint(
+def reader(number: int) -> discovery.Endpoint:
+    return discovery.Endpoint(
         guid=CLIENT + bytes([0, 0, number, 4]),
         topic="rr/sReply",
         type="std_srvs::srv::dds_::Trigger_Response_",
@@ -69,7 +71,7 @@ def reader(number: int) -> Endpoint:
     )
 
 
-def request(asker: Endpoint) -> Taken:
+def request(asker: discovery.Endpoint) -> Taken:
     """A request as rmw_fastrtps sends it: it names the reader of the response."""
     related = asker.guid + (1).to_bytes(8, "little")
     writer = CLIENT + bytes([0, 0, 9, 3])

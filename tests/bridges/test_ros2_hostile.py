@@ -638,7 +638,7 @@ def test_who_is_named_is_heard_and_nobody_where_that_is_off(
     monkeypatch.setenv("ROS_STATIC_PEERS", "no.such.host.invalid")
     loop = Loop(lambda _: None, name="test")
     with raises(ROS_VARIABLE_INVALID, variable="ROS_STATIC_PEERS", value="no.such.host.invalid"):
-        Dds(loop, node="gazebo", namespace="/", tell=lambda _: None)
+        Dds(loop, "/gazebo", lambda _: None)
 
 
 def test_a_peer_is_heard_by_what_its_name_means(monkeypatch: pytest.MonkeyPatch) -> None:

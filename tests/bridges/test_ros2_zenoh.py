@@ -19,6 +19,7 @@ from tests.bridges.test_ros2_services import prepared
 from tests.reserved import free_port
 
 from cartwheel.bridges.ros2 import zenoh as ours
+from cartwheel.bridges.ros2 import zenoh_session
 from cartwheel.graph import Action, Goal
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict
 from cartwheel.messages.ros2.types import ros2_service
@@ -47,7 +48,7 @@ PAUSE = (
 def bridged() -> Iterator[Ros2Bridged]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ROS_DOMAIN_ID", "7")
-        patch.setattr(ours, "PORT", free_port())
+        patch.setattr(zenoh_session, "PORT", free_port())
         made = Ros2Bridged(prepare=prepared, rmw="zenoh")
         yield made
         made.close()
@@ -61,7 +62,7 @@ def session(bridged: Ros2Bridged) -> Iterator[Any]:
         "mode": "peer",
         "scouting/multicast/enabled": False,
         "listen/endpoints": ["tcp/127.0.0.1:0"],
-        "connect/endpoints": [f"tcp/127.0.0.1:{ours.PORT}"],
+        "connect/endpoints": [f"tcp/127.0.0.1:{zenoh_session.PORT}"],
         "connect/timeout_ms": 10_000,
     }.items():
         config.insert_json5(name, json.dumps(value))
@@ -288,7 +289,7 @@ def test_who_comes_late_gets_what_stays(session: Any) -> None:
 def test_nothing_of_it_runs_on_after_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
     """A thread that wants to call us while the interpreter goes down aborts the process."""
     monkeypatch.setenv("ROS_DOMAIN_ID", "8")
-    monkeypatch.setattr(ours, "PORT", free_port())
+    monkeypatch.setattr(zenoh_session, "PORT", free_port())
     monkeypatch.setattr(ours, "_ENDING", 9.0)
     made = Ros2Bridged(prepare=prepared, rmw="zenoh")
     try:

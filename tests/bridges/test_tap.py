@@ -44,7 +44,7 @@ class Tapped:
             reader="test",
             ignored=lambda _: False,
             take=self.taken.append,
-            tell=self.reports.append,
+            warn=self.reports.append,
         )
         made.open()
         return made

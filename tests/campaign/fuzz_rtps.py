@@ -13,7 +13,8 @@ from tests.campaign.fuzz_cdr import filled
 from tests.campaign.target import FaultError, Target
 
 from cartwheel.bridges.ros2.dds import Dds
-from cartwheel.bridges.ros2.middleware import DEFAULT, LATCHED, SENSOR, Reply, Served
+from cartwheel.bridges.ros2.middleware import Endpoint, Reply, Served, publisher
+from cartwheel.bridges.ros2.qos import DEFAULT, SENSOR
 from cartwheel.errors import GraphError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 from cartwheel.messages.ros2.types import ros2_service, ros2_type
@@ -103,19 +104,19 @@ class Node:
         self.loop, self.net = Loop(), Net(OURS)
         self.taken = 0
         with _fixed(self.net, b"o"):
-            self.dds = Dds(self.loop, node="gazebo", namespace="/", tell=lambda _: None)  # type: ignore[arg-type]
+            self.dds = Dds(self.loop, "/gazebo", lambda _: None)  # type: ignore[arg-type]
         self.dds.start()
-        odometry = self.dds.publish("/odom", ros2_type(_ODOMETRY), DEFAULT, lambda _: None)
-        latched = self.dds.publish("/tf_static", ros2_type(_TF), LATCHED, lambda _: None)
-        self.image = self.dds.publish(
-            "/image", ros2_type("sensor_msgs/msg/Image"), SENSOR, lambda _: None
-        )
+        odometry = self.dds.publish(publisher("/odom", _ODOMETRY))
+        latched = self.dds.publish(publisher("/tf_static", _TF))
+        self.image = self.dds.publish(publisher("/image", "sensor_msgs/msg/Image", "sensor"))
         latched.send(encode_cdr(filled(_TF)))
         self.odometry = odometry
         for topic, profile in (("/cmd_vel", DEFAULT), ("/fast", SENSOR)):
-            self.dds.subscribe(topic, ros2_type(_TWIST), profile, self._take)
+            endpoint = Endpoint(name=topic, type=ros2_type(_TWIST), profile=profile)
+            self.dds.subscribe(endpoint, self._take)
         type_ = ros2_service(_SERVICE)
-        self.dds.serve("/gazebo/set_parameters", (Served(type_, self._answer),), depth=10)
+        service = Endpoint(name="/gazebo/set_parameters", type=type_, profile=DEFAULT)
+        self.dds.serve(service, (Served(type_, self._answer),))
         self._response = encode_cdr(zero(type_.response))
         self._request = type_.request
 

@@ -8,8 +8,8 @@ from typing import Any
 from tests.campaign.target import FaultError, Target
 
 from cartwheel.bridges.ros2.middleware import Served
+from cartwheel.bridges.ros2.names import published
 from cartwheel.bridges.ros2.zenoh import take_query
-from cartwheel.bridges.ros2.zenoh_tokens import published
 from cartwheel.errors import GraphError
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 from cartwheel.messages.ros2.types import ros2_service

@@ -119,7 +119,7 @@ def test_a_flood_of_goals_is_bounded(worker):
     worker.now = NANO
     worker.submit("later").cancel(worker.result())
     assert len(told) == 12
-    topics.tell()
+    topics.publish_status()
     assert len(told) == 13
     # The latest are still known, and one under way is not forgotten.
     assert worker.action.goal("quick 250") is not None

@@ -47,7 +47,7 @@ class Processes:
 
 def log_on(process: BridgeProcess, simulation: Simulation, diagnostic: Diagnostic) -> None:
     """Logs a diagnostic on the ``/rosout`` of a bridge."""
-    process.tell("log", diagnostic, simulation.time_ns)
+    process.notify("log", diagnostic, simulation.time_ns)
 
 
 def log_all_on(process: BridgeProcess, simulation: Simulation) -> None:

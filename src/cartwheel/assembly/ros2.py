@@ -88,7 +88,7 @@ class Ros2Connection:
             self._api.start()
         self._states = states()
         self._process.call("start")
-        self._process.tell("make_way", TOPIC.strip("/"))
+        self._process.notify("make_way", TOPIC.strip("/"))
         self._observer.ros2_joined(self.name, self.middleware)
         log_all_on(self._process, self._session.simulation)
 

@@ -30,8 +30,8 @@ class BridgedParameters(Protocol):
         """Sets a value."""
 
 
-class BridgedAction(Protocol):
-    """See `Action`. Call it on the thread on which `BridgedGraph.post` runs functions."""
+class Named(Protocol):
+    """A service or action."""
 
     @property
     def name(self) -> str:
@@ -39,11 +39,15 @@ class BridgedAction(Protocol):
 
     @property
     def type(self) -> str:
-        """``pkg/action/Name``."""
+        """``pkg/srv/Name`` or ``pkg/action/Name``."""
 
     @property
     def node(self) -> str:
-        """Node that offers the action."""
+        """Node that offers it."""
+
+
+class BridgedAction(Named, Protocol):
+    """See `Action`. Call it on the thread on which `BridgedGraph.post` runs functions."""
 
     @property
     def time_ns(self) -> Callable[[], int]:

@@ -156,6 +156,34 @@ class Loop:
             self._inner.recv(4096)
 
 
+class Coalesced:
+    """Runs a function once after a delay, however often it is called in the meantime.
+
+    Used on the loop's thread.
+
+    Args:
+        loop: Event loop.
+        seconds: Delay in s.
+        function: Function to run.
+    """
+
+    def __init__(self, loop: Loop, seconds: float, function: Callable[[], None]) -> None:
+        self._loop = loop
+        self._seconds = seconds
+        self._function = function
+        self._due = False
+
+    def __call__(self) -> None:
+        """Schedules the function, unless it is already scheduled."""
+        if not self._due:
+            self._due = True
+            self._loop.after(self._seconds, self._run)
+
+    def _run(self) -> None:
+        self._due = False
+        self._function()
+
+
 def taken(sock: socket.socket, size: int = _CHUNK) -> bytes | None:
     """Received bytes: empty at the end of the connection, None if no data is available.
 

@@ -1,16 +1,16 @@
-"""Selection of the graph's topics for a bridge, and delivery of external messages."""
+"""Selection of what a bridge offers of the graph, and delivery of external messages."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.codes.graph import SERVICE_TIMED_OUT
-from cartwheel.codes.wires import INCOMING_DROPPED, MALFORMED_MESSAGE
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError
+from cartwheel.codes.wires import INCOMING_DROPPED, MALFORMED_MESSAGE, TYPE_UNSUPPORTED
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, UnknownNameError
 from cartwheel.graph import TopicInfo
 
 BRIDGES = frozenset({"ros1", "ros2"})
@@ -23,6 +23,75 @@ _BACKLOG_BYTES = 128 << 20
 
 _CALL = 120.0
 """Timeout in s for the simulation's response to a service call."""
+
+
+class Closable(Protocol):
+    """What a bridge offers: a topic, a subscription, a service or an action."""
+
+    def close(self) -> None:
+        """Removes it."""
+
+
+C = TypeVar("C", bound=Closable)
+
+
+class Copies(dict[str, C]):
+    """External copies of the graph's topics, services or actions, by external name."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.properties: dict[str, Any] = {}
+        """Properties of each original as of the copy's creation."""
+
+    def synchronise(self, originals: Mapping[str, Any], create: Callable[[str, Any], C]) -> None:
+        """Closes copies whose original has changed or is gone, and creates the missing ones.
+
+        Copies that were added in a different way stay.
+
+        Args:
+            originals: Properties by name. A copy is replaced if these are no longer equal.
+            create: Creates the copy of an original, from its name and properties.
+        """
+        for name, properties in list(self.properties.items()):
+            if originals.get(name) != properties:
+                del self.properties[name]
+                self.pop(name).close()
+        for name, properties in originals.items():
+            if name not in self:
+                self[name] = create(name, properties)
+                self.properties[name] = properties
+
+
+def is_available(
+    kind: str,
+    name: str,
+    type_name: str,
+    *,
+    ros: str,
+    find: Callable[[str], object],
+    warn: Callable[[Diagnostic], None],
+) -> bool:
+    """Whether a version of ROS has the type of a topic or service; otherwise warns.
+
+    Args:
+        kind: "topic" or "service".
+        name: Name of the topic or service.
+        type_name: Its type.
+        ros: Name of the version of ROS.
+        find: Finds a type, or raises an `UnknownNameError`.
+        warn: Receives the warning.
+    """
+    try:
+        find(type_name)
+    except UnknownNameError:
+        warn(
+            TYPE_UNSUPPORTED.diagnostic(
+                f"{kind} {name} is not available in {ros}, which has no type {type_name}",
+                values={kind: name, "type": type_name},
+            )
+        )
+        return False
+    return True
 
 
 @dataclass(slots=True)
@@ -93,12 +162,12 @@ class Arrivals:
 
     Args:
         graph: Graph to publish on.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
-    def __init__(self, graph: BridgedGraph, tell: Callable[[Diagnostic], None]) -> None:
+    def __init__(self, graph: BridgedGraph, warn: Callable[[Diagnostic], None]) -> None:
         self._graph = graph
-        self._tell = tell
+        self._warn = warn
         self._under_way: dict[int, Any] = {}
         self._bytes = 0
         self._counting = threading.Lock()
@@ -116,7 +185,7 @@ class Arrivals:
             size: Size in bytes, if known.
         """
         if len(self._under_way) >= _BACKLOG or self._bytes + size > _BACKLOG_BYTES:
-            self._tell(
+            self._warn(
                 INCOMING_DROPPED.diagnostic(
                     "ROS nodes send messages faster than the simulation processes them, so some "
                     "messages are dropped"
@@ -128,7 +197,7 @@ class Arrivals:
         try:
             self._graph.publish(topic, type_name, message)
         except CartwheelError as error:
-            self._tell(
+            self._warn(
                 MALFORMED_MESSAGE.because(
                     f"a message on {topic} is ignored", error, values={"topic": topic}
                 )

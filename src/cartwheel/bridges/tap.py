@@ -26,7 +26,7 @@ class Tap:
         reader: Node name of the bridge.
         ignored: Whether a message came from this bridge, and so must not be sent back.
         take: Called with each message.
-        tell: Receives warnings.
+        warn: Receives warnings.
         beyond: Returns the number of messages dropped after `take`. Callable on any thread.
     """
 
@@ -40,7 +40,7 @@ class Tap:
         reader: str,
         ignored: Callable[[Any], bool],
         take: Callable[[Any], None],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
         beyond: Callable[[], int] = lambda: 0,
     ) -> None:
         self._loop = loop
@@ -50,7 +50,7 @@ class Tap:
         self._reader = reader
         self._ignored = ignored
         self._take = take
-        self._tell = tell
+        self._warn = warn
         self._beyond = beyond
         self._box = Mailbox(_WAITING)
         self._due = False
@@ -93,7 +93,7 @@ class Tap:
                 self._take(message)
         if self._box.dropped and not self._late:
             self._late = True
-            self._tell(
+            self._warn(
                 PUBLISHED_TOO_FAST.diagnostic(
                     f"{self._topic} is published faster than it can be sent, so messages are "
                     "dropped",

@@ -196,7 +196,7 @@ class ControlServer:
             self._session.simulation.report(
                 replace(
                     error.diagnostic("warning"),
-                    message=f"a client's final message cannot be published: {error.message}",
+                    message=f"a client's will message cannot be published: {error.message}",
                 )
             )
 
@@ -216,7 +216,7 @@ class ControlServer:
             name = Parameters(frame.header).text("request")
             parameters = _parameters(frame)
             if name == "publish" and "at_end" in parameters:
-                # Register the final message first, so that no message can move a robot that nothing
+                # Register the will message first, so that no message can move a robot that nothing
                 # stops.
                 wills.take(parameters)
             answer = self._operations.run(name, parameters, frame.payload)

@@ -1,4 +1,4 @@
-"""Final messages, published when a client disconnects for any reason, to stop its robot."""
+"""Will messages, as in MQTT: published when a client disconnects for any reason."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cartwheel.graph import Graph, resolve_name
 from cartwheel.messages import from_dict, type_name
 
 MOST = 16
-"""Maximum number of topics with a final message per connection."""
+"""Maximum number of topics with a will message per connection."""
 
 
 class Wills:
-    """The final messages of a connection, one per topic.
+    """The will messages of a connection, one per topic.
 
     Args:
         graph: The graph to publish on.
@@ -42,7 +42,7 @@ class Wills:
         message = from_dict(wanted, content)
         if name not in self._messages and len(self._messages) >= MOST:
             raise ControlError(
-                f"a connection can register final messages for at most {MOST} topics",
+                f"a connection can register will messages for at most {MOST} topics",
                 code=CONTROL_LIMIT,
                 values={"most": MOST},
             )

@@ -72,7 +72,7 @@ class ActionServer:
     def tick(self, time_ns: int) -> None:
         """Publishes the status of all goals when due, by which ROS 1 clients find the server."""
         if self._periodic.due(time_ns) and self._topics is not None:
-            self._topics.tell()
+            self._topics.publish_status()
 
     def start(self, time_ns: int) -> None:
         """Starts to publish the status."""

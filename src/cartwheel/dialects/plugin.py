@@ -155,7 +155,7 @@ class Plugin(Component, Generic[C]):
         self.keep(action)
         # ROS 1 clients find the server by its status.
         topics = self.keep(ActionTopics(self.graph, action))
-        part.schedule(STATUS_RATE, after=topics.tell)
+        part.schedule(STATUS_RATE, after=topics.publish_status)
         return action
 
     def under_model(self) -> None:

@@ -64,7 +64,7 @@ class Goal:
     def accept(self) -> None:
         """Accepts the goal."""
         self.state = GoalState.ACTIVE
-        self._action._tell(self)
+        self._action._notify(self)
 
     def reject(self, result: Any, text: str) -> None:
         """Rejects the goal."""
@@ -90,7 +90,7 @@ class Goal:
     def _end(self, state: GoalState, result: Any, text: str) -> None:
         self.state, self.result, self.text = state, result, text
         self.done_ns = self._action.time_ns()
-        self._action._tell(self)
+        self._action._notify(self)
 
 
 class ActionListener(Protocol):
@@ -239,7 +239,7 @@ class Action:
         """Forgets completed goals, because simulation time restarts."""
         self._goals = {key: goal for key, goal in self._goals.items() if not goal.done}
 
-    def _tell(self, goal: Goal) -> None:
+    def _notify(self, goal: Goal) -> None:
         for listener in self.listeners:
             listener.goal_changed(goal)
 

@@ -17,7 +17,7 @@ _AT_ONCE, _AT_ONCE_RATE = 10, 20
 """Number of goal changes that are published at once, and the number that is added per s of
 simulation time. Later changes are published with the next regular states. A message contains the
 states of up to 100 goals, and takes several times as long as a goal."""
-_TOLD_NS = 5_000_000_000
+_STATUS_LIST_TIMEOUT_NS = 5_000_000_000
 """Time in ns for which a completed goal stays in the published states."""
 _STATES = {
     GoalState.PENDING: 0,
@@ -82,7 +82,7 @@ class ActionTopics:
         """See `ActionListener`."""
         return self._feedback.wanted
 
-    def tell(self) -> None:
+    def publish_status(self) -> None:
         """Publishes the states of all goals, also as a sign that the action server exists."""
         if not self._status.wanted:
             return
@@ -90,7 +90,7 @@ class ActionTopics:
         statuses = [
             self._state(goal)
             for goal in self._action.goals
-            if not goal.done or now - goal.done_ns < _TOLD_NS
+            if not goal.done or now - goal.done_ns < _STATUS_LIST_TIMEOUT_NS
         ]
         self._status.publish(
             message_class("actionlib_msgs/msg/GoalStatusArray")(
@@ -103,7 +103,7 @@ class ActionTopics:
         if goal.done and self._result.wanted:
             self._publish(self._result, "Result", goal, goal.result)
         if self._changes.take():
-            self.tell()
+            self.publish_status()
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
         """See `ActionListener`."""

@@ -111,7 +111,7 @@ class ReconfigureServer:
             opened.callback(self._updates.close)
             self._opened = opened.pop_all()
         self._descriptions.publish(self._description())
-        self._tell()
+        self._publish()
 
     @property
     def values(self) -> dict[str, Value]:
@@ -126,7 +126,7 @@ class ReconfigureServer:
             GraphError: A value has the wrong type.
         """
         self._values |= {key: _typed(self._known(key), value) for key, value in values.items()}
-        self._tell()
+        self._publish()
 
     def close(self) -> None:
         """Removes the service and the topics from the graph."""
@@ -147,7 +147,7 @@ class ReconfigureServer:
         for key, value in (corrected or {}).items():
             wanted[key] = _typed(self._known(key), value)
         self._values = wanted
-        self._tell()
+        self._publish()
         return self._response(config=self._config(self._values))
 
     def _known(self, name: str) -> ReconfigureParameter:
@@ -165,7 +165,7 @@ class ReconfigureServer:
                 found[key] = _clamped(parameter, _typed(parameter, value))
         return found
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         for key, value in self._values.items():
             self._graph.parameters.set(f"{self._name}/{key}", value)
         self._updates.publish(self._config(self._values))

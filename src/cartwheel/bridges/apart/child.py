@@ -13,7 +13,8 @@ from typing import Any, Protocol
 
 from cartwheel.bridges.apart.link import Link
 from cartwheel.bridges.apart.remote_graph import RemoteGraph
-from cartwheel.bridges.apart.ring import RingFiles, RingReader
+from cartwheel.bridges.apart.ring import RingReader
+from cartwheel.bridges.apart.ring_files import RingFiles
 from cartwheel.codes.wires import BRIDGE_FAULT
 from cartwheel.options import Caller, set_caller
 
@@ -55,7 +56,7 @@ def main(kind: str, patient: str, caller: str, link_file: str, ring_files: str) 
     over = threading.Event()
 
     def fault(error: Exception) -> None:
-        link.tell(
+        link.notify(
             "report",
             BRIDGE_FAULT.because("unexpected error in the bridge", error),
         )

@@ -24,7 +24,7 @@ from cartwheel.messages.definition import Definition
 from cartwheel.messages.learnt import needed
 from cartwheel.reporting import Reporter
 
-_TOLD = 500
+_MOST_WARNINGS = 500
 """Maximum number of different warnings."""
 _CLOCK = "rosgraph_msgs/msg/Clock"
 _TIMES, _TIMES_AT_ONCE = 1000.0, 100.0
@@ -66,7 +66,7 @@ class GraphHost:
         self._time_ns = time_ns
         self._patient = patient
         self._echo = echo
-        self._warn = Reporter(report, _TOLD, title=title)
+        self._warn = Reporter(report, _MOST_WARNINGS, title=title)
         self._losses = Losses(ring, self.later, self._warn)
         self._relays: dict[int, _Relay] = {}
         self._arrivals = Arrivals(graph, self._warn)
@@ -119,7 +119,7 @@ class GraphHost:
     def _tell_change(self) -> None:
         self._changing = False
         if not self._closed:
-            self._link.tell("changed", self._state())
+            self._link.notify("changed", self._state())
 
     def _state(self) -> GraphState:
         graph = self._graph
@@ -294,7 +294,7 @@ class _RemoteServer:
 
     def set(self, name: str, value: Any) -> None:
         """Stores a value."""
-        self._link.tell("server_set", name, _plain(value))
+        self._link.notify("server_set", name, _plain(value))
 
 
 def _plain(value: Any) -> Any:

@@ -100,10 +100,10 @@ class _Teller:
 
     def goal_changed(self, goal: Goal) -> None:
         """See `ActionListener`."""
-        self._link.tell("goal", self._number, news_of(goal, self._time_ns()), None)
+        self._link.notify("goal", self._number, news_of(goal, self._time_ns()), None)
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
         """See `ActionListener`."""
         if self.wants_feedback:
             news = news_of(goal, self._time_ns())
-            self._link.tell_in_time("goal", self._number, news, encode_cdr(feedback))
+            self._link.notify_in_time("goal", self._number, news, encode_cdr(feedback))

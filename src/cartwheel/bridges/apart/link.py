@@ -19,7 +19,7 @@ from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_RECOVERED, BRIDGE_SLOW, C
 from cartwheel.errors import CartwheelError, ControlError, one_line
 
 _LENGTH = struct.Struct("<Q")
-_CALL, _TELL, _ANSWER = range(3)
+_CALL, _NOTIFY, _ANSWER = range(3)
 _PATIENCE = 30.0
 """Timeout in s for a response, while the other process may be busy."""
 
@@ -130,13 +130,13 @@ class Link:
                 values={"request": name, "seconds": _PATIENCE},
             ) from None
 
-    def tell(self, name: str, *arguments: Any) -> None:
+    def notify(self, name: str, *arguments: Any) -> None:
         """Calls a remote function without waiting for a result."""
-        frame = _frame(_TELL, 0, name, arguments)
+        frame = _frame(_NOTIFY, 0, name, arguments)
         self._post(frame, lambda: self._write(frame))
 
-    def tell_in_time(self, name: str, *arguments: Any) -> None:
-        """Like `tell`, but drops the call if the other process is slow."""
+    def notify_in_time(self, name: str, *arguments: Any) -> None:
+        """Like `notify`, but drops the call if the other process is slow."""
         if self._queued > _LATE:
             with self._counting:
                 self.dropped += 1
@@ -144,7 +144,7 @@ class Link:
             if is_first:
                 self.loop.post(self._report_late)
             return
-        frame = _frame(_TELL, 0, name, arguments)
+        frame = _frame(_NOTIFY, 0, name, arguments)
         self._post(frame, lambda: self._write(frame))
 
     @property
@@ -281,7 +281,7 @@ class Link:
                 code=CALL_LIMIT,
                 values={"name": name, "most": THREADS},
             )
-            if kind == _TELL:
+            if kind == _NOTIFY:
                 self._on_fault(busy)
             else:
                 self._answer(number, busy, None)
@@ -290,12 +290,12 @@ class Link:
         try:
             result = handler(*arguments)
         except Exception as error:  # noqa: BLE001 - the caller handles it
-            if kind == _TELL:
+            if kind == _NOTIFY:
                 self._on_fault(error)
             else:
                 self._answer(number, error, None)
             return
-        if kind == _TELL:
+        if kind == _NOTIFY:
             return
         if isinstance(result, Future):
             result.add_done_callback(lambda done: self._answer_with(number, done))

@@ -5,23 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
-
-class Named(Protocol):
-    """A service or action."""
-
-    @property
-    def name(self) -> str:
-        """Name in the graph."""
-
-    @property
-    def type(self) -> str:
-        """``pkg/srv/Name`` or ``pkg/action/Name``."""
-
-    @property
-    def node(self) -> str:
-        """Node that offers it."""
+from cartwheel.bridges.bridged import Named
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

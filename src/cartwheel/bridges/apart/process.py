@@ -12,7 +12,8 @@ from typing import Any
 
 from cartwheel.bridges.apart.host import GraphHost
 from cartwheel.bridges.apart.link import Handler, Link
-from cartwheel.bridges.apart.ring import RingFiles, RingWriter
+from cartwheel.bridges.apart.ring import RingWriter
+from cartwheel.bridges.apart.ring_files import RingFiles
 from cartwheel.codes.wires import BRIDGE_ENDED, BRIDGE_FAULT, BRIDGE_SLOW
 from cartwheel.errors import CartwheelError, ControlError, Diagnostic
 from cartwheel.forks import keep_socket
@@ -30,7 +31,7 @@ sys.path[:] = json.loads(sys.argv[1])
 from cartwheel.bridges.apart.child import main
 main(*sys.argv[2:])
 """
-_TOLD = 500
+_MOST_WARNINGS = 500
 
 Report = Callable[[Diagnostic], None]
 
@@ -50,7 +51,7 @@ class BridgeProcess:
         self._link: Link | None = None
         self._host: GraphHost | None = None
         self._report: Report = lambda _: None
-        self._warn = Reporter(self._pass_on, _TOLD, title=title)
+        self._warn = Reporter(self._pass_on, _MOST_WARNINGS, title=title)
         self._closing = False
         self.on_lost: Callable[[], None] = lambda: None
         """Called on a separate thread when the process has exited unexpectedly."""
@@ -149,10 +150,10 @@ class BridgeProcess:
                 self._death, code=BRIDGE_ENDED, values={"bridge": self.title}
             ) from None
 
-    def tell(self, name: str, *arguments: Any) -> None:
+    def notify(self, name: str, *arguments: Any) -> None:
         """Calls a function in the bridge process without waiting for a result."""
         if self._link is not None:
-            self._link.tell(name, *arguments)
+            self._link.notify(name, *arguments)
 
     def leave_graph(self) -> None:
         """Stops sending messages. Callable on any thread."""

@@ -73,14 +73,14 @@ class RemoteAction:
         """Removes the listener."""
         if self._listener is listener:
             self._listener = None
-            self._link.tell("action", self._number, "listen", False)
+            self._link.notify("action", self._number, "listen", False)
 
     def tell_wants(self) -> None:
         """Requests feedback while a client receives it. Callable on any thread."""
         wanted = self._listener is not None and self._listener.wants_feedback
         if wanted != self._feedback:
             self._feedback = wanted
-            self._link.tell("action", self._number, "want_feedback", wanted)
+            self._link.notify("action", self._number, "want_feedback", wanted)
 
     @property
     def goals(self) -> list[Goal]:

@@ -60,7 +60,7 @@ class RemoteSubscription:
         self.type = type_name
         self.callback = callback
         self.dropped: Callable[[], int] = lambda: 0
-        self.told = 0
+        self.reported = 0
         """Value of `dropped` that was last sent to the other process."""
 
     def close(self) -> None:
@@ -89,8 +89,8 @@ class RemoteParameters:
         self._server = server
         self._answering = server or self._answering
         if server is None:
-            # Use `tell`, because the other process may already have exited.
-            self._link.tell("serve_parameters", False)
+            # Use `notify`, because the other process may already have exited.
+            self._link.notify("serve_parameters", False)
         else:
             self._link.ask("serve_parameters", True)
 
@@ -198,7 +198,7 @@ class RemoteGraph:
 
     def publish(self, name: str, type_name: str, message: Any) -> None:
         """Publishes one message."""
-        self._link.tell("publish", name, type_name, encode_cdr(message))
+        self._link.notify("publish", name, type_name, encode_cdr(message))
 
     def call(self, name: str, request: Any) -> Future[Any]:
         """Calls a service.
@@ -255,14 +255,14 @@ class RemoteGraph:
 
     def _remove(self, subscription: RemoteSubscription) -> None:
         if self._subscriptions.pop(subscription.number, None) is not None:
-            self._link.tell("unsubscribe", subscription.number)
+            self._link.notify("unsubscribe", subscription.number)
 
     def _look(self) -> None:
         for one in list(self._subscriptions.values()):
             count = one.dropped()
-            if count != one.told:
-                one.told = count
-                self._link.tell("dropped", one.number, count)
+            if count != one.reported:
+                one.reported = count
+                self._link.notify("dropped", one.number, count)
         for action in list(self._actions.values()):
             action.tell_wants()
         self._link.loop.after(_LOOKS, self._look)

@@ -25,19 +25,16 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from cartwheel.bridges.apart.ring_files import RingFiles, file_content, message_file
 from cartwheel.forks import keep_object
 
-SIZE = 32 << 20
-"""Size of a ring in bytes. Only the used part occupies memory."""
 LARGEST = 256 << 20
 """Maximum bytes of messages in separate files that the reader has not received yet."""
 LINGER = 1.0
 """Interval in s at which a reader checks the ring without being woken."""
 _LARGE_COUNT = 16
 """Maximum number of messages in separate files that the reader has not received yet."""
-_LEAST = 1 << 18
 _HEAD = struct.Struct("<IIq")
 """Header of each message: size in bytes, number of the receiver, time in ns."""
 _SKIP = 0xFFFF_FFFF
@@ -62,77 +59,6 @@ class Put(enum.Enum):
     """The message does not fit into the ring at any time."""
     CLOSED = enum.auto()
     """The ring is closed."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RingFiles:
-    """File descriptors of one end, which owns them."""
-
-    memory: int
-    published: int
-    """eventfd: number of bytes that may be read."""
-    freed: int
-    """eventfd: number of bytes that may be overwritten."""
-    sock: int
-    """One end of a socket pair. It hangs up when the other process has exited, and carries
-    files."""
-
-    @classmethod
-    def pair(cls, size: int = SIZE) -> tuple[RingFiles, RingFiles]:
-        """Creates a ring. Returns the files of its writer and of its reader.
-
-        Args:
-            size: Size in bytes; reduced if the size of files is limited.
-        """
-        sockets = socket.socketpair()
-        ours = cls(
-            memory=_memory(size), published=_count(), freed=_count(), sock=sockets[0].detach()
-        )
-        theirs = cls(
-            memory=os.dup(ours.memory),
-            published=os.dup(ours.published),
-            freed=os.dup(ours.freed),
-            sock=sockets[1].detach(),
-        )
-        return ours, theirs
-
-    @classmethod
-    def of(cls, text: str) -> RingFiles:
-        """Parses the result of `str`."""
-        memory, published, freed, sock = map(int, text.split(","))
-        return cls(memory=memory, published=published, freed=freed, sock=sock)
-
-    def __str__(self) -> str:
-        return ",".join(map(str, self.numbers))
-
-    @property
-    def numbers(self) -> tuple[int, int, int, int]:
-        """All file descriptors."""
-        return self.memory, self.published, self.freed, self.sock
-
-    def close(self) -> None:
-        """Closes the files. Use it for an end that has no writer or reader."""
-        for number in self.numbers:
-            os.close(number)
-
-
-def _count() -> int:
-    return os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
-
-
-def _memory(size: int) -> int:
-    """Creates an unnamed file in memory, outside /dev/shm. It ends with its processes."""
-    file = os.memfd_create("cartwheel")
-    while True:
-        try:
-            os.ftruncate(file, size)
-        except OSError:
-            # A limit on file size (ulimit -f) applies here as well.
-            if size <= _LEAST:
-                raise
-            size //= 4
-        else:
-            return file
 
 
 class _End:
@@ -264,7 +190,7 @@ class RingWriter(_End):
         if room is None or len(self._large) >= _LARGE_COUNT or on_its_way + length > LARGEST:
             return Put.FULL
         try:
-            file = _file_of(data)
+            file = message_file(data)
         except OSError as error:
             if error.errno != errno.EFBIG:
                 return Put.FULL
@@ -377,7 +303,7 @@ class RingReader(_End):
     def _file(self) -> bytes:
         _, (file,), _, _ = socket.recv_fds(self._sock, 1, 1)
         try:
-            return _content(file)
+            return file_content(file)
         finally:
             os.close(file)
 
@@ -390,20 +316,3 @@ class RingReader(_End):
 
 def _padded(length: int) -> int:
     return -(-length // _HEAD.size) * _HEAD.size
-
-
-def _file_of(data: bytes) -> int:
-    file = os.memfd_create("cartwheel message")
-    try:
-        left = memoryview(data)
-        while left:
-            left = left[os.write(file, left) :]
-    except OSError:
-        os.close(file)
-        raise
-    return file
-
-
-def _content(file: int) -> bytes:
-    with mmap.mmap(file, 0, prot=mmap.PROT_READ) as mapped:
-        return mapped[:]

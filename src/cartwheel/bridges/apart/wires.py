@@ -58,7 +58,7 @@ class _BridgeWire:
         self._bridge.log(diagnostic)
 
     def _report(self, diagnostic: Diagnostic) -> None:
-        self._link.tell("report", diagnostic)
+        self._link.notify("report", diagnostic)
 
     def _time_ns(self) -> int:
         return self._graph.time_ns
@@ -80,7 +80,7 @@ class Ros1Wire(_BridgeWire):
             **options,
             report=self._report,
             time_ns=self._time_ns,
-            on_end=lambda diagnostic: self._link.tell("ended", diagnostic),
+            on_end=lambda diagnostic: self._link.notify("ended", diagnostic),
         )
 
         def start() -> tuple[bool, tuple[int, ...]]:
@@ -124,7 +124,7 @@ class Ros2Wire(_BridgeWire):
         )
 
         def make_way(last: str) -> None:
-            bridge.make_way(last, lambda topics: self._link.tell("taken_by_others", topics))
+            bridge.make_way(last, lambda topics: self._link.notify("taken_by_others", topics))
 
         self._offer(bridge, bridge.start)
         self._link.handle("make_way", make_way)
@@ -254,14 +254,14 @@ class RecordingWire:
         link, graph = self._link, self._graph
 
         def failed(error: RecordingError) -> None:
-            link.tell("failed", error)
+            link.notify("failed", error)
 
         self._recorder = recorder = self._made(
             graph,
             Path(options.pop("path")),
             **options,
             time_ns=lambda: graph.time_ns,
-            report=lambda diagnostic: link.tell("report", diagnostic),
+            report=lambda diagnostic: link.notify("report", diagnostic),
             on_failure=failed,
         )
         link.handle("start", lambda: graph.run(recorder.start))

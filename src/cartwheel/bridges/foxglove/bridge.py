@@ -124,7 +124,7 @@ class FoxgloveBridge:
             warn=self._warn,
         )
         self._values = Values(
-            graph, controls=controls, descriptions=self._offers.descriptions, tell=self._warn
+            graph, controls=controls, descriptions=self._offers.descriptions, warn=self._warn
         )
         self._slow = SlowClients(lambda client: self._jobs.put(lambda: self._warn_of_slow(client)))
         self._thread = threading.Thread(target=self._run, name="foxglove", daemon=True)
@@ -171,7 +171,7 @@ class FoxgloveBridge:
             values=self._values,
             controls=self._controls,
             subscribed=self._subscribed,
-            tell=self._warn,
+            warn=self._warn,
         )
         try:
             self._server = foxglove.start_server(

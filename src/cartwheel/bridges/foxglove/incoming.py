@@ -60,12 +60,12 @@ class Incoming:
 
     Args:
         graph: Graph to publish on.
-        tell: Receives warnings for clients and the user.
+        warn: Receives warnings for clients and the user.
     """
 
-    def __init__(self, graph: BridgedGraph, tell: Callable[[Diagnostic], None]) -> None:
+    def __init__(self, graph: BridgedGraph, warn: Callable[[Diagnostic], None]) -> None:
         self._graph = graph
-        self._tell = tell
+        self._warn = warn
         self._channels: dict[tuple[int, int], tuple[str, str, str]] = {}
         """Topic, encoding and type, by client and channel."""
         self._waiting = 0
@@ -85,7 +85,7 @@ class Incoming:
             return
         topic, encoding, kind = known
         if self._waiting >= _BACKLOG:
-            self._tell(
+            self._warn(
                 INCOMING_DROPPED.diagnostic(
                     "clients send messages faster than the simulation processes them, so some "
                     "messages are dropped"
@@ -95,7 +95,7 @@ class Incoming:
         try:
             types = {info.name: info.type for info in self._graph.topics()}
             if topic not in types:
-                self._tell(
+                self._warn(
                     MESSAGE_UNREAD.diagnostic(
                         f"{topic} has no subscribers, so messages from clients on this topic are "
                         "dropped",
@@ -111,7 +111,7 @@ class Incoming:
             self._graph.publish(topic, kind, message)
             self._graph.post(self._taken)
         except CartwheelError as error:
-            self._tell(
+            self._warn(
                 MALFORMED_MESSAGE.because(
                     f"a client's message on {topic} is ignored", error, values={"topic": topic}
                 )
@@ -121,13 +121,13 @@ class Incoming:
         self._waiting -= 1
 
 
-def offered(graph: BridgedGraph, service: Service, tell: Callable[[Diagnostic], None]) -> Any:
+def offered(graph: BridgedGraph, service: Service, warn: Callable[[Diagnostic], None]) -> Any:
     """A graph service for the server, which calls it on the server's threads.
 
     Args:
         graph: Graph with the service.
         service: Service to offer.
-        tell: Receives the error of a failed call, on any thread. Not all clients show errors.
+        warn: Receives the error of a failed call, on any thread. Not all clients show errors.
 
     Raises:
         UnknownNameError: The service type is unknown.
@@ -148,7 +148,7 @@ def offered(graph: BridgedGraph, service: Service, tell: Callable[[Diagnostic], 
             message = decode(bytes(request.payload), request.encoding, request_class.__msgtype__)
             response = asked(graph, service.name, message)
         except CartwheelError as error:
-            tell(
+            warn(
                 SERVICE_FAILED.because(
                     f"{service.name} failed", error, values={"service": service.name}
                 )

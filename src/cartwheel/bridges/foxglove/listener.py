@@ -19,7 +19,7 @@ class Listener:
         values: Parameters.
         controls: Controls of simulation time.
         subscribed: Called with each channel that a client subscribes to or unsubscribes from.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
     def __init__(
@@ -29,13 +29,13 @@ class Listener:
         values: Values,
         controls: Controls,
         subscribed: Callable[[int, bool], None],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         self._incoming = incoming
         self._values = values
         self._controls = controls
         self._subscribed = subscribed
-        self._tell = tell
+        self._warn = warn
 
     def on_subscribe(self, _: Any, channel: Any) -> None:
         self._subscribed(channel.id, True)
@@ -86,7 +86,7 @@ class Listener:
             play = request.playback_command == PlaybackCommand.Play
             (controls.resume if play else controls.pause)()
         except CartwheelError as error:
-            self._tell(error.diagnostic("warning"))
+            self._warn(error.diagnostic("warning"))
         return playback_state(
             controls.state(),
             did_seek=request.seek_time is not None,

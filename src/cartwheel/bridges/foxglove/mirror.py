@@ -102,7 +102,7 @@ class Mirror:
                     context=self._context,
                     time_ns=self._time_ns,
                     wake=partial(self._wake, name),
-                    tell=self._warn,
+                    warn=self._warn,
                 )
                 self.publications[name] = publication
                 self.by_channel[publication.channel.id()] = publication

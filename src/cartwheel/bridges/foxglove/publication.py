@@ -27,7 +27,7 @@ class Publication:
         context: foxglove's context of the server.
         time_ns: Simulation time.
         wake: Makes the bridge call `send` soon. Callable on any thread.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class Publication:
         context: Any,
         time_ns: Callable[[], int],
         wake: Callable[[], None],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         import foxglove
 
@@ -46,7 +46,7 @@ class Publication:
         self._graph = graph
         self._time_ns = time_ns
         self._wake = wake
-        self._tell = tell
+        self._warn = warn
         self._encoding = encoding_of(info.type)
         self.channel = foxglove.Channel(
             info.name,
@@ -60,7 +60,7 @@ class Publication:
         self._subscription: BridgedSubscription | None = None
         self._readers = 0
         self._last: tuple[int, bytes] | None = None
-        self._told = False
+        self._warned = False
 
     def join(self) -> None:
         """Called when a client subscribes."""
@@ -89,9 +89,9 @@ class Publication:
             if self.latched:
                 self._last = (time_ns, data)
             self.channel.log(data, log_time=time_ns)
-        if self._box.dropped and not self._told:
-            self._told = True
-            self._tell(
+        if self._box.dropped and not self._warned:
+            self._warned = True
+            self._warn(
                 PUBLISHED_TOO_FAST.diagnostic(
                     f"{self.info.name} is published faster than it can be sent, so messages are "
                     "dropped",

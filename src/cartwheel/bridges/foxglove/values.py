@@ -32,7 +32,7 @@ class Values:
         graph: Graph with the parameters.
         controls: Controls of simulation time.
         descriptions: Robot descriptions by topic.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
     def __init__(
@@ -41,12 +41,12 @@ class Values:
         *,
         controls: Controls,
         descriptions: Mapping[str, str],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         self._graph = graph
         self._controls = controls
         self._descriptions = descriptions
-        self._tell = tell
+        self._warn = warn
         self._sizes: dict[str, int] = {}
         """Characters of the parameters that clients have set."""
         self._lock = threading.Lock()
@@ -68,9 +68,9 @@ class Values:
             except _FullError as error:
                 # The warning omits the name, so that it is reported once for any number of
                 # parameters.
-                self._tell(error.diagnostic("warning"))
+                self._warn(error.diagnostic("warning"))
             except CartwheelError as error:
-                self._tell(
+                self._warn(
                     PARAMETER_REFUSED.because(
                         f"parameter {value.name[:_LONGEST_NAME]} was not set",
                         error,

@@ -32,7 +32,7 @@ class FolderWriter:
         self._mcap = McapWriter(self._file, "ros2", notes=notes, pack=pack)
         self._topics: list[TopicCount] = []
         self._span: tuple[int, int] | None = None
-        self._tell()
+        self._write_metadata()
 
     @property
     def kept_ns(self) -> int:
@@ -56,11 +56,11 @@ class FolderWriter:
 
     def flush(self) -> None:
         self._mcap.flush()
-        self._tell()
+        self._write_metadata()
 
     def close(self) -> None:
         self._mcap.close()
-        self._tell()
+        self._write_metadata()
 
     def abandon(self) -> None:
         self._mcap.abandon()
@@ -68,9 +68,9 @@ class FolderWriter:
             topic.count = count
         self._span = self._mcap.span
         with suppress(OSError):
-            self._tell()
+            self._write_metadata()
 
-    def _tell(self) -> None:
+    def _write_metadata(self) -> None:
         about = metadata(
             self._topics,
             storage="mcap",

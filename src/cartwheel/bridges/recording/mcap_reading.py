@@ -141,14 +141,7 @@ def open_mcap(path: Path) -> McapRecording:
 
 def _clear_up(recording: McapRecording, block: Block, channels: set[int]) -> None:
     """Loads a chunk that has no index, or that alone contains the records of its channels."""
-    try:
-        messages = [] if channels and channels <= set(recording.numbers) else recording.load(block)
-    except ValueError as error:
-        raise RecordingError(
-            f'"{recording.path}" is damaged at byte {block.position}: {error}',
-            code=RECORDING_DAMAGED,
-            values={"path": str(recording.path), "byte": block.position},
-        ) from error
+    messages = [] if channels and channels <= set(recording.numbers) else recording.loaded(block)
     if channels:
         block.topics = frozenset(recording.numbers[c] for c in channels if c in recording.numbers)
         for channel, times in block.about.items():

@@ -124,6 +124,21 @@ class BlockRecording:
         """
         raise NotImplementedError
 
+    def loaded(self, block: Block) -> list[Recorded]:
+        """The result of `load`.
+
+        Raises:
+            RecordingError: The block is damaged.
+        """
+        try:
+            return self.load(block)
+        except ValueError as error:
+            raise RecordingError(
+                f'"{self.path}" is damaged at byte {block.position}: {error}',
+                code=RECORDING_DAMAGED,
+                values={"path": str(self.path), "byte": block.position},
+            ) from error
+
     def messages(
         self, *, start_ns: int = 0, topics: Collection[int] | None = None
     ) -> Iterator[Recorded]:
@@ -149,15 +164,7 @@ class BlockRecording:
                     code=RECORDING_DAMAGED,
                     values={"path": str(self.path), "byte": block.position, "overlap": size},
                 )
-            try:
-                loaded = self.load(block)
-            except ValueError as error:
-                raise RecordingError(
-                    f'"{self.path}" is damaged at byte {block.position}: {error}',
-                    code=RECORDING_DAMAGED,
-                    values={"path": str(self.path), "byte": block.position},
-                ) from error
-            for message in loaded:
+            for message in self.loaded(block):
                 if message.time_ns >= start_ns and (wanted is None or message.number in wanted):
                     heapq.heappush(waiting, (message.time_ns, count, message))
                     count += 1

@@ -45,7 +45,7 @@ READER = "recorder"
 FLUSH = 0.5
 """Wall time in s after which recorded data is passed to the operating system. A killed recorder
 may lose at most 1 s. The remaining half is a reserve for busy machines."""
-_TELLING = 1.0
+_LONG_WAIT = 1.0
 """Total waiting time of the simulation in s from which it is reported."""
 
 
@@ -142,7 +142,7 @@ class Recorder:
         self._messages = 0
         self._size = 0
         self._topics: set[str] = set()
-        self._told_wait = False
+        self._has_warned = False
         self.failure: RecordingError | None = None
         """The error that ended the recording, or None."""
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
@@ -215,8 +215,8 @@ class Recorder:
 
     def _put(self, tap: _Tap, time_ns: int, message: Any, *, begins: bool) -> None:
         self._backlog.put(Item(tap.topic, tap.type, tap.latched, time_ns, message, begins))
-        if self._backlog.waited > _TELLING and not self._told_wait:
-            self._told_wait = True
+        if self._backlog.waited > _LONG_WAIT and not self._has_warned:
+            self._has_warned = True
             self._warn(
                 DISK_SLOW.diagnostic(
                     "the disk is slower than the simulation, so the simulation waits; no messages "

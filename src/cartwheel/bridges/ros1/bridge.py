@@ -9,7 +9,7 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.mirror import Arrivals, asked, survey
+from cartwheel.bridges.mirror import Arrivals, asked, is_available, survey
 from cartwheel.bridges.ros1.address import (
     bind_address,
     host_and_port,
@@ -25,7 +25,7 @@ from cartwheel.bridges.ros1.node import Node
 from cartwheel.bridges.ros1.publication import GraphPublication
 from cartwheel.bridges.ros1.registrar import Entry, Registrar
 from cartwheel.bridges.ros1.rpc import Peer, RpcError, UnreachableError
-from cartwheel.bridges.ros1.service import OfferedService
+from cartwheel.bridges.ros1.service import Answer, OfferedService
 from cartwheel.bridges.ros1.subscription import TopicSubscription
 from cartwheel.codes.wires import (
     BRIDGE_FAULT,
@@ -33,9 +33,8 @@ from cartwheel.codes.wires import (
     ROS_MASTER_LOST,
     ROS_MASTER_UNAVAILABLE,
     ROS_NODE_ENDED,
-    TYPE_UNSUPPORTED,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, UnknownNameError
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.graph import Service, TopicInfo
 from cartwheel.messages.ros1 import ros1_service, ros1_type
 from cartwheel.messages.store import is_ros2_only
@@ -45,7 +44,7 @@ READER = "ros1"
 """Node name of the bridge in the graph."""
 _FIRST_ANSWER = 3.0
 """Timeout in s for the master's response at startup."""
-_TOLD = 500
+_MOST_WARNINGS = 500
 """Maximum number of different warnings. They contain node names, whose number is not limited."""
 _LONGEST = 1000
 """Maximum length of a warning in characters."""
@@ -90,7 +89,7 @@ class Ros1Bridge:
         self.master_uri = master_uri(self._arguments.special)
         self._host = host = own_host(self._arguments.special, self.master_uri)
         self._core: OwnCore | None = None
-        self._reporter = Reporter(report, _TOLD, title="ROS")
+        self._reporter = Reporter(report, _MOST_WARNINGS, title="ROS")
         self._closed = False
         self._arrivals = Arrivals(graph, self._warn)
         self._loop = Loop(self._fault, name="ros1")
@@ -101,9 +100,9 @@ class Ros1Bridge:
             address=bind_address(host),
             master_uri=self.master_uri,
             on_shutdown=self._shut_down,
-            tell=self._warn,
+            warn=self._warn,
         )
-        self._log = Log(self._loop, node=self.name, time_ns=time_ns, tell=self._warn)
+        self._log = Log(self._loop, node=self.name, time_ns=time_ns, warn=self._warn)
         self._parameters = MasterParameters(
             self.master_uri, node=self.name, outer=self._names.parameter, wake=self._wake
         )
@@ -273,93 +272,75 @@ class Ros1Bridge:
         return self._loop.call(lambda: self._mirror(topics, services)).result()
 
     def _mirror(self, topics: Sequence[TopicInfo], services: Sequence[Service]) -> list[Entry]:
-        node = self._node
-        found = survey(topics, outer=self._names.outer, known=self._is_known)
-        self._mirror_publications(found.sent)
-        self._mirror_subscriptions(found.read)
-        self._mirror_services({self._names.outer(one.name): one for one in services})
+        node, outer = self._node, self._names.outer
+        found = survey(
+            topics, outer=outer, known=lambda info: self._is_known("topic", info, ros1_type)
+        )
+        node.publications.setdefault(self._log.publication.topic, self._log.publication)
+        node.publications.synchronise(
+            {name: info.type for name, info in found.sent.items()},
+            lambda name, _: self._publication(name, found.sent[name]),
+        )
+        for name in node.publications.properties:
+            node.publications[name].latched = found.sent[name].qos == "latched"
+        node.subscriptions.synchronise(
+            {name: info.type for name, info in found.read.items()},
+            lambda name, _: self._subscription(name, found.read[name]),
+        )
+        private, log = self._names.private, self._log
+        calls: dict[str, tuple[str, Answer]] = {
+            outer(one.name): (one.type, functools.partial(asked, self._graph, one.name))
+            for one in services
+            if self._is_known("service", one, ros1_service)
+        } | {
+            private("get_loggers"): ("roscpp/GetLoggers", log.get_loggers),
+            private("set_logger_level"): ("roscpp/SetLoggerLevel", log.set_logger_level),
+        }
+        node.services.synchronise(
+            {name: ros1_service(type_name) for name, (type_name, _) in calls.items()},
+            lambda name, type_: OfferedService(
+                self._loop,
+                node.calls,
+                name=name,
+                type_=type_,
+                answer=calls[name][1],
+                node=self.name,
+            ),
+        )
         return [
             *(Entry("Publisher", name, one.type.name) for name, one in node.publications.items()),
             *(Entry("Subscriber", name, one.type.name) for name, one in node.subscriptions.items()),
             *(Entry("Service", name, one.type.name) for name, one in node.services.items()),
         ]
 
-    def _mirror_publications(self, sent: dict[str, TopicInfo]) -> None:
-        known = self._node.publications
-        known.setdefault(self._log.publication.topic, self._log.publication)
-        for name, publication in list(known.items()):
-            if isinstance(publication, GraphPublication):
-                info = sent.get(name)
-                if info is None or info.type != publication.type_name:
-                    del known[name]
-                    publication.close()
-                else:
-                    publication.latched = info.qos == "latched"
-        for name, info in sent.items():
-            if name not in known:
-                known[name] = GraphPublication(
-                    self._loop,
-                    self._graph,
-                    source=info.name,
-                    type_name=info.type,
-                    reader=READER,
-                    ignored=lambda message: message in self._arrivals,
-                    topic=name,
-                    type_=ros1_type(info.type),
-                    latched=info.qos == "latched",
-                    node=self.name,
-                    tell=self._warn,
-                )
+    def _publication(self, name: str, info: TopicInfo) -> GraphPublication:
+        return GraphPublication(
+            self._loop,
+            self._graph,
+            source=info.name,
+            type_name=info.type,
+            reader=READER,
+            ignored=lambda message: message in self._arrivals,
+            topic=name,
+            type_=ros1_type(info.type),
+            latched=info.qos == "latched",
+            node=self.name,
+            warn=self._warn,
+        )
 
-    def _mirror_subscriptions(self, read: dict[str, TopicInfo]) -> None:
-        known = self._node.subscriptions
-        for name, subscription in list(known.items()):
-            if name not in read or read[name].type != subscription.type_name:
-                del known[name]
-                subscription.close()
-        for name, info in read.items():
-            if name not in known:
-                known[name] = TopicSubscription(
-                    self._loop,
-                    self._node.traffic,
-                    self._node.attempts,
-                    topic=name,
-                    type_name=info.type,
-                    type_=ros1_type(info.type),
-                    node=self.name,
-                    own_uri=self._node.uri,
-                    deliver=self._deliverer(info.name, info.type),
-                    tell=self._warn,
-                )
-
-    def _mirror_services(self, offered: dict[str, Service]) -> None:
-        known = self._node.services
-        own = {
-            self._names.private("get_loggers"): ("roscpp/GetLoggers", self._log.get_loggers),
-            self._names.private("set_logger_level"): (
-                "roscpp/SetLoggerLevel",
-                self._log.set_logger_level,
-            ),
-        }
-        wanted = {
-            name: (one.type, functools.partial(asked, self._graph, one.name))
-            for name, one in offered.items()
-            if self._is_known_service(one.type, one.name)
-        } | own
-        for name, service in list(known.items()):
-            if name not in wanted or ros1_service(wanted[name][0]) != service.type:
-                del known[name]
-                service.close()
-        for name, (type_name, answer) in wanted.items():
-            if name not in known:
-                known[name] = OfferedService(
-                    self._loop,
-                    self._node.calls,
-                    name=name,
-                    type_=ros1_service(type_name),
-                    answer=answer,
-                    node=self.name,
-                )
+    def _subscription(self, name: str, info: TopicInfo) -> TopicSubscription:
+        return TopicSubscription(
+            self._loop,
+            self._node.traffic,
+            self._node.attempts,
+            topic=name,
+            type_name=info.type,
+            type_=ros1_type(info.type),
+            node=self.name,
+            own_uri=self._node.uri,
+            deliver=self._deliverer(info.name, info.type),
+            warn=self._warn,
+        )
 
     def _deliverer(self, topic: str, type_name: str) -> Callable[[Any, int], None]:
         return lambda message, size: self._arrivals.deliver(topic, type_name, message, size=size)
@@ -375,35 +356,10 @@ class Ros1Bridge:
 
     # -- diagnostics
 
-    def _is_known(self, info: TopicInfo) -> bool:
-        if is_ros2_only(info.type):
-            return False
-        try:
-            ros1_type(info.type)
-        except UnknownNameError:
-            self._warn(
-                TYPE_UNSUPPORTED.diagnostic(
-                    f"topic {info.name} is not available in ROS 1, which has no type {info.type}",
-                    values={"topic": info.name, "type": info.type},
-                )
-            )
-            return False
-        return True
-
-    def _is_known_service(self, type_name: str, name: str) -> bool:
-        if is_ros2_only(type_name):
-            return False
-        try:
-            ros1_service(type_name)
-        except UnknownNameError:
-            self._warn(
-                TYPE_UNSUPPORTED.diagnostic(
-                    f"service {name} is not available in ROS 1, which has no type {type_name}",
-                    values={"service": name, "type": type_name},
-                )
-            )
-            return False
-        return True
+    def _is_known(self, kind: str, one: TopicInfo | Service, find: Callable[[str], object]) -> bool:
+        return not is_ros2_only(one.type) and is_available(
+            kind, one.name, one.type, ros="ROS 1", find=find, warn=self._warn
+        )
 
     def _warn(self, diagnostic: Diagnostic) -> None:
         """Reports a warning once, with unprintable characters replaced."""

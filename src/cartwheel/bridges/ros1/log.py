@@ -32,7 +32,7 @@ class Log:
         loop: Event loop of the bridge.
         node: Name of the node.
         time_ns: Returns the simulation time.
-        tell: Receives warnings about subscribers.
+        warn: Receives warnings about subscribers.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class Log:
         *,
         node: str,
         time_ns: Callable[[], int],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self._node = node
@@ -55,7 +55,7 @@ class Log:
             type_=ros1_type(TYPE),
             latched=False,
             node=node,
-            tell=tell,
+            warn=warn,
         )
         self.publication.on_first = self._catch_up
 

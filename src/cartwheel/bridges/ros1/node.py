@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
+from cartwheel.bridges.mirror import Copies
 from cartwheel.bridges.ros1.attempts import Attempts
 from cartwheel.bridges.ros1.connection import Connection, Listener, Traffic
 from cartwheel.bridges.ros1.http import RpcConnection
@@ -36,7 +37,7 @@ class Node:
         address: Address to listen on.
         master_uri: URI of the master.
         on_shutdown: Called with the reason when a different node requests a shutdown.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
     def __init__(
@@ -48,20 +49,20 @@ class Node:
         address: str,
         master_uri: str,
         on_shutdown: Callable[[str], None],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self.name = name
         self._host = host
         self._master_uri = master_uri
         self._on_shutdown = on_shutdown
-        self._tell = tell
+        self._warn = warn
         self.traffic = Traffic()
         self.attempts = Attempts()
         self.calls = Calls()
-        self.publications: dict[str, Publication] = {}
-        self.subscriptions: dict[str, TopicSubscription] = {}
-        self.services: dict[str, OfferedService] = {}
+        self.publications: Copies[Publication] = Copies()
+        self.subscriptions: Copies[TopicSubscription] = Copies()
+        self.services: Copies[OfferedService] = Copies()
         self._unknown: dict[Connection, None] = {}
         self._callers: dict[RpcConnection, None] = {}
         self._streams = Listener(loop, address, self._take_stream)
@@ -87,12 +88,9 @@ class Node:
     def close(self) -> None:
         """Closes all connections."""
         self.attempts.close()
-        for publication in self.publications.values():
-            publication.close()
-        for subscription in self.subscriptions.values():
-            subscription.close()
-        for service in self.services.values():
-            service.close()
+        for copies in (self.publications, self.subscriptions, self.services):
+            for each in copies.values():
+                each.close()
         for connection in list(self._unknown):
             connection.close()
         for caller in list(self._callers):
@@ -103,7 +101,7 @@ class Node:
             next(iter(self._unknown)).close()
         if self.traffic.full:
             sock.close()
-            self._tell(
+            self._warn(
                 PEER_LIMIT.diagnostic(
                     f"other nodes have opened {self.traffic.most} connections, the maximum, so "
                     "additional connections are refused",

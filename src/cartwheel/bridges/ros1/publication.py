@@ -29,7 +29,7 @@ class Publication:
         type_: Type of the messages.
         latched: Whether new subscribers receive the last message.
         node: Name of the node.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
     def __init__(
@@ -40,14 +40,14 @@ class Publication:
         type_: Ros1Type,
         latched: bool,
         node: str,
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self.topic = topic
         self.type = type_
         self.latched = latched
         self.links: list[Connection] = []
-        self._tell = tell
+        self._warn = warn
         self._header = encode_header(
             {
                 "callerid": node,
@@ -73,7 +73,7 @@ class Publication:
                     f"topic {self.topic} has type {self.type.name} with md5 sum {self.type.md5},"
                     f" not {wanted[0]} with {wanted[1]}"
                 )
-                self._tell(
+                self._warn(
                     PEER_TYPE_MISMATCH.diagnostic(
                         f"{link.peer} cannot subscribe to {self.topic}: it expects {wanted[0]} "
                         f"({wanted[1]}), but the type is {self.type.name} ({self.type.md5})",
@@ -90,7 +90,7 @@ class Publication:
         if link.closed:
             return
         link.on_close = lambda: self._leave(link)
-        link.on_drop = lambda: self._tell(
+        link.on_drop = lambda: self._warn(
             SLOW_SUBSCRIBER.diagnostic(
                 f"{link.peer or 'a node'} receives {self.topic} too slowly, so messages to this "
                 "node are dropped",
@@ -123,7 +123,7 @@ class Publication:
         except GraphError as error:
             if not self._faulty:
                 self._faulty = True
-                self._tell(
+                self._warn(
                     MESSAGE_NOT_SENT.because(
                         f"a message on {self.topic} cannot be sent",
                         error,
@@ -174,10 +174,9 @@ class GraphPublication(Publication):
         type_: Ros1Type,
         latched: bool,
         node: str,
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
-        super().__init__(loop, topic=topic, type_=type_, latched=latched, node=node, tell=tell)
-        self.type_name = type_name
+        super().__init__(loop, topic=topic, type_=type_, latched=latched, node=node, warn=warn)
         self._tap = Tap(
             loop,
             graph,
@@ -186,7 +185,7 @@ class GraphPublication(Publication):
             reader=reader,
             ignored=ignored,
             take=self._pass_on,
-            tell=tell,
+            warn=warn,
             beyond=lambda: self.dropped,
         )
 

@@ -59,7 +59,7 @@ class TopicSubscription:
         node: Name of the node.
         own_uri: URI of this node, which is not subscribed to.
         deliver: Called with each message and its size in bytes.
-        tell: Receives warnings.
+        warn: Receives warnings.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class TopicSubscription:
         node: str,
         own_uri: str,
         deliver: Callable[[Any, int], None],
-        tell: Callable[[Diagnostic], None],
+        warn: Callable[[Diagnostic], None],
     ) -> None:
         self._loop = loop
         self._traffic = traffic
@@ -85,7 +85,7 @@ class TopicSubscription:
         self._node = node
         self._own_uri = own_uri
         self._deliver = deliver
-        self._tell = tell
+        self._warn = warn
         self._links: dict[str, _Link] = {}
 
     @property
@@ -109,7 +109,7 @@ class TopicSubscription:
 
     def _add(self, uri: str) -> None:
         if len(self._links) >= MOST:
-            self._tell(
+            self._warn(
                 PEER_LIMIT.diagnostic(
                     f"{self.topic} has more than {MOST} publishers, so some of them are not "
                     "connected",
@@ -120,7 +120,7 @@ class TopicSubscription:
         try:
             host, _ = host_and_port(uri[: _LONGEST + 1])
         except CartwheelError as error:
-            self._tell(
+            self._warn(
                 PEER_ADDRESS_INVALID.because(
                     f"a publisher of {self.topic} cannot be reached",
                     error,
@@ -130,7 +130,7 @@ class TopicSubscription:
             )
             return
         if len(uri) > _LONGEST or not uri.startswith("http://"):
-            self._tell(
+            self._warn(
                 PEER_ADDRESS_INVALID.diagnostic(
                     f"a publisher of {self.topic} has the invalid address {uri[:_LONGEST]}",
                     values={"topic": self.topic, "uri": uri[:_LONGEST]},
@@ -219,7 +219,7 @@ class TopicSubscription:
         if refused is None and theirs not in ("*", self.type.md5):
             refused = f"it publishes {fields.get('type')} with md5 sum {theirs}"
         if refused is not None:
-            self._tell(
+            self._warn(
                 PEER_TYPE_MISMATCH.diagnostic(
                     f"{connection.peer} publishes {self.topic} with a different type from "
                     f"{self.type.name} ({self.type.md5}): {refused}",
@@ -237,7 +237,7 @@ class TopicSubscription:
         try:
             message = decode_ros1(data, self.type_name, elements=_ELEMENTS)
         except CartwheelError as error:
-            self._tell(
+            self._warn(
                 MALFORMED_MESSAGE.because(
                     f"{connection.peer} sent a malformed message on {self.topic}",
                     error,

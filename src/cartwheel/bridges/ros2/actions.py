@@ -15,20 +15,12 @@ import numpy as np
 
 from cartwheel.bridges.bridged import BridgedAction, BridgedGraph
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros2.middleware import (
-    CALLS,
-    DEFAULT,
-    LATCHED,
-    Answer,
-    Middleware,
-    Reply,
-    Served,
-)
-from cartwheel.codes.wires import CALL_LIMIT, GOAL_REJECTED, MALFORMED_MESSAGE
-from cartwheel.errors import Diagnostic, GraphError
+from cartwheel.bridges.ros2.middleware import Middleware, publisher
+from cartwheel.bridges.ros2.services import Handler, Respond, Services
+from cartwheel.codes.wires import CALL_LIMIT, GOAL_REJECTED
+from cartwheel.errors import Diagnostic
 from cartwheel.graph import Goal, GoalState
-from cartwheel.messages import decode_cdr, encode_cdr, message_class, stamp, zero
-from cartwheel.messages.ros2.types import ros2_service, ros2_type
+from cartwheel.messages import encode_cdr, message_class, stamp, zero
 
 _STATUS = "action_msgs/msg/GoalStatusArray"
 _CANCEL = "action_msgs/srv/CancelGoal"
@@ -58,9 +50,10 @@ class OfferedAction:
         graph: Graph with the action.
         action: Action to offer.
         loop: Event loop of the bridge.
-        middleware: Middleware to offer the action on.
-        tell: Receives warnings.
-        node: See `Middleware.publish`.
+        middleware: Middleware to publish the topics on.
+        services: Offers the services.
+        warn: Receives warnings.
+        node: See `Endpoint.node`.
     """
 
     def __init__(
@@ -70,49 +63,34 @@ class OfferedAction:
         *,
         loop: Loop,
         middleware: Middleware,
-        tell: Callable[[Diagnostic], None],
+        services: Services,
+        warn: Callable[[Diagnostic], None],
         node: str,
     ) -> None:
         self.action = action
         self.node = node
         self._graph = graph
         self._loop = loop
-        self._tell = tell
+        self._warn = warn
         self._submitting = False
         self._readers = False
-        self._waiting: dict[str, list[Reply]] = {}
+        self._waiting: dict[str, list[Respond]] = {}
         """Pending result requests of active goals. Used on the owner's thread."""
         self._closed = False
         self._status_due = False
         self._status_at = 0.0
         """Time of the last status message. Used on the owner's thread, like `_status_due`."""
         base, kind = f"{action.name}/_action", action.type
-        self._types = {
-            "send_goal": f"{kind}_SendGoal",
-            "cancel_goal": _CANCEL,
-            "get_result": f"{kind}_GetResult",
-        }
-        self._status = middleware.publish(
-            f"{base}/status", ros2_type(_STATUS), LATCHED, lambda _: None, node=node
-        )
+        self._status = middleware.publish(publisher(f"{base}/status", _STATUS, "latched", node))
         self._feedback = middleware.publish(
-            f"{base}/feedback",
-            ros2_type(f"{kind}_FeedbackMessage"),
-            DEFAULT,
-            self._found_readers,
-            node=node,
+            publisher(f"{base}/feedback", f"{kind}_FeedbackMessage", node=node), self._found_readers
         )
         self._services = [
-            middleware.serve(
-                f"{base}/{name}",
-                (Served(ros2_service(self._types[name]), self._answer(name, handler)),),
-                depth=CALLS,
-                node=node,
-            )
-            for name, handler in (
-                ("send_goal", self._send_goal),
-                ("cancel_goal", self._cancel_goal),
-                ("get_result", self._get_result),
+            services.offer_deferred(f"{base}/{name}", type_name, self._posted(handler), node=node)
+            for name, type_name, handler in (
+                ("send_goal", f"{kind}_SendGoal", self._send_goal),
+                ("cancel_goal", _CANCEL, self._cancel_goal),
+                ("get_result", f"{kind}_GetResult", self._get_result),
             )
         ]
         graph.post(self._join)
@@ -134,22 +112,8 @@ class OfferedAction:
     def _found_readers(self, there: bool) -> None:
         self._readers = there
 
-    def _answer(self, name: str, handler: Callable[[Any, Reply], None]) -> Answer:
-        def answer(data: bytes, reply: Reply) -> None:
-            try:
-                request = decode_cdr(data, ros2_service(self._types[name]).request)
-            except GraphError as error:
-                self._tell(
-                    MALFORMED_MESSAGE.because(
-                        f"malformed request to {self.action.name}/_action/{name}",
-                        error,
-                        values={"service": f"{self.action.name}/_action/{name}"},
-                    )
-                )
-                return
-            self._graph.post(lambda: handler(request, reply))
-
-        return answer
+    def _posted(self, handler: Handler) -> Handler:
+        return lambda request, respond: self._graph.post(lambda: handler(request, respond))
 
     # -- on the owner's thread
 
@@ -163,8 +127,8 @@ class OfferedAction:
             return
         self._schedule_status()
         if goal.done:
-            for reply in self._waiting.pop(goal.id, ()):
-                self._send_result(goal, reply)
+            for respond in self._waiting.pop(goal.id, ()):
+                self._send_result(goal, respond)
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
         """See `ActionListener`."""
@@ -176,7 +140,7 @@ class OfferedAction:
                 ),
             )
 
-    def _send_goal(self, request: Any, reply: Reply) -> None:
+    def _send_goal(self, request: Any, respond: Respond) -> None:
         # The client must receive the acceptance before any feedback on its goal.
         self._submitting = True
         try:
@@ -185,10 +149,11 @@ class OfferedAction:
             self._submitting = False
         accepted = goal is not None and goal.state is not GoalState.REJECTED
         moment = stamp(self.action.time_ns())
-        self._respond(reply, "send_goal", accepted=accepted, stamp=moment)
+        made = message_class(f"{self.action.type}_SendGoal_Response")
+        respond(made(accepted=accepted, stamp=moment))
         if goal is not None and goal.state is GoalState.REJECTED:
             # The response has no field for the reason.
-            self._tell(
+            self._warn(
                 GOAL_REJECTED.diagnostic(
                     f"{self.action.name}: a goal was rejected: {goal.text}",
                     values={"action": self.action.name, "reason": goal.text},
@@ -197,7 +162,7 @@ class OfferedAction:
         elif goal is not None:
             self.goal_changed(goal)
 
-    def _cancel_goal(self, request: Any, reply: Reply) -> None:
+    def _cancel_goal(self, request: Any, respond: Respond) -> None:
         info = request.goal_info
         before_ns = info.stamp.sec * 1_000_000_000 + info.stamp.nanosec
         identity = _identity(info.goal_id) if any(info.goal_id.uuid) else ""
@@ -208,23 +173,19 @@ class OfferedAction:
         code = _NONE if meant else _REFUSED
         if not meant and identity and not before_ns:
             code = _UNKNOWN_GOAL if known is None else _TERMINATED
-        self._respond(
-            reply,
-            "cancel_goal",
-            return_code=code,
-            goals_canceling=[_info(goal) for goal in meant],
-        )
+        made = message_class(f"{_CANCEL}_Response")
+        respond(made(return_code=code, goals_canceling=[_info(goal) for goal in meant]))
 
-    def _get_result(self, request: Any, reply: Reply) -> None:
+    def _get_result(self, request: Any, respond: Respond) -> None:
         goal = self._known(_identity(request.goal_id))
         if goal is None or goal.state is GoalState.REJECTED:
-            self._send_result(None, reply)
+            self._send_result(None, respond)
         elif goal.done:
-            self._send_result(goal, reply)
+            self._send_result(goal, respond)
         elif sum(len(replies) for replies in self._waiting.values()) < _WAITING:
-            self._waiting.setdefault(goal.id, []).append(reply)
+            self._waiting.setdefault(goal.id, []).append(respond)
         else:
-            self._tell(
+            self._warn(
                 CALL_LIMIT.diagnostic(
                     f"more than {_WAITING} clients are waiting for results of {self.action.name}, "
                     "so one result request gets no response",
@@ -240,12 +201,11 @@ class OfferedAction:
         named = (each for each in self.action.goals if _bytes(each.id).hex() == identity)
         return next(named, None)
 
-    def _send_result(self, goal: Goal | None, reply: Reply) -> None:
-        if goal is None:
-            result = zero(f"{self.action.type}_Result")
-            self._respond(reply, "get_result", status=_UNKNOWN, result=result)
-        else:
-            self._respond(reply, "get_result", status=_STATES[goal.state], result=goal.result)
+    def _send_result(self, goal: Goal | None, respond: Respond) -> None:
+        status = _STATES[goal.state] if goal else _UNKNOWN
+        result = goal.result if goal else zero(f"{self.action.type}_Result")
+        made = message_class(f"{self.action.type}_GetResult_Response")
+        respond(made(status=status, result=result))
 
     def _schedule_status(self) -> None:
         """Publishes the goal states now, or together with the next changes."""
@@ -273,9 +233,6 @@ class OfferedAction:
                 ]
             ),
         )
-
-    def _respond(self, reply: Reply, name: str, **fields: Any) -> None:
-        self._publish(reply, message_class(ros2_service(self._types[name]).response)(**fields))
 
     def _publish(self, send: Callable[[bytes], None], message: Any) -> None:
         data = encode_cdr(message)

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any, Literal
 
 from cartwheel.bridges.bridged import BridgedAction, BridgedGraph
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.mirror import BRIDGES, ONLOOKERS, Arrivals, asked, survey
+from cartwheel.bridges.mirror import (
+    BRIDGES,
+    ONLOOKERS,
+    Arrivals,
+    Closable,
+    Copies,
+    asked,
+    is_available,
+    survey,
+)
 from cartwheel.bridges.ros2.actions import OfferedAction
 from cartwheel.bridges.ros2.log import Log
-from cartwheel.bridges.ros2.middleware import (
-    DEFAULT,
-    PARAMETER_CALLS,
-    Closable,
-    Middleware,
-    Outlet,
-    profile_of,
-)
+from cartwheel.bridges.ros2.middleware import Endpoint, Middleware, Outlet, publisher
 from cartwheel.bridges.ros2.nodes import OwnNode
 from cartwheel.bridges.ros2.parameters import NodeParameters, Parameter
+from cartwheel.bridges.ros2.qos import DEFAULT, PARAMETER_CALLS
 from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE as DESCRIPTION
 from cartwheel.bridges.ros2.type_descriptions import get_type_description
@@ -31,10 +34,9 @@ from cartwheel.codes.wires import (
     MALFORMED_MESSAGE,
     MESSAGE_NOT_SENT,
     ROS_NODE_NAME_INVALID,
-    TYPE_UNSUPPORTED,
 )
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError, UnknownNameError
-from cartwheel.graph import Service, TopicInfo
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError
+from cartwheel.graph import Qos, Service, TopicInfo
 from cartwheel.messages import decode_cdr
 from cartwheel.messages.ros2.types import is_ros1_only, ros2_service, ros2_type
 from cartwheel.reporting import Reporter
@@ -43,7 +45,7 @@ READER = "ros2"
 """Node name of the bridge in the graph."""
 Rmw = Literal["dds", "zenoh"]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
-_TOLD = 500
+_MOST_WARNINGS = 500
 """Maximum number of different warnings. They contain node names, whose number is not limited."""
 _CLOSING = 10.0
 _ROS1_PARTS = ("goal", "cancel", "status", "feedback", "result")
@@ -89,18 +91,19 @@ class Ros2Bridge:
                 values={"name": node},
             )
         self._graph = graph
-        self._warn = Reporter(report, _TOLD, title="ROS 2")
+        self._warn = Reporter(report, _MOST_WARNINGS, title="ROS 2")
         self.name = f"/{node}"
         self._loop = Loop(self._fault, name="ros2")
-        self.middleware = _middleware(rmw, self._loop, node, self._warn)
+        self.middleware = _middleware(rmw)(self._loop, self.name, self._warn)
         self._arrivals = Arrivals(graph, self._warn)
         self._log = Log(self._loop, node=node, time_ns=time_ns)
         self._parameters = NodeParameters(self.name, parameters, time_ns=time_ns)
-        self._publications: dict[str, _Publication] = {}
-        self._subscriptions: dict[str, _Subscription] = {}
-        self._services: dict[str, _Offered] = {}
-        self._actions: dict[str, OfferedAction] = {}
-        self._nodes: dict[str, OwnNode] = {}
+        # The last property of each copy is its ROS 2 node; empty for the main node.
+        self._publications: Copies[_Publication] = Copies()
+        self._subscriptions: Copies[_Subscription] = Copies()
+        self._services: Copies[Closable] = Copies()
+        self._actions: Copies[OfferedAction] = Copies()
+        self._nodes: Copies[OwnNode] = Copies()
         self._theirs: frozenset[str] = frozenset()
         self._due = False
         self._closed = False
@@ -142,12 +145,12 @@ class Ros2Bridge:
         """Logs a diagnostic on ``/rosout``. Callable on any thread."""
         self._log.write(diagnostic)
 
-    def make_way(self, last: str, told: Callable[[frozenset[str]], None]) -> None:
+    def make_way(self, last: str, changed: Callable[[frozenset[str]], None]) -> None:
         """Stops publishing topics while other nodes publish them.
 
         Args:
             last: Last part of the topic names.
-            told: Called with these topics whenever they change, on the loop's thread.
+            changed: Called with these topics whenever they change, on the loop's thread.
         """
 
         def look() -> None:
@@ -156,7 +159,7 @@ class Ros2Bridge:
             if found != self._theirs:
                 self._theirs = found
                 self._mirror()
-                told(found)
+                changed(found)
 
         self.middleware.on_others = look
         self._loop.post(look)
@@ -188,133 +191,73 @@ class Ros2Bridge:
         self._due = False
         if self._closed:
             return
-        actions = self._graph.actions()
-        of_ros1 = {f"{one.name}/{part}" for one in actions for part in _ROS1_PARTS}
+        actions = {one.name: one for one in self._graph.actions()}
+        of_ros1 = {f"{name}/{part}" for name in actions for part in _ROS1_PARTS}
         topics = (info for info in self._graph.topics() if info.name not in of_ros1)
-        found = survey(topics, known=self._is_known)
-        self._mirror_publications(
-            {name: info for name, info in found.sent.items() if name not in self._theirs}
+        found = survey(topics, known=lambda info: self._is_known("topic", info, ros2_type))
+        self._publications.synchronise(
+            {
+                name: (info.type, info.qos, self._node_of(info.publishers[0]))
+                for name, info in found.sent.items()
+                if name not in self._theirs
+            },
+            lambda name, properties: _Publication(self, name, *properties),
         )
-        self._mirror_subscriptions(found.read)
-        self._mirror_services(
-            {one.name: one for one in self._graph.services() if self._is_known_service(one)}
+        self._subscriptions.synchronise(
+            {name: (info.type, self._reading_node(info)) for name, info in found.read.items()},
+            lambda name, properties: _Subscription(self, name, *properties),
         )
-        self._mirror_actions({one.name: one for one in actions})
-        self._mirror_nodes()
+        self._services.synchronise(
+            {
+                one.name: (one.type, self._node_of(one.node))
+                for one in self._graph.services()
+                if self._is_known("service", one, ros2_service)
+            },
+            self._offer,
+        )
+        self._actions.synchronise(
+            {name: (one, self._node_of(one.node)) for name, one in actions.items()},
+            lambda _, properties: self._offer_action(*properties),
+        )
+        # The other nodes exist while they have endpoints.
+        mirrored = (self._publications, self._subscriptions, self._services, self._actions)
+        nodes = {each[-1] for copies in mirrored for each in copies.properties.values()}
+        self._nodes.synchronise(
+            dict.fromkeys(sorted(nodes - {""}), ()),
+            lambda name, _: OwnNode(self.middleware, self._offers, name),
+        )
 
-    def _mirror_nodes(self) -> None:
-        """Creates and removes ROS 2 nodes, which exist while they have endpoints."""
-        found = {
-            *(publication.told[-1] for publication in self._publications.values()),
-            *(subscription.told[-1] for subscription in self._subscriptions.values()),
-            *(service.told[-1] for service in self._services.values()),
-            *(action.node for action in self._actions.values()),
-        } - {""}
-        for name in self._nodes.keys() - found:
-            self._nodes.pop(name).close()
-        for name in found - self._nodes.keys():
-            self._nodes[name] = OwnNode(self.middleware, self._offers, name)
+    def _offer(self, name: str, properties: tuple[str, str]) -> Closable:
+        type_name, node = properties
+        function = functools.partial(asked, self._graph, name)
+        return self._offers.offer(name, type_name, function, threaded=True, node=node)
 
-    def _mirror_publications(self, sent: Mapping[str, TopicInfo]) -> None:
-        known = self._publications
-        for name, publication in list(known.items()):
-            info = sent.get(name)
-            if info is None or self._as_told(info) != publication.told:
-                known.pop(name).close()
-        for name, info in sent.items():
-            if name not in known:
-                known[name] = _Publication(self, info)
-
-    def _mirror_subscriptions(self, read: Mapping[str, TopicInfo]) -> None:
-        known = self._subscriptions
-        for name, subscription in list(known.items()):
-            if name not in read or self._as_heard(read[name]) != subscription.told:
-                known.pop(name).inlet.close()
-        for name, info in read.items():
-            if name not in known:
-                known[name] = _Subscription(self, info)
-
-    def _mirror_services(self, offered: Mapping[str, Service]) -> None:
-        known = self._services
-        for name, service in list(known.items()):
-            one = offered.get(name)
-            if one is None or (one.type, self._node_of(one.node)) != service.told:
-                known.pop(name).closable.close()
-        for name, one in offered.items():
-            if name not in known:
-                node = self._node_of(one.node)
-                known[name] = _Offered(
-                    (one.type, node),
-                    self._offers.offer(
-                        name,
-                        one.type,
-                        functools.partial(asked, self._graph, name),
-                        threaded=True,
-                        node=node,
-                    ),
-                )
-
-    def _mirror_actions(self, offered: Mapping[str, BridgedAction]) -> None:
-        known = self._actions
-        for name, action in list(known.items()):
-            if offered.get(name) is not action.action:
-                known.pop(name).close()
-        for name, one in offered.items():
-            if name not in known:
-                known[name] = OfferedAction(
-                    self._graph,
-                    one,
-                    loop=self._loop,
-                    middleware=self.middleware,
-                    tell=self._warn,
-                    node=self._node_of(one.node),
-                )
+    def _offer_action(self, action: BridgedAction, node: str) -> OfferedAction:
+        return OfferedAction(
+            self._graph,
+            action,
+            loop=self._loop,
+            middleware=self.middleware,
+            services=self._offers,
+            warn=self._warn,
+            node=node,
+        )
 
     def _node_of(self, node: str) -> str:
         """ROS 2 node of a node in the graph; empty for the main node."""
         return self._graph.nodes.get(node, "")
 
-    def _as_told(self, info: TopicInfo) -> tuple[str, str, str]:
-        """Properties of a published topic that are visible to others: type, QoS, node."""
-        return info.type, info.qos, self._node_of(info.publishers[0])
-
-    def _as_heard(self, info: TopicInfo) -> tuple[str, str]:
-        """Properties of a subscribed topic that are visible to others: type, node."""
+    def _reading_node(self, info: TopicInfo) -> str:
+        """ROS 2 node of the first subscriber that is not a bridge or an onlooker."""
         readers = (name for name in info.subscribers if name not in BRIDGES | ONLOOKERS)
-        return info.type, self._node_of(next(readers, ""))
+        return self._node_of(next(readers, ""))
 
     # -- diagnostics
 
-    def _is_known(self, info: TopicInfo) -> bool:
-        if is_ros1_only(info.type):
-            return False
-        try:
-            ros2_type(info.type)
-        except UnknownNameError:
-            self._warn(
-                TYPE_UNSUPPORTED.diagnostic(
-                    f"topic {info.name} is not available in ROS 2, which has no type {info.type}",
-                    values={"topic": info.name, "type": info.type},
-                )
-            )
-            return False
-        return True
-
-    def _is_known_service(self, service: Service) -> bool:
-        if is_ros1_only(service.type):
-            return False
-        try:
-            ros2_service(service.type)
-        except UnknownNameError:
-            self._warn(
-                TYPE_UNSUPPORTED.diagnostic(
-                    f"service {service.name} is not available in ROS 2, which has no type "
-                    f"{service.type}",
-                    values={"service": service.name, "type": service.type},
-                )
-            )
-            return False
-        return True
+    def _is_known(self, kind: str, one: TopicInfo | Service, find: Callable[[str], object]) -> bool:
+        return not is_ros1_only(one.type) and is_available(
+            kind, one.name, one.type, ros="ROS 2", find=find, warn=self._warn
+        )
 
     def _fault(self, error: Exception) -> None:
         self._warn(BRIDGE_FAULT.because("unexpected error in the bridge", error))
@@ -323,30 +266,24 @@ class Ros2Bridge:
 class _Publication:
     """A topic published from the graph to ROS."""
 
-    def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
-        self.told = bridge._as_told(info)
-        """Properties at creation that are visible to others."""
+    def __init__(self, bridge: Ros2Bridge, name: str, type_name: str, qos: Qos, node: str) -> None:
         self._bridge = bridge
-        self._name = info.name
+        self._name = name
         self._faulty = False
         self.tap = Tap(
             bridge._loop,
             bridge._graph,
-            topic=info.name,
-            type_name=info.type,
+            topic=name,
+            type_name=type_name,
             reader=READER,
             ignored=lambda message: message in bridge._arrivals,
             take=self._send,
-            tell=bridge._warn,
+            warn=bridge._warn,
             beyond=lambda: self._outlet.dropped if self._outlet is not None else 0,
         )
         self._outlet: Outlet | None = None
         self._outlet = bridge.middleware.publish(
-            info.name,
-            ros2_type(info.type),
-            profile_of(info.name, info.qos),
-            self._found_readers,
-            node=self.told[2],
+            publisher(name, type_name, qos, node), self._found_readers
         )
 
     def close(self) -> None:
@@ -380,18 +317,16 @@ class _Publication:
 class _Subscription:
     """A topic that the graph receives from ROS."""
 
-    def __init__(self, bridge: Ros2Bridge, info: TopicInfo) -> None:
-        self.type, node = self.told = bridge._as_heard(info)
-        """Properties at creation that are visible to others."""
+    def __init__(self, bridge: Ros2Bridge, name: str, type_name: str, node: str) -> None:
         self._bridge = bridge
-        self._name = info.name
-        self.inlet = bridge.middleware.subscribe(
-            info.name, ros2_type(info.type), DEFAULT, self._take, node=node
-        )
+        self._name = name
+        self._type_name = type_name
+        endpoint = Endpoint(name=name, type=ros2_type(type_name), profile=DEFAULT, node=node)
+        self.close = bridge.middleware.subscribe(endpoint, self._take).close
 
     def _take(self, data: bytes) -> None:
         try:
-            message = decode_cdr(data, self.type)
+            message = decode_cdr(data, self._type_name)
         except GraphError as error:
             self._bridge._warn(
                 MALFORMED_MESSAGE.because(
@@ -401,23 +336,15 @@ class _Subscription:
                 )
             )
             return
-        self._bridge._arrivals.deliver(self._name, self.type, message)
+        self._bridge._arrivals.deliver(self._name, self._type_name, message)
 
 
-class _Offered:
-    """An offered service of the graph."""
-
-    def __init__(self, told: tuple[str, str], closable: Closable) -> None:
-        self.told = told
-        """Type and node of the service, as visible to others."""
-        self.closable = closable
-
-
-def _middleware(rmw: Rmw, loop: Loop, node: str, tell: Callable[[Diagnostic], None]) -> Middleware:
+def _middleware(rmw: Rmw) -> type[Middleware]:
+    # Import only the one that is used.
     if rmw == "zenoh":
         from cartwheel.bridges.ros2.zenoh import Zenoh
 
-        return Zenoh(loop, node=node, namespace="/", tell=tell)
+        return Zenoh
     from cartwheel.bridges.ros2.dds import Dds
 
-    return Dds(loop, node=node, namespace="/", tell=tell)
+    return Dds

@@ -1,21 +1,20 @@
-"""ROS 2 over DDS: names and formats of topics, services and nodes.
+"""ROS 2 over DDS: topics, services and nodes as DDS endpoints.
 
-Source: the design article on topic and service name mapping, rmw_dds_common, rmw_fastrtps,
-rmw_cyclonedds.
+Source: rmw_dds_common, rmw_fastrtps, rmw_cyclonedds.
 """
 
 from __future__ import annotations
 
-import math
 import os
 import re
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
-from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros2.environment import discovery_range, domain_id
-from cartwheel.bridges.ros2.middleware import Profile, Served
+from cartwheel.bridges.loop import Coalesced, Loop
+from cartwheel.bridges.ros2 import names
+from cartwheel.bridges.ros2.middleware import Endpoint, Middleware, Served, ignore
 from cartwheel.codes.wires import (
     CALL_LIMIT,
     DOMAIN_FULL,
@@ -27,11 +26,11 @@ from cartwheel.codes.wires import (
     SLOW_SUBSCRIBER,
     UNRESPONSIVE_SUBSCRIBER,
 )
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Code, Diagnostic
 from cartwheel.messages import encode_cdr, message_class
-from cartwheel.messages.ros2.types import Ros2Type, ros2_type
+from cartwheel.messages.ros2.types import Ros2Service, Ros2Type, ros2_type
 from rtps_lite import discovery, wire
-from rtps_lite.discovery import Endpoint, EndpointQos
+from rtps_lite.discovery import EndpointQos
 from rtps_lite.interface import DomainFullError, LimitWarning, UnknownHostError
 from rtps_lite.participant import Participant
 from rtps_lite.reader import Reader, Taken
@@ -51,35 +50,24 @@ _PENDING = 100
 _HASH = re.compile(rb"typehash=(\w+)", re.ASCII)
 _CALLS = 100
 """Minimum number of responses to keep, so that clients with many requests lose none."""
+_REACH = {
+    "OFF": "to no other participant",
+    "LOCALHOST": "on this computer",
+    "SUBNET": "on the network",
+}
 
 
-class Dds:
-    """A DDS participant with one main node.
+class Dds(Middleware):
+    """A DDS participant with one main node; see `Middleware`."""
 
-    Args:
-        loop: Event loop of the bridge.
-        node: Name of the node.
-        namespace: Namespace of the node.
-        tell: Receives warnings.
-
-    Raises:
-        CartwheelError: A ROS environment variable is invalid, or no port is free.
-    """
-
-    def __init__(
-        self, loop: Loop, *, node: str, namespace: str, tell: Callable[[Diagnostic], None]
-    ) -> None:
-        self.loop = loop
-        self._tell = tell
-        self._name = f"{namespace.rstrip('/')}/{node}"
-        self._domain = domain_id()
-        self._reach = discovery_range()
+    def __init__(self, loop: Loop, node: str, warn: Callable[[Diagnostic], None]) -> None:
+        super().__init__(loop, node, warn)
         try:
             self.participant = Participant(
                 loop,
-                domain=self._domain,
-                reach=self._reach,
-                name=self._name,
+                domain=self.domain,
+                reach=self.reach,
+                name=node,
                 user_data=b"enclave=/;",
                 warn=self._limit_reached,
             )
@@ -95,172 +83,139 @@ class Dds:
                 code=ROS_VARIABLE_INVALID,
                 values={"variable": "ROS_STATIC_PEERS", "value": str(error)},
             ) from None
-        self.on_others: Callable[[], None] = lambda: None
         self._endpoints: dict[Writer | Reader, str] = {}
         """Endpoints, with their nodes."""
         self._info: Writer | None = None
-        self._due = False
+        self._changed = Coalesced(loop, _SOON, self._announce_entities)
         self._closed = False
 
     def _limit_reached(self, warning: LimitWarning) -> None:
-        self._tell(PEER_LIMIT.diagnostic(warning.message, values=warning.values))
+        self.warn(PEER_LIMIT.diagnostic(warning.message, values=warning.values))
 
     @property
     def description(self) -> str:
-        """Description of the middleware and its domain."""
-        where = {
-            "OFF": "to no other participant",
-            "LOCALHOST": "on this computer",
-            "SUBNET": "on the network",
-        }
-        return f"DDS domain {self._domain}, visible {where[self._reach.range]}"
+        """See `Middleware`."""
+        return f"DDS domain {self.domain}, visible {_REACH[self.reach.range]}"
 
     def start(self) -> None:
         """Starts discovery."""
-        self.participant.on_endpoints = self._found_others
-        self.participant.on_misfit = self._found_misfit
+        self.participant.on_endpoints = self._others_changed
+        self.participant.on_misfit = self._report_misfit
         self.participant.start()
         type_ = ros2_type(_ENTITIES)
         self._info = self.participant.writer(
             _NODES,
             type_.dds,
             EndpointQos(transient_local=True, depth=1),
-            user_data=_hash(type_.hash),
+            user_data=_hash(type_),
         )
         self._changed()
 
     def close(self) -> None:
-        """Disconnects."""
+        """See `Middleware`."""
         self._closed = True
         self.participant.close()
 
-    def publish(
-        self,
-        topic: str,
-        type_: Ros2Type,
-        profile: Profile,
-        on_readers: Callable[[bool], None],
-        *,
-        node: str = "",
-    ) -> _Outlet:
+    def publish(self, endpoint: Endpoint, on_readers: Callable[[bool], None] = ignore) -> _Outlet:
         """See `Middleware`."""
+        topic = endpoint.name
         writer = self.participant.writer(
-            f"rt{topic}", type_.dds, _qos(profile), user_data=_hash(type_.hash)
+            names.dds_topic(topic),
+            endpoint.type.dds,
+            endpoint.profile.dds,
+            user_data=_hash(endpoint.type),
         )
         writer.on_readers = lambda: on_readers(bool(writer.proxies))
-        writer.on_drop = lambda: self._tell(
-            SLOW_SUBSCRIBER.diagnostic(
-                f"a node receives {topic} too slowly, so messages to this node are dropped",
-                values={"topic": topic},
-            )
+        writer.on_drop = self._loss(
+            SLOW_SUBSCRIBER,
+            topic,
+            f"a node receives {topic} too slowly, so messages to this node are dropped",
         )
-        writer.on_refusal = lambda: self._tell(
-            NETWORK_FULL.diagnostic(
-                f"the operating system's send buffer is full, so messages on {topic} are dropped",
-                values={"topic": topic},
-            )
+        writer.on_refusal = self._loss(
+            NETWORK_FULL,
+            topic,
+            f"the operating system's send buffer is full, so messages on {topic} are dropped",
         )
-        writer.on_silence = lambda: self._tell(
-            UNRESPONSIVE_SUBSCRIBER.diagnostic(
-                f"a subscriber of {topic} no longer responds, so messages to this subscriber are "
-                "dropped",
-                values={"topic": topic},
-            )
+        writer.on_silence = self._loss(
+            UNRESPONSIVE_SUBSCRIBER,
+            topic,
+            f"a subscriber of {topic} no longer responds, so messages to this subscriber are "
+            "dropped",
         )
         if writer.proxies:
             on_readers(True)
-        self._add(node, writer)
-        return _Outlet(self, writer)
+        return _Outlet(self, endpoint.node, writer)
 
-    def subscribe(
-        self,
-        topic: str,
-        type_: Ros2Type,
-        profile: Profile,
-        take: Callable[[bytes], None],
-        *,
-        node: str = "",
-    ) -> _Inlet:
+    def _loss(self, code: Code, topic: str, message: str) -> Callable[[], None]:
+        return partial(self.warn, code.diagnostic(message, values={"topic": topic}))
+
+    def subscribe(self, endpoint: Endpoint, take: Callable[[bytes], None]) -> _Part:
         """See `Middleware`."""
         reader = self.participant.reader(
-            f"rt{topic}",
-            type_.dds,
-            _qos(profile),
+            names.dds_topic(endpoint.name),
+            endpoint.type.dds,
+            endpoint.profile.dds,
             lambda taken: take(taken.payload),
-            user_data=_hash(type_.hash),
+            user_data=_hash(endpoint.type),
         )
-        self._add(node, reader)
-        return _Inlet(self, reader)
+        return _Part(self, endpoint.node, reader)
 
-    def serve(self, name: str, served: Sequence[Served], *, depth: int, node: str = "") -> _Service:
+    def serve(self, endpoint: Endpoint, versions: Sequence[Served]) -> _Service:
         """See `Middleware`."""
-        qos = EndpointQos(depth=max(depth, _CALLS))
-        return _Service(self, name, served, qos=qos, node=node)
+        return _Service(self, endpoint, versions)
 
     def topics_of_others(self) -> set[str]:
         """See `Middleware`."""
         writers, _ = self.participant.others()
         # Ignore other simulations, because both would stop publishing for each other in turn.
-        return {
-            writer.topic.removeprefix("rt")
-            for writer in writers
-            if writer.topic.startswith("rt/") and not writer.guid.startswith(wire.VENDOR)
-        }
+        others = (each for each in writers if not each.guid.startswith(wire.VENDOR))
+        return {names.topic_of(each.topic) for each in others} - {""}
 
-    def _found_others(self) -> None:
-        self.on_others()
-
-    def _found_misfit(self, ours: Endpoint, other: Endpoint, policy: str) -> None:
+    def _report_misfit(
+        self, ours: discovery.Endpoint, other: discovery.Endpoint, policy: str
+    ) -> None:
         """Reports incompatible endpoints, as ROS nodes do, because no messages arrive."""
-        kind, slash, name = ours.topic.partition("/")
-        if kind == "rt":
-            does, then = (
-                ("reads", "so it receives no messages")
-                if ours.is_writer
-                else ("publishes", "so its messages are not received")
-            )
-        elif kind == "rq":
-            name, does, then = (
-                name.removesuffix("Request"),
-                "calls",
-                ("so its calls get no response"),
-            )
+        name = names.topic_of(ours.topic)
+        if not name:
+            name = names.service_of(ours.topic)
+            does, then = "calls", "so its calls get no response"
+        elif ours.is_writer:
+            does, then = "reads", "so it receives no messages"
         else:
+            does, then = "publishes", "so its messages are not received"
+        if not name:
             return
+        type_ = names.type_of(other.type)
         if not policy:
-            why = f"with type {_plain(other.type)}, but the type here is {_plain(ours.type)}"
+            why = f"with type {type_}, but the type here is {names.type_of(ours.type)}"
         elif ours.is_writer:
             why = f"but requests a stricter QoS than is offered ({policy})"
         else:
             why = f"but offers a weaker QoS than is requested ({policy})"
-        self._tell(
+        self.warn(
             (QOS_INCOMPATIBLE if policy else PEER_TYPE_MISMATCH).diagnostic(
-                f"a node {does} {slash}{name} {why}, {then}",
-                values={"name": f"{slash}{name}", "type": _plain(other.type), "policy": policy},
+                f"a node {does} {name} {why}, {then}",
+                values={"name": name, "type": type_, "policy": policy},
             )
         )
 
-    def _add(self, node: str, *endpoints: Writer | Reader) -> None:
-        self._endpoints.update(dict.fromkeys(endpoints, node or self._name))
+    def add(self, node: str, *endpoints: Writer | Reader) -> None:
+        """Announces endpoints of a node, or of the main node if it is empty."""
+        self._endpoints.update(dict.fromkeys(endpoints, node or self.node))
         self._changed()
 
-    def _remove(self, *endpoints: Writer | Reader) -> None:
+    def remove(self, *endpoints: Writer | Reader) -> None:
+        """Removes endpoints."""
         for endpoint in endpoints:
             if self._endpoints.pop(endpoint, None) is not None:
                 self.participant.remove(endpoint)
         self._changed()
 
-    def _changed(self) -> None:
-        if not self._due:
-            self._due = True
-            self.loop.after(_SOON, self._tell_entities)
-
-    def _tell_entities(self) -> None:
+    def _announce_entities(self) -> None:
         """Publishes the endpoints of each node, for ``ros2 node info``."""
-        self._due = False
         if self._info is None or self._closed:
             return
-        nodes: dict[str, list[Writer | Reader]] = {self._name: []}
+        nodes: dict[str, list[Writer | Reader]] = {self.node: []}
         for endpoint, node in self._endpoints.items():
             nodes.setdefault(node, []).append(endpoint)
         info = message_class(_ENTITIES)(
@@ -270,69 +225,54 @@ class Dds:
         self._info.write(encode_cdr(info))
 
 
-class _Outlet:
+class _Part:
+    """A topic, a subscription or a service, with its endpoints."""
+
+    def __init__(self, dds: Dds, node: str, *endpoints: Writer | Reader) -> None:
+        self._dds = dds
+        self._all = endpoints
+        dds.add(node, *endpoints)
+
+    def close(self) -> None:
+        self._dds.remove(*self._all)
+
+
+class _Outlet(_Part):
     """See `middleware.Outlet`."""
 
-    def __init__(self, dds: Dds, writer: Writer) -> None:
-        self._dds = dds
+    def __init__(self, dds: Dds, node: str, writer: Writer) -> None:
+        super().__init__(dds, node, writer)
         self.writer = writer
+        self.send = writer.write
 
     @property
     def dropped(self) -> int:
         return self.writer.dropped
 
-    def send(self, payload: bytes) -> None:
-        self.writer.write(payload)
 
-    def close(self) -> None:
-        self._dds._remove(self.writer)
-
-
-class _Inlet:
-    """See `middleware.Closable`."""
-
-    def __init__(self, dds: Dds, reader: Reader) -> None:
-        self._dds = dds
-        self.reader = reader
-
-    def close(self) -> None:
-        self._dds._remove(self.reader)
-
-
-class _Service:
+class _Service(_Part):
     """A service: receives requests and sends responses to the client.
 
     A response identifies its request in one of two ways: rmw_fastrtps sends the identifier in
     inline parameters, rmw_cyclonedds inside the payload. Each client receives its own form.
     """
 
-    def __init__(
-        self,
-        dds: Dds,
-        name: str,
-        served: Sequence[Served],
-        *,
-        qos: EndpointQos,
-        node: str,
-    ) -> None:
-        self._dds = dds
+    def __init__(self, dds: Dds, endpoint: Endpoint, versions: Sequence[Served]) -> None:
         self._loop = dds.loop
-        self._served = served
-        self._name = name
+        self._served = versions
+        self._name = name = endpoint.name
         self._pending = 0
-        type_ = served[0].type
+        type_ = versions[0].type
         identity = ".".join(f"{byte:02x}" for byte in os.urandom(16))
-        user_data = f"serviceid={identity};".encode() + _hash(type_.hash)
+        user_data = f"serviceid={identity};".encode() + _hash(type_)
+        qos = EndpointQos(depth=max(endpoint.profile.depth, _CALLS))
         self._writer = dds.participant.writer(
-            f"rr{name}Reply", type_.dds_response, qos, user_data=user_data
+            names.dds_response(name), type_.dds_response, qos, user_data=user_data
         )
         self._reader = dds.participant.reader(
-            f"rq{name}Request", type_.dds_request, qos, self._take, user_data=user_data
+            names.dds_request(name), type_.dds_request, qos, self._take, user_data=user_data
         )
-        dds._add(node, self._writer, self._reader)
-
-    def close(self) -> None:
-        self._dds._remove(self._writer, self._reader)
+        super().__init__(dds, endpoint.node, self._writer, self._reader)
 
     def _take(self, taken: Taken, patience: float = _PATIENCE) -> None:
         readers = self._readers_of(taken.writer[:12])
@@ -377,8 +317,8 @@ class _Service:
         """
         if len(self._served) == 1 or writer not in self._reader.proxies:
             return self._served[:1]
-        told = [self._reader.proxies[writer].user_data, *(each.user_data for each in readers)]
-        hashes = {found[1].decode() for data in told if (found := _HASH.search(data))}
+        all_data = [self._reader.proxies[writer].user_data, *(each.user_data for each in readers)]
+        hashes = {found[1].decode() for data in all_data if (found := _HASH.search(data))}
         fitting = [each for each in self._served if all(map(each.is_of, hashes))]
         return fitting or self._served[:1]
 
@@ -394,7 +334,7 @@ class _Service:
     def _again(self, function: Callable[[], None]) -> None:
         """Retries soon, unless too many retries are pending."""
         if self._pending >= _PENDING:
-            self._dds._tell(
+            self._dds.warn(
                 CALL_LIMIT.diagnostic(
                     f"more than {_PENDING} responses of {self._name} are waiting for DDS "
                     "to discover the clients, so one is dropped",
@@ -411,31 +351,17 @@ class _Service:
         self._loop.after(_PAUSE, run)
 
 
-def _qos(profile: Profile) -> EndpointQos:
-    return EndpointQos(
-        reliable=profile.reliable,
-        transient_local=profile.transient_local,
-        depth=profile.depth,
-        lifespan=profile.lifespan or math.inf,
-    )
-
-
 def _is_reader(guid: Guid) -> bool:
     """Whether an endpoint is a reader, according to the lower bits of its last byte."""
     return guid[15] & 0x3F in (0x04, 0x07)
 
 
-def _plain(dds: str) -> str:
-    """ROS name of a type, truncated in case a malicious peer sent it."""
-    return dds.replace("::dds_::", "::").replace("::", "/").removesuffix("_")[:100]
-
-
-def _hash(value: str) -> bytes:
-    return f"typehash={value};".encode()
+def _hash(type_: Ros2Type | Ros2Service) -> bytes:
+    return f"typehash={type_.hash};".encode()
 
 
 def _node_info(node: str, endpoints: Sequence[Writer | Reader]) -> object:
-    namespace, _, name = node.rpartition("/")
+    namespace, name = names.split_node(node)
     return message_class("rmw_dds_common/msg/NodeEntitiesInfo")(
         node_namespace=namespace or "/",
         node_name=name,

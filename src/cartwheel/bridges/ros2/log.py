@@ -6,10 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.loop import Loop
-from cartwheel.bridges.ros2.middleware import Middleware, Outlet, profile_of
+from cartwheel.bridges.ros2.middleware import Middleware, Outlet, publisher
 from cartwheel.errors import Diagnostic
 from cartwheel.messages import encode_cdr, message_class, stamp
-from cartwheel.messages.ros2.types import ros2_type
 
 TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
 _LEVELS = {"info": 20, "warning": 30, "error": 40}
@@ -32,9 +31,7 @@ class Log:
 
     def begin(self, middleware: Middleware) -> None:
         """Advertises the topic. Call it on the loop's thread."""
-        self._outlet = middleware.publish(
-            TOPIC, ros2_type(TYPE), profile_of(TOPIC, "latched"), lambda _: None
-        )
+        self._outlet = middleware.publish(publisher(TOPIC, TYPE, "latched"))
 
     def write(self, diagnostic: Diagnostic) -> None:
         """Logs a diagnostic. Callable on any thread."""

@@ -1,15 +1,23 @@
-"""Interface of ROS 2 middlewares for the bridge."""
+"""The interface through which the bridge uses DDS or Zenoh."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from cartwheel.errors import GraphError
+from cartwheel.bridges.loop import Coalesced, Loop
+from cartwheel.bridges.mirror import Closable
+from cartwheel.bridges.ros2.environment import discovery_range, domain_id
+from cartwheel.bridges.ros2.qos import Profile, profile_of
+from cartwheel.errors import Diagnostic, GraphError
 from cartwheel.graph import Qos
 from cartwheel.messages import decode_cdr, encode_cdr
-from cartwheel.messages.ros2.types import Ros2Service, Ros2Type
+from cartwheel.messages.ros2.types import Ros2Service, Ros2Type, ros2_type
+
+_GATHER = 0.03
+"""Delay in s during which changes of other nodes are collected."""
 
 Reply = Callable[[bytes], None]
 """Sends a response: CDR with encapsulation."""
@@ -18,39 +26,26 @@ Answer = Callable[[bytes, Reply], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Profile:
-    """ROS 2 QoS settings that differ between topics."""
+class Endpoint:
+    """A publisher, a subscription or a service of a ROS 2 node."""
 
-    reliable: bool = True
-    transient_local: bool = False
-    depth: int = 10
-    lifespan: int = 0
-    """Time in s after which a message expires; 0 means never."""
-
-
-LATCHED = Profile(transient_local=True, depth=1)
-SENSOR = Profile(reliable=False, depth=5)
-DEFAULT = Profile()
-CALLS, PARAMETER_CALLS = 10, 1000
-"""Queue depths of services, and of parameter services. Source: rmw's qos_profiles.h."""
-_BY_TOPIC = {
-    "/tf": Profile(depth=100),
-    "/tf_static": LATCHED,
-    "/robot_description": LATCHED,
-    "/rosout": Profile(transient_local=True, depth=1000, lifespan=10),
-    "/parameter_events": Profile(depth=1000),
-}
+    name: str
+    """Name of the topic or service."""
+    type: Ros2Type | Ros2Service
+    profile: Profile
+    node: str = ""
+    """Full name of the node; empty for the main node."""
 
 
-def profile_of(topic: str, qos: Qos) -> Profile:
-    """QoS of a topic in the graph.
+def publisher(topic: str, type_name: str, qos: Qos = "default", node: str = "") -> Endpoint:
+    """A publisher with the QoS that ROS 2 uses for the topic; see `profile_of`.
 
-    Source: rmw's ``qos_profile_sensor_data``, tf2_ros, robot_state_publisher, rcl's rosout.
+    Raises:
+        UnknownNameError: ROS 2 does not have this message type.
     """
-    found = _BY_TOPIC.get(topic)
-    if found is not None:
-        return found
-    return {"latched": LATCHED, "sensor": SENSOR, "default": DEFAULT}[qos]
+    return Endpoint(
+        name=topic, type=ros2_type(type_name), profile=profile_of(topic, qos), node=node
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +68,7 @@ class Served:
         return hash_ in (self.type.hash, self.type.request_hash, self.type.response_hash)
 
 
-class Outlet(Protocol):
+class Outlet(Closable, Protocol):
     """A published topic."""
 
     @property
@@ -83,72 +78,72 @@ class Outlet(Protocol):
     def send(self, payload: bytes) -> None:
         """Sends a CDR message to all subscribers."""
 
-    def close(self) -> None:
-        """Removes the topic."""
+
+def ignore(_: bool) -> None:
+    """Does nothing when the first subscriber appears or the last one disappears."""
 
 
-class Closable(Protocol):
-    """A subscription or service."""
+class Middleware(ABC):
+    """DDS or Zenoh. Used on the loop's thread.
 
-    def close(self) -> None:
-        """Removes the subscription or service."""
+    Args:
+        loop: Event loop of the bridge.
+        node: Full name of the main node.
+        warn: Receives warnings.
 
+    Raises:
+        CartwheelError: A ROS environment variable is invalid, or the middleware is not available.
+    """
 
-class Middleware(Protocol):
-    """DDS or Zenoh. Used on the loop's thread."""
+    def __init__(self, loop: Loop, node: str, warn: Callable[[Diagnostic], None]) -> None:
+        self.loop = loop
+        self.node = node
+        self.warn = warn
+        self.domain = domain_id()
+        self.reach = discovery_range()
+        self.on_others: Callable[[], None] = lambda: None
+        """Called when the endpoints of other nodes have changed."""
+        self._others_changed = Coalesced(loop, _GATHER, self._notify_of_others)
+
+    def _notify_of_others(self) -> None:
+        self.on_others()
 
     @property
+    @abstractmethod
     def description(self) -> str:
         """Description of the middleware and its domain, for the user."""
 
+    @abstractmethod
     def start(self) -> None:
         """Connects to other nodes."""
 
+    @abstractmethod
     def close(self) -> None:
         """Disconnects."""
 
-    def publish(
-        self,
-        topic: str,
-        type_: Ros2Type,
-        profile: Profile,
-        on_readers: Callable[[bool], None],
-        *,
-        node: str = "",
-    ) -> Outlet:
+    @abstractmethod
+    def publish(self, endpoint: Endpoint, on_readers: Callable[[bool], None] = ignore) -> Outlet:
         """Advertises a topic.
 
         Args:
-            topic: Topic name.
-            type_: Message type.
-            profile: QoS of the topic.
+            endpoint: Topic, message type and node.
             on_readers: Called when the first subscriber appears and when the last one disappears.
-            node: Full name of the publishing node; empty for the main node.
         """
 
-    def subscribe(
-        self,
-        topic: str,
-        type_: Ros2Type,
-        profile: Profile,
-        take: Callable[[bytes], None],
-        *,
-        node: str = "",
-    ) -> Closable:
-        """Subscribes to a topic; see `publish`."""
+    @abstractmethod
+    def subscribe(self, endpoint: Endpoint, take: Callable[[bytes], None]) -> Closable:
+        """Subscribes to a topic, and calls `take` with each CDR message."""
 
-    def serve(self, name: str, served: Sequence[Served], *, depth: int, node: str = "") -> Closable:
+    @abstractmethod
+    def serve(self, endpoint: Endpoint, versions: Sequence[Served]) -> Closable:
         """Offers a service.
 
         Args:
-            name: Service name.
-            served: Type and handler, followed by older versions that clients may use.
-            depth: Queue depth for requests, and for responses.
-            node: See `publish`.
+            endpoint: Service, newest type and node. The depth of its profile is that of the queue
+                for requests, and of the queue for responses.
+            versions: Newest type with its handler, followed by older versions that clients may use.
         """
 
+    @abstractmethod
     def topics_of_others(self) -> set[str]:
         """Topics that other nodes publish, without those of other simulations."""
-
-    on_others: Callable[[], None]
-    """Called when the endpoints of other nodes change."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from cartwheel.bridges.mirror import Closable
 from cartwheel.bridges.ros2 import log, parameters
-from cartwheel.bridges.ros2.middleware import Closable, Middleware, profile_of
+from cartwheel.bridges.ros2.middleware import Middleware, publisher
 from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE, get_type_description
-from cartwheel.messages.ros2.types import ros2_type
 
 
 class OwnNode:
@@ -22,13 +22,8 @@ class OwnNode:
 
     def __init__(self, middleware: Middleware, offers: Services, name: str) -> None:
         self._parts: list[Closable] = [
-            middleware.publish(
-                topic, ros2_type(kind), profile_of(topic, "default"), lambda _: None, node=name
-            )
-            for topic, kind in (
-                (log.TOPIC, log.TYPE),
-                (parameters.EVENTS, parameters.EVENT),
-            )
+            middleware.publish(publisher(topic, kind, node=name))
+            for topic, kind in ((log.TOPIC, log.TYPE), (parameters.EVENTS, parameters.EVENT))
         ]
         self._parts.append(
             offers.offer(f"{name}/get_type_description", TYPE, get_type_description, node=name)

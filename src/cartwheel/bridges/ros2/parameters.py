@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.bridges.ros2.middleware import Closable, Middleware, Outlet, profile_of
+from cartwheel.bridges.mirror import Closable
+from cartwheel.bridges.ros2.middleware import Middleware, Outlet, publisher
 from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
 from cartwheel.messages import encode_cdr, message_class, service_classes, stamp, zero
@@ -19,7 +20,6 @@ from cartwheel.messages.ros2.parameters import (
     parameter_type,
     parameter_value,
 )
-from cartwheel.messages.ros2.types import ros2_type
 
 Value = bool | int | float | str
 Offer = Callable[[str, str, Callable[[Any], Any]], Closable]
@@ -58,17 +58,15 @@ class NodeParameters:
         self._time_ns = time_ns
         self._parameters = {one.name: one for one in parameters}
         self._events: Outlet | None = None
-        self._told: dict[str, Value] = {}
+        self._published: dict[str, Value] = {}
         """Values by name, as last published."""
         self._settling: dict[str, int] = {}
         """Remaining checks until a new value must have taken effect."""
 
     def begin(self, middleware: Middleware, offer: Offer) -> None:
         """Offers the services and the topic. Call it on the loop's thread."""
-        self._told = {name: one.get() for name, one in self._parameters.items()}
-        self._events = middleware.publish(
-            EVENTS, ros2_type(EVENT), profile_of(EVENTS, "default"), lambda _: None
-        )
+        self._published = {name: one.get() for name, one in self._parameters.items()}
+        self._events = middleware.publish(publisher(EVENTS, EVENT))
         for name, type_name, handler in (
             ("describe_parameters", "DescribeParameters", self._describe),
             ("get_parameter_types", "GetParameterTypes", self._types),
@@ -85,19 +83,19 @@ class NodeParameters:
         for name, one in self._parameters.items():
             value = one.get()
             left = self._settling.pop(name, 0)
-            if value == self._told[name]:
+            if value == self._published[name]:
                 continue
             if left:
                 self._settling[name] = left - 1
                 continue
-            self._told[name] = value
+            self._published[name] = value
             changed.append(
                 message_class("rcl_interfaces/msg/Parameter")(
                     name=name, value=parameter_value(value)
                 )
             )
         if changed:
-            self._tell(changed)
+            self._publish(changed)
 
     def _describe(self, request: Any) -> Any:
         descriptors = []
@@ -153,8 +151,8 @@ class NodeParameters:
                 known.set(before)
             return result(successful=False, reason=error.message)
         for known, value in checked:
-            self._told[known.name], self._settling[known.name] = value, _SETTLING
-        self._tell(given)
+            self._published[known.name], self._settling[known.name] = value, _SETTLING
+        self._publish(given)
         return result(successful=True, reason="")
 
     def _checked(self, given: Any) -> tuple[Parameter, Value]:
@@ -183,7 +181,7 @@ class NodeParameters:
             values={"parameter": given.name, "type": _NAMES[wanted]},
         )
 
-    def _tell(self, changed: Sequence[Any]) -> None:
+    def _publish(self, changed: Sequence[Any]) -> None:
         if self._events is None:
             return
         event = zero(EVENT)

@@ -6,33 +6,55 @@ Source: rmw_zenoh's design document.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+import itertools
 from typing import Any
 
-from cartwheel.bridges.ros2.middleware import Profile
-
-_LONGEST_KEY = 4096
-"""Maximum length in characters. The names of a type, a topic and a node have at most 255 each."""
-_PARTS = 10
-"""Minimum number of parts in an endpoint's key."""
+from cartwheel.bridges.ros2 import names
+from cartwheel.bridges.ros2.middleware import Endpoint
 
 
-class NodeToken:
-    """A node, declared while it has endpoints.
+class Tokens:
+    """The tokens of a session. The main node exists also without endpoints.
 
     Args:
         session: Session of Zenoh.
-        lead: Prefix of the token's key.
-        number: Number of the node in its session.
-        name: Full name, with namespace.
+        domain: ROS domain ID.
+        node: Full name of the main node.
     """
 
-    def __init__(self, session: Any, lead: str, number: int, name: str) -> None:
-        self.session = session
-        self.lead = lead
+    def __init__(self, session: Any, domain: int, node: str) -> None:
+        self._session = session
+        self.session_id = str(session.zid())
+        self.prefix = names.token_prefix(domain, self.session_id)
+        self._main = node
+        self._numbers = itertools.count(1)
+        self._nodes = {node: _NodeToken(self, 0, node)}
+        self._nodes[node].enter()
+
+    def add(self, kind: str, endpoint: Endpoint) -> Token:
+        """Declares an endpoint to other nodes, and its node with the first endpoint.
+
+        Args:
+            kind: MP and MS for publishers and subscriptions, SS for services.
+            endpoint: The endpoint.
+        """
+        node = endpoint.node or self._main
+        if node not in self._nodes:
+            self._nodes[node] = _NodeToken(self, next(self._numbers), node)
+        return Token(self._nodes[node], next(self._numbers), kind, endpoint)
+
+    def declare(self, key: str) -> Any:
+        """Declares a token of Zenoh, which exists until its `undeclare`."""
+        return self._session.liveliness().declare_token(key)
+
+
+class _NodeToken:
+    """A node, declared while it has endpoints."""
+
+    def __init__(self, tokens: Tokens, number: int, name: str) -> None:
+        self.tokens = tokens
         self.number = number
         self.name = name
-        self._key = f"{lead}/{number}/{number}/NN/%/{_mangled_node(name)}"
         self._token: Any = None
         self._endpoints = 0
 
@@ -40,7 +62,8 @@ class NodeToken:
         """Counts a new endpoint, and declares the node if it is the first."""
         self._endpoints += 1
         if self._endpoints == 1:
-            self._token = self.session.liveliness().declare_token(self._key)
+            key = names.node_token(self.tokens.prefix, self.number, self.name)
+            self._token = self.tokens.declare(key)
 
     def leave(self) -> None:
         """Removes an endpoint, and undeclares the node if it was the last."""
@@ -50,74 +73,19 @@ class NodeToken:
 
 
 class Token:
-    """An endpoint, declared until `undeclare`.
+    """An endpoint, declared until `undeclare`. Created by `Tokens.add`."""
 
-    Args:
-        node: Node of the endpoint.
-        number: Number of the endpoint in its session.
-        kind: MP and MS for topics, SS and SC for services.
-        name: Name of the topic or service.
-        type_: DDS name of the type, and its hash.
-        profile: QoS of the endpoint.
-    """
-
-    def __init__(
-        self,
-        node: NodeToken,
-        number: int,
-        *,
-        kind: str,
-        name: str,
-        type_: tuple[str, str],
-        profile: Profile,
-    ) -> None:
-        dds, hash_ = type_
-        key = (
-            f"{node.lead}/{node.number}/{number}/{kind}/%/{_mangled_node(node.name)}/"
-            f"{_mangled(name)}/{dds}/{hash_}/{_qos(profile)}"
+    def __init__(self, node: _NodeToken, number: int, kind: str, endpoint: Endpoint) -> None:
+        key = names.endpoint_token(
+            node.tokens.prefix, (node.number, node.name), number, kind, endpoint
         )
         self._node = node
         self.identity = hashlib.md5(key.encode(), usedforsecurity=False).digest()
         """Identifier of the endpoint."""
         node.enter()
-        self._token = node.session.liveliness().declare_token(key)
+        self._token = node.tokens.declare(key)
 
     def undeclare(self) -> None:
         """Undeclares the endpoint."""
         self._token.undeclare()
         self._node.leave()
-
-
-@dataclass(frozen=True, slots=True)
-class Published:
-    """A topic with a publisher."""
-
-    session: str
-    node: str
-    """Node name without its namespace."""
-    topic: str
-
-
-def published(key: str) -> Published | None:
-    """Decodes a publisher's token. Returns None for other tokens."""
-    parts = key.split("/")
-    if len(key) > _LONGEST_KEY or len(parts) < _PARTS or parts[5] != "MP":
-        return None
-    return Published(session=parts[2], node=parts[8], topic=parts[9].replace("%", "/"))
-
-
-def _mangled(name: str) -> str:
-    return name.replace("/", "%") or "%"
-
-
-def _mangled_node(node: str) -> str:
-    namespace, _, name = node.rpartition("/")
-    return f"{_mangled(namespace)}/{name}"
-
-
-def _qos(profile: Profile) -> str:
-    """QoS as in rmw_zenoh, which omits default values."""
-    reliability = "" if profile.reliable else "2"
-    durability = "1" if profile.transient_local else ""
-    lifespan = f"{profile.lifespan},0" if profile.lifespan else ","
-    return f"{reliability}:{durability}:,{profile.depth}:,:{lifespan}:,,"
