@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cartwheel.simulation.clock import NANOSECONDS, Beat
+from cartwheel.simulation.clock import NANOSECONDS, Ticks
 
 
 class Periodic:
@@ -18,7 +18,7 @@ class Periodic:
         period = (
             Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
         )
-        self._multiples = Beat(max(Fraction(period), Fraction(1)))
+        self._multiples = Ticks(max(Fraction(period), Fraction(1)))
         self._due = 0
 
     def start(self, time_ns: int) -> None:

@@ -76,7 +76,7 @@ class Task:
         return max(self.period_ns / step_ns, Fraction(1))
 
 
-class Beat:
+class Ticks:
     """The steps at which tasks with one period are due: ⌈k period - offset⌉ for k = 0, 1, 2 …
 
     Args:
@@ -117,10 +117,10 @@ class Schedule:
         ordered = sorted(tasks, key=lambda task: task.order)
         self._tasks = [(task, task.period(step_ns)) for task in ordered]
         offset = Fraction(origin_ns, step_ns)
-        self._beats = [
-            Beat(period, offset) for period in {period: None for _, period in self._tasks}
+        self._ticks = [
+            Ticks(period, offset) for period in {period: None for _, period in self._tasks}
         ]
-        self._cycle = math.lcm(*(beat.cycle for beat in self._beats))
+        self._cycle = math.lcm(*(ticks.cycle for ticks in self._ticks))
         self._met: dict[int, tuple[tuple[Task, ...], int]] = {}
         """Cache by step in the cycle: due tasks, and the number of steps to the next due tasks."""
         self._together: dict[int, tuple[Task, ...]] = {}
@@ -140,14 +140,14 @@ class Schedule:
 
     def _look(self, step: int) -> tuple[tuple[Task, ...], int]:
         due, bit, upcoming = 0, 1, step + _NEVER
-        for beat in self._beats:
-            if beat.due(step) == step:
+        for ticks in self._ticks:
+            if ticks.due(step) == step:
                 due |= bit
-            upcoming = min(upcoming, beat.due(step + 1))
+            upcoming = min(upcoming, ticks.due(step + 1))
             bit <<= 1
         tasks = self._together.get(due)
         if tasks is None:
-            periods = {beat.period for i, beat in enumerate(self._beats) if due >> i & 1}
+            periods = {ticks.period for i, ticks in enumerate(self._ticks) if due >> i & 1}
             tasks = tuple(task for task, period in self._tasks if period in periods)
             self._together[due] = tasks
         return tasks, upcoming - step
