@@ -26,7 +26,7 @@ class Model:
 
     @pose.setter
     def pose(self, pose: Pose) -> None:
-        with self._world.used() as simulation:
+        with self._world.used(change=True) as simulation:
             simulation.set_pose(self.name, pose)
 
     def joint(self, name: str) -> float:
@@ -44,5 +44,5 @@ class Model:
 
     def delete(self) -> None:
         """Removes the model from the world."""
-        with self._world.used() as simulation:
+        with self._world.used(change=True) as simulation:
             simulation.delete(self.name)

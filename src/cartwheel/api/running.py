@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Self
 
-from cartwheel.assembly.driver import Driver
+from cartwheel.assembly.driver import Driver, uninterrupted
 from cartwheel.assembly.turns import Turns
 from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError
@@ -84,20 +84,24 @@ class RunningWorld:
             raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
 
     @contextlib.contextmanager
-    def used(self) -> Iterator[Simulation]:
+    def used(self, *, change: bool = False) -> Iterator[Simulation]:
         """Exclusive access to the simulation for this thread.
+
+        Args:
+            change: Whether the block changes the models. Ctrl-C then takes effect after the block.
 
         Raises:
             SimulationError: The world is closed, or is connected and belongs to the parent process.
         """
         with self.lock:
             self.check_open()
-            try:
-                yield self.session.simulation
-            finally:
-                if self._connections is not None and not self._running:
-                    self._connections.update()
-                    self._driver.pacer.show()
+            with uninterrupted() if change else contextlib.nullcontext():
+                try:
+                    yield self.session.simulation
+                finally:
+                    if self._connections is not None and not self._running:
+                        self._connections.update()
+                        self._driver.pacer.show()
 
     # -- time
 

@@ -198,7 +198,7 @@ class World(RunningWorld):
         given = any((x, y, z, roll, pitch, yaw))
         pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
         files = [Path(file) for file in _several(controllers)]
-        with self.used():
+        with self.used(change=True):
             spawned = self.session.spawn(
                 robot, name=name, pose=pose, controllers=files, package_path=folders
             )
@@ -383,7 +383,7 @@ class World(RunningWorld):
 
     def reset(self) -> None:
         """Resets simulation time and all models to their initial state."""
-        with self.used() as simulation:
+        with self.used(change=True) as simulation:
             simulation.reset()
 
 

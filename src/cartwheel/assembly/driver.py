@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import FrameType
 
 from cartwheel.assembly.turns import Turns
@@ -89,27 +89,50 @@ class Driver:
 
     @contextlib.contextmanager
     def interruptible(self) -> Iterator[threading.Event]:
-        """Lets Ctrl-C stop the run after the current step; a second Ctrl-C raises at once.
-
-        Programs with their own signal handler, and threads, are not affected.
+        """Lets Ctrl-C stop the run after the current step.
 
         Yields:
             An event that is set after Ctrl-C.
         """
-        pressed = threading.Event()
-        usual = signal.default_int_handler
-        main = threading.current_thread() is threading.main_thread()
-        if not main or signal.getsignal(signal.SIGINT) is not usual:
+        with _delayed_interrupt(self._simulation.stop) as pressed:
             yield pressed
-            return
 
-        def stop(_number: int, _frame: FrameType | None) -> None:
-            signal.signal(signal.SIGINT, usual)
-            pressed.set()
-            self._simulation.stop()
 
-        signal.signal(signal.SIGINT, stop)
-        try:
-            yield pressed
-        finally:
-            signal.signal(signal.SIGINT, usual)
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Completes the block before Ctrl-C raises a KeyboardInterrupt."""
+    pressed = threading.Event()
+    try:
+        with _delayed_interrupt(lambda: None) as pressed:
+            yield
+    finally:
+        if pressed.is_set():
+            raise KeyboardInterrupt
+
+
+@contextlib.contextmanager
+def _delayed_interrupt(action: Callable[[], None]) -> Iterator[threading.Event]:
+    """Calls a function at Ctrl-C; a second Ctrl-C raises at once.
+
+    Programs with their own signal handler, and threads, are not affected.
+
+    Yields:
+        An event that is set after Ctrl-C.
+    """
+    pressed = threading.Event()
+    usual = signal.default_int_handler
+    main = threading.current_thread() is threading.main_thread()
+    if not main or signal.getsignal(signal.SIGINT) is not usual:
+        yield pressed
+        return
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, usual)
+        pressed.set()
+        action()
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        yield pressed
+    finally:
+        signal.signal(signal.SIGINT, usual)
