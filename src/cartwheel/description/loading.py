@@ -97,7 +97,7 @@ def load_world(
             code=codes.WRONG_KIND,
             values={"kind": "model", "name": found.name},
             origin=found.origin,
-            hint='Spawn it into a world, such as the built-in world "empty".',
+            hint='Spawn the model into a world, such as the built-in world "empty".',
         )
     return found
 

@@ -80,7 +80,7 @@ def _is_known(one: Definition) -> bool:
         "process already uses",
         code=MESSAGE_TYPE_IN_USE,
         origin=one.origin,
-        hint="Use a separate process for each workspace, and start a new process after the "
+        hint="Use a separate process for each workspace. Start a new process after the "
         "definition has changed.",
         values={"type": one.name, "file": one.origin.file, "other": known.origin.file},
     )

@@ -81,7 +81,7 @@ class PlayedScene:
                 package_path=self._package_path,
                 reach=Reach(
                     folders=tuple(run_folders(())),
-                    hint=f"Add its folder: {PACKAGE_PATH.given('FOLDER')}",
+                    hint=f"Add the folder of the package: {PACKAGE_PATH.given('FOLDER')}",
                 ),
             )
         except CartwheelError as error:

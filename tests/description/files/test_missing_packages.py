@@ -59,12 +59,12 @@ def test_what_stands_in_a_comment_is_not_named(workspace):
 @pytest.mark.wording
 def test_the_hint_names_them_and_how_to_get_them(workspace, monkeypatch):
     one = missing(workspace, "$(find laser_x)/a.xacro").hint
-    assert "Install it with apt" in one
+    assert "Install the package with apt" in one
     assert "Also missing" not in one
     both = ("$(find laser_x)/a.xacro", "$(find grip_y)/b.xacro")
-    assert "Also missing: grip_y. Install them with apt" in missing(workspace, *both).hint
+    assert "Also missing: grip_y. Install the packages with apt" in missing(workspace, *both).hint
     monkeypatch.setenv("ROS_DISTRO", "noetic")
-    command = "sudo apt install ros-noetic-laser-x ros-noetic-grip-y; or"
+    command = "sudo apt install ros-noetic-laser-x ros-noetic-grip-y. Or"
     assert command in missing(workspace, *both).hint
 
 

@@ -99,7 +99,7 @@ def open_bag(path: Path) -> BagRecording:
             raise RecordingError(
                 f'"{path}" has the unsupported bag version {version}',
                 code=RECORDING_VERSION_UNKNOWN,
-                hint="Convert it to version 2.0 with rosbag fix.",
+                hint="Convert the bag to version 2.0 with rosbag fix.",
                 values={"path": str(path), "version": version},
             )
         try:

@@ -54,7 +54,7 @@ def encoding_for(path: Path, wanted: Encoding | None) -> Encoding:
     if (form == "bag") != (wanted == "ros1") and form != "mcap":
         other = "ROS 2" if form == "bag" else "ROS 1"
         raise RecordingError(
-            f'"{path.name}" does not support {other} messages',
+            f'the recording format of "{path.name}" does not support {other} messages',
             code=ENCODING_UNFIT,
             hint="Use .mcap, which supports both.",
             values={"name": path.name, "encoding": wanted},

@@ -50,14 +50,14 @@ def find_world(name: str, environment: Mapping[str, str] | None = None) -> Path:
         )
     shipped = sorted(f"worlds/{path.name}" for path in (share() / "worlds").glob("*.world"))
     near = meant_one(name, shipped)
-    known = f'Did you mean "{near}"?' if near else f"Cartwheel includes: {', '.join(shipped)}."
+    known = f'Did you mean "{near}"?' if near else f"Bundled worlds: {', '.join(shipped)}."
     searched = ", ".join(str(folder) for folder in folders[:-1])
     raise CartwheelError(
         f'the world "{name}" was not found',
         code=WORLD_NOT_FOUND,
         hint=(
             f"{known} Searched: {searched}. "
-            "Add its folder to GAZEBO_RESOURCE_PATH, or pass the full path."
+            "Add the folder of the world to GAZEBO_RESOURCE_PATH, or pass the full path."
         ),
         values={"world": name, "meant": near},
     )

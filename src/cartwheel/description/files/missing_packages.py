@@ -79,6 +79,6 @@ def advice(
     names = [package, *rest[: _SHOWN - 1]]
     if distribution:
         debian = " ".join(f"ros-{distribution}-{name.replace('_', '-')}" for name in names)
-        return f"{text}Try: sudo apt install {debian}; or clone their sources into the workspace."
-    which = "it" if not rest else "them"
-    return f"{text}Install {which} with apt as ros-<distribution>-<name>, or clone the sources."
+        return f"{text}Run: sudo apt install {debian}. Or clone the sources into the workspace."
+    which = "package" if not rest else "packages"
+    return f"{text}Install the {which} with apt as ros-<distribution>-<name>, or clone the sources."

@@ -160,7 +160,7 @@ class PackageSearch:
         others = () if near else also_missing([self.file] if self.file else [], name, self.package)
         text = (
             f"{hint}Searched: {listed([*roots, share() / 'robots'])}. "
-            f"Source its workspace, or add its folder to the package path."
+            "Source the workspace of the package, or add its folder to the package path."
             f" {advice(name, others, self.environment)}"
         )
         return Advice(near or "", text, others)
@@ -170,7 +170,7 @@ class PackageSearch:
         near = numbers.likely(name, {entry.name for each in folders for entry in folders_in(each)})
         hint = f'Did you mean "{near}"? ' if near else ""
         hint += "Searched: " + listed(folders)
-        hint += ". Add its folder to GAZEBO_MODEL_PATH or to the package path."
+        hint += ". Add the folder of the model to GAZEBO_MODEL_PATH or to the package path."
         return Advice(near or "", hint)
 
 

@@ -231,7 +231,7 @@ class Packages:
                 code=codes.FILE_ON_NETWORK,
                 values={"kind": "file", "name": uri},
                 origin=origin,
-                hint="Download it, and refer to it with model:// or package://.",
+                hint="Download the file, and refer to it with model:// or package://.",
             )
         if scheme == "file":
             yield from self._relative(rest, origin)

@@ -66,7 +66,7 @@ def read_version(root: Node) -> Version:
     if match and (int(match[1]), int(match[2])) < OLDEST:
         raise root.fail(
             f'the SDF version "{text}" is too old: 1.0 to 1.12 are supported',
-            'Convert it with "gz sdf -c" from Gazebo Classic.',
+            'Convert the file with "gz sdf -c" from Gazebo Classic.',
             code=SDF_VERSION,
             values={"stated": text},
         )

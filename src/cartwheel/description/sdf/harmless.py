@@ -38,7 +38,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("limit", "dissipation"): _STOP,
     ("limit", "stiffness"): _STOP,
     ("link", "acceleration"): _STATE,
-    ("link", "static"): "it belongs in the <model>",
+    ("link", "static"): "it must be in the <model>",
     ("link", "wrench"): _STATE,
     ("material", "ambient"): "surfaces have only a diffuse colour",
     ("material", "double_sided"): _LIGHT,

@@ -148,7 +148,7 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     if kind not in _WITHOUT_AXIS and axis is None:
         ctx.report(
             tags.DEFAULT_USED.diagnostic(
-                f'joint "{name}" has no <axis>, so the SDF default, z, is used',
+                f'joint "{name}" has no <axis>, so the default in SDF, z, is used',
                 origin=node.origin,
                 values={"joint": name, "missing": "axis"},
             )

@@ -84,7 +84,7 @@ def read_sdf(
         if model.relative_to:
             ctx.report(
                 tags.NAME_UNKNOWN.diagnostic(
-                    f'model "{model.name}" is placed relative to "{model.relative_to}", '
+                    f'the pose of model "{model.name}" is relative to "{model.relative_to}", '
                     "which exists only in a world",
                     origin=model.origin,
                     severity="warning",

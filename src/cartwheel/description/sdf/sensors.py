@@ -90,7 +90,8 @@ def read_camera(node: Node) -> CameraIntrinsics:
     if width < 1 or height < 1 or width * height > MOST_PIXELS:
         wrong = image.child("width" if width < 1 else "height") if image is not None else None
         raise (wrong or node).fail(
-            f"an image must have 1 x 1 to {MOST_PIXELS:,} pixels (got {width:.12g} x {height:.12g})"
+            f"an image must have at least 1 x 1 and at most {MOST_PIXELS:,} pixels (got "
+            f"{width:.12g} x {height:.12g})"
         )
     if near < NEAREST or far > LARGEST:
         wrong = clip.child("near" if near < NEAREST else "far") if clip is not None else None

@@ -4,7 +4,7 @@ _NOBODY = "no URDF parser supports it"
 _SAFETY = "it configures the safety controller of the PR2"
 _IDENTIFIED = "it is a measured value of the real arm; URDF defines only damping and friction"
 _PLANNER = "it is for a planner"
-_SURFACE = "Gazebo colours and surfaces belong in a <gazebo> tag"
+_SURFACE = "colours and surfaces for Gazebo must be in a <gazebo> tag"
 _OLD = "it is from an early version of URDF"
 
 HARMLESS: dict[tuple[str, str], str] = {
@@ -20,7 +20,7 @@ HARMLESS: dict[tuple[str, str], str] = {
     ("gazebo", "stopKd"): _OLD,
     ("gazebo", "stopKp"): _OLD,
     ("geometry", "@name"): _NOBODY,
-    ("geometry", "material"): "a material belongs next to the geometry",
+    ("geometry", "material"): "a <material> must be next to the <geometry>, not inside it",
     ("inertial", "@name"): _NOBODY,
     ("joint", "anchor"): _OLD,
     ("joint", "calibration"): "it is for the encoder of a real joint",

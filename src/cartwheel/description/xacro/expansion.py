@@ -286,7 +286,8 @@ def _parse(content: bytes | str, file: str, run: Run) -> Document:
     ):
         run.diagnostics.append(
             codes.XACRO_NAMESPACE.diagnostic(
-                "the root element does not declare xmlns:xacro, so ROS xacro rejects the file",
+                "the root element does not declare xmlns:xacro, so the xacro tool of ROS rejects "
+                "the file",
                 origin=root.origin,
                 hint=f"Add {NAMESPACE} to the root element.",
             )

@@ -130,8 +130,8 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
         # As in Gazebo.
         report(
             devices.SCAN_REVERSED.diagnostic(
-                f"<max_angle> {last:g} is below <min_angle> {first:g}, so the first ray "
-                "is at the larger angle",
+                f"<max_angle> ({last:g} rad) is below <min_angle> ({first:g} rad), so the first "
+                "ray is at the larger angle",
                 origin=_place(element, "max_angle"),
                 values={"first": first, "last": last},
             )

@@ -197,7 +197,7 @@ class TypeLibrary:
                         outer,
                         f'the type "{field.type}" of the field "{field.name}" was not found',
                         field.line,
-                        hint=f"Add the folder of its package: {PACKAGE_PATH.given('FOLDER')}",
+                        hint=f"Add the folder of the package: {PACKAGE_PATH.given('FOLDER')}",
                         name=field.type,
                     )
                 for each in found:

@@ -190,7 +190,9 @@ class _Parser:
         kind = self._type(base)
         if longest is not None:
             if kind not in ("string", "wstring"):
-                self._fail(f'only strings have a maximum length, and "{name}" is a {base}')
+                self._fail(
+                    f'only strings can have a maximum length, but "{name}" has the type {base}'
+                )
             self._sign("ros2", f'the maximum length of "{name}"')
         length: int | None = None
         most = 0

@@ -40,5 +40,5 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
                     origin=claim.value.origin,
                     mark=claim.value.text,
                     hint="The two controllers cannot run at the same time. The other controller is "
-                    f"at {first.value.origin}.",
+                    f"defined at {first.value.origin}.",
                 )

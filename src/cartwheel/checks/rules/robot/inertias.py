@@ -76,7 +76,8 @@ def inertia_missing(subject: Subject) -> Iterator[Diagnostic]:
                 instead=_inertial_text(shape_inertia(robot, link), 1.0),
                 place="inside",
                 mark=f'name="{link.name}"',
-                hint="The suggested values are for 1 kg. Scale mass and inertia together.",
+                hint="The suggested values are for 1 kg. For a different mass, multiply the mass "
+                "and the inertia by the same factor.",
             )
 
 

@@ -40,7 +40,7 @@ def joint_link_unknown(subject: Subject) -> Iterator[Diagnostic]:
                     origin=end.origin,
                     instead='<link name="world"/>',
                     mark=link,
-                    hint="Add it to fix the robot to the world.",
+                    hint="Add this link to fix the robot to the world.",
                 )
                 continue
             yield spelling.misspelt(
