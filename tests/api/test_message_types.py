@@ -34,6 +34,12 @@ def test_a_world_knows_the_types_of_its_workspace(tmp_path):
             other.message_class("world_msgs/msg/Load")
 
 
+def test_one_folder_may_be_a_text(tmp_path):
+    write_package(tmp_path / "lone_msgs", {"msg/Load.msg": "float64 load\n"})
+    with World(package_path=str(tmp_path)) as world:
+        assert world.message_class("lone_msgs/Load")(load=3.0).load == 3.0
+
+
 def test_a_spawned_model_brings_the_types_of_its_workspace(tmp_path):
     write_package(tmp_path / "ws" / "src" / "spawned_msgs", {"msg/Load.msg": "float64 load\n"})
     urdf = tmp_path / "ws" / "src" / "crate" / "crate.urdf"

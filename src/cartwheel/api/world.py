@@ -77,7 +77,7 @@ class World(RunningWorld):
         record_topics: str | Sequence[str] = (),
         overwrite: bool = False,
         allow_path: str | Path | Sequence[str | Path] = (),
-        package_path: Sequence[str | Path] = (),
+        package_path: str | Path | Sequence[str | Path] = (),
         host: str = "127.0.0.1",
         allow_origin: str | Sequence[str] = (),
     ) -> None:
@@ -115,7 +115,7 @@ class World(RunningWorld):
                 bridge=[Path(file) for file in _several(bridge)],
                 allow_path=[Path(folder) for folder in _several(allow_path)],
                 plugins=[Path(file) for file in _several(plugins)],
-                package_path=[Path(folder) for folder in package_path],
+                package_path=[Path(folder) for folder in _several(package_path)],
             )
             super().__init__(
                 session,
