@@ -37,8 +37,8 @@ class World(RunningWorld):
         world: ``empty``, the name of another built-in world, a file, or a description.
         seed: Seed for all noise. The same seed and commands give identical results.
         strict: Treat every warning about a file as an error.
-        lenient: Skip plugins that refer to missing parts of their model and report a warning, as in
-            `cartwheel run`. Otherwise `spawn` raises an error.
+        lenient: Skip plugins with invalid topics or missing parts of their model and report a
+            warning, as in `cartwheel run`. Otherwise `spawn` raises an error.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
         plugins: Python files that define plugins. They are executed.
         ros1: Connect to ROS 1; a text is the node's name.

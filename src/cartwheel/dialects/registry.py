@@ -20,7 +20,7 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
-from cartwheel.errors import CartwheelError, StaticModelError, UnknownNameError
+from cartwheel.errors import CartwheelError, GraphError, StaticModelError, UnknownNameError
 from cartwheel.similar_names import meant_one
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
@@ -42,7 +42,8 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     Args:
         part: The model's part of the simulation.
         shared: Objects that all components of the simulation share.
-        lenient: Also skip plugins that refer to an element that the model does not have.
+        lenient: Also skip plugins that refer to an element that the model does not have, or whose
+            topics or services have invalid or mismatched names.
 
     Raises:
         CartwheelError: A plugin's parameters are invalid. Plugins created before it are closed.
@@ -53,7 +54,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
     systems = {short_name(tag.filename) for tag in (*part.world.plugins, *part.description.plugins)}
     in_world = any(model is part.description for model in part.world.models)
-    unknown: _Faults = (UnknownNameError,) if lenient else ()
+    unknown: _Faults = (UnknownNameError, GraphError) if lenient else ()
     more = shared.get(PluginFiles).classes
     try:
         for tag, sensor in pairs:
@@ -104,6 +105,7 @@ def _create(
         return [part.made(lambda: plugin(part, shared, tag, sensor))]
     except CartwheelError as error:
         if not isinstance(error, forgiven):
+            error.origin = error.origin or tag.origin
             raise
         part.report(left_out(tag, error))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
