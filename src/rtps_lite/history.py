@@ -51,30 +51,31 @@ class Sample:
             reader: Entity ID of the receiving reader.
             only: Numbers of the fragments, from 1; None for all.
         """
-        if self.fragments <= 1:
+        prefix, entity = writer[:12], writer[12:]
+        if len(self.payload) <= wire.LARGEST:
             head = wire.data_head(
                 reader=reader,
-                writer=writer[12:],
+                writer=entity,
                 number=self.number,
                 inline=self.inline,
                 size=len(self.payload),
                 keyed=self.keyed,
             )
-            yield wire.message(writer[:12], self.written, head, to=to), self.payload
+            yield wire.message(prefix, self.written, head, to=to), self.payload
             return
         whole = memoryview(self.payload)
         for fragment in range(1, self.fragments + 1) if only is None else sorted(only):
             part = whole[(fragment - 1) * wire.LARGEST : fragment * wire.LARGEST]
             head = wire.fragment_head(
                 reader=reader,
-                writer=writer[12:],
+                writer=entity,
                 number=self.number,
                 inline=self.inline,
                 fragment=fragment,
                 length=len(part),
                 size=len(whole),
             )
-            yield wire.message(writer[:12], self.written, head, to=to), part
+            yield wire.message(prefix, self.written, head, to=to), part
 
 
 class History:

@@ -326,12 +326,13 @@ class Writer:
     def _send_sample(self, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
         prefix, address = proxy.guid[:12], proxy.address
         datagrams = self._datagrams(sample, proxy, reader)
+        size = len(sample.payload)
 
         def lost() -> None:
             self._count_refused(prefix)
 
-        if sample.fragments > 1 or self._outbox.is_sending(self, address):
-            size, depth = len(sample.payload), self.endpoint.qos.depth
+        if size > wire.LARGEST or self._outbox.is_sending(self, address):
+            depth = self.endpoint.qos.depth
             self._outbox.put(self, datagrams, size, address, lost=lost, most=depth)
         else:
             self._outbox.put_between(next(datagrams), address, lost)
