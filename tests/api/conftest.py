@@ -31,8 +31,8 @@ def tidy(isolated: Path) -> Iterator[None]:
     before = set(threading.enumerate())
     yield
     wait_for(lambda: not bridges(), "the end of the bridges")
-    assert list(isolated.rglob("*.json")) == []
     wait_for(lambda: set(threading.enumerate()) <= before, "the end of the threads")
+    assert list(isolated.rglob("*.json")) == []
 
 
 @pytest.fixture

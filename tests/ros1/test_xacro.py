@@ -86,7 +86,8 @@ def test_a_package_that_is_missing_is_named(ros):
         '<xacro:include filename="$(find no_such_package)/b.xacro"/></robot>'
     )
     done = ros.run("xacro", file, status=2)
-    assert 'the package "no_such_package" was not found in ROS_PACKAGE_PATH' in done.stderr
+    assert '"no_such_package"' in done.stderr
+    assert "ROS_PACKAGE_PATH" in done.stderr
 
 
 MODULE = f"""
