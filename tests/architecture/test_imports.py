@@ -153,6 +153,7 @@ FOLDERS = sorted({path.parent for path in FILES if path.parent != SOURCE})
 NESTED_FORMATS = {("urdf", "sdf")}
 """An SDF file may include a URDF file, whose ``<gazebo>`` tags may contain SDF."""
 MOST_FILES = 26
+MOST_LINES = 400
 
 
 def imported_modules(path: Path) -> Iterator[str]:
@@ -191,6 +192,13 @@ def test_the_files_and_folders_of_a_folder_import_each_other_one_way(folder: Pat
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(SOURCE)))
 def test_a_folder_is_small_enough_to_look_through(folder: Path) -> None:
     assert len([path for path in folder.iterdir() if path.name != "__pycache__"]) <= MOST_FILES
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_long_file_says_why_it_is_long(path: Path) -> None:
+    text = path.read_text()
+    reason = "The file is long because" in (ast.get_docstring(ast.parse(text)) or "")
+    assert reason or len(text.splitlines()) <= MOST_LINES
 
 
 def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:

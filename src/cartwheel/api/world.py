@@ -396,6 +396,4 @@ def _port(wanted: bool | int, default: int | None) -> int | None:
 
 def _several(values: T | Sequence[T]) -> list[T]:
     """The items of a sequence. A single text or path is one item, not a sequence of characters."""
-    if isinstance(values, str | Path):
-        return [values]
-    return list(values)
+    return [values] if isinstance(values, str | Path) else list(values)

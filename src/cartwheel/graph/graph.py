@@ -101,7 +101,7 @@ class Graph:
                 topic.subscriptions = ()
                 topic.callbacks = ()
                 topic.latched = None
-                topic.failed = _fail
+                topic.failed = _raise
             self.static_transforms.forget()
         for box in boxes:
             box.close()
@@ -392,12 +392,8 @@ def _at_once(function: Callable[[], None]) -> None:
     function()
 
 
-def _raise(_: Subscription, error: BaseException) -> None:
-    raise error
-
-
-def _fail(_topic: Topic, _callback: Callback, error: BaseException) -> None:
-    raise error
+def _raise(*call: Any) -> None:
+    raise call[-1]
 
 
 def _refuse(_: Callable[[], None]) -> None:
