@@ -12,7 +12,7 @@ from backports import zstd
 from lz4 import frame
 from tests.coded import raises
 
-from cartwheel.bridges.recording import compression, reading
+from cartwheel.bridges.recording import bag_writing, compression, mcap_format, reading
 from cartwheel.bridges.recording.compression import decompress
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.opening import open_recording
@@ -79,6 +79,21 @@ def test_chunks_that_all_overlap_are_refused_where_they_would_fill_memory(tmp_pa
     with raises(RECORDING_DAMAGED) as caught:
         list(recording.messages())
     assert caught.value.values["overlap"] > 1 << 20
+
+
+def test_a_record_without_its_fields_is_damage(tmp_path):
+    """A message record that is shorter than its header, and a bag record with an empty type."""
+    short = mcap_format.record(mcap_format.Op.MESSAGE, b"\1\0\0")
+    (tmp_path / "a.mcap").write_bytes(mcap_format.MAGIC + short)
+    with raises(RECORDING_DAMAGED, byte=20):
+        open_recording(tmp_path / "a.mcap")
+    nothing = bag_writing.record({"op": b""}, b"")
+    empty = bag_writing.record({"op": bytes([bag_writing.BAG_HEADER])}, b"")
+    (tmp_path / "a.bag").write_bytes(bag_writing.MAGIC + nothing)
+    assert open_recording(tmp_path / "a.bag").topics == []
+    (tmp_path / "b.bag").write_bytes(bag_writing.MAGIC + empty)
+    with raises(RECORDING_DAMAGED, byte=len(bag_writing.MAGIC) + len(empty)):
+        open_recording(tmp_path / "b.bag")
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 from collections import defaultdict
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
@@ -17,72 +16,122 @@ from cartwheel.bridges.recording.bag_writing import (
     MESSAGE,
 )
 from cartwheel.bridges.recording.compression import decompress
+from cartwheel.bridges.recording.formats import path_error
 from cartwheel.bridges.recording.reading import (
     Block,
     BlockRecording,
     Bytes,
+    Index,
     Recorded,
     RecordedTopic,
 )
-from cartwheel.codes.recording import RECORDING_DAMAGED, RECORDING_VERSION_UNKNOWN
-from cartwheel.errors import RecordingError
+from cartwheel.codes.recording import RECORDING_VERSION_UNKNOWN
 from cartwheel.messages import type_name
 
-Fields = dict[str, bytes]
+_SECOND = 1_000_000_000
 
 
-@dataclass
 class BagRecording(BlockRecording):
     """A ROS 1 bag."""
 
-    numbers: dict[int, int] = field(default_factory=dict)
-    """Index in `topics`, by connection."""
-
-    def load(self, block: Block) -> list[Recorded]:
-        try:
-            return self._load(block)
-        except (KeyError, struct.error) as error:
-            raise ValueError(f"a record of the bag file is incomplete: {error}") from error
-
-    def _load(self, block: Block) -> list[Recorded]:
-        with self.path.open("rb") as file:
-            file.seek(block.position)
-            source = Bytes(file.read(block.end - block.position))
-        head = fields(source.take(source.number(4)))
-        kind = head.get("compression", b"none").decode(errors="replace")
-        records = Bytes(decompress(source.take(source.number(4)), kind))
-        found = []
-        while records:
-            head = fields(records.take(records.number(4)))
-            data = records.take(records.number(4))
-            op = op_of(head)
-            if op == CONNECTION:
-                self.learn(head, data)
-            elif op == MESSAGE:
-                connection = _u32(head, "conn")
-                if connection not in self.numbers:
-                    raise ValueError(f"a message refers to the unknown connection {connection}")
-                found.append(Recorded(_time(head["time"]), self.numbers[connection], data))
+    def scan(self, file: BinaryIO) -> list[tuple[Block, Index]]:
+        found: list[tuple[Block, Index]] = []
+        while len(head_size := file.read(4)) == 4:
+            begin = file.tell() - 4
+            size = int.from_bytes(head_size, "little")
+            if begin + 8 + size > self.size:
+                break
+            head = _Header(file.read(size))
+            data_size = int.from_bytes(file.read(4), "little")
+            end = file.tell() + data_size
+            if end > self.size:
+                break
+            if head.op == BAG_HEADER:
+                self.complete = head.numbers("index_pos", "<Q")[0] > 0
+            elif head.op == CHUNK_OP:
+                found.append((Block(begin, end), defaultdict(list)))
+            elif head.op == INDEX and found:
+                times = found[-1][1][head.connection]
+                entries = struct.iter_unpack("<III", file.read(data_size))
+                times += [seconds * _SECOND + rest for seconds, rest, _ in entries]
+            elif head.op == CONNECTION:
+                self._learn(head, file.read(data_size))
+            file.seek(end)
         return found
 
-    def learn(self, head: Fields, data: bytes) -> None:
-        """Adds a connection."""
-        connection = _u32(head, "conn")
-        if connection in self.numbers:
+    def load(self, data: bytes) -> list[Recorded]:
+        source = Bytes(data)
+        head = _Header(source.take(source.number(4)))
+        records = Bytes(decompress(source.take(source.number(4)), head.text("compression", "none")))
+        found = []
+        while records:
+            head = _Header(records.take(records.number(4)))
+            data = records.take(records.number(4))
+            if head.op == CONNECTION:
+                self._learn(head, data)
+            elif head.op == MESSAGE:
+                if head.connection not in self.numbers:
+                    raise ValueError(
+                        f"a message refers to the unknown connection {head.connection}"
+                    )
+                seconds, rest = head.numbers("time", "<II")
+                number = self.numbers[head.connection]
+                found.append(Recorded(seconds * _SECOND + rest, number, data))
+        return found
+
+    def _learn(self, head: _Header, data: bytes) -> None:
+        """Adds a connection. A topic has one connection per publisher."""
+        if head.connection in self.numbers:
             return
-        about = {key: value.decode(errors="replace") for key, value in fields(data).items()}
-        self.numbers[connection] = len(self.topics)
+        about = _Header(data)
+        self.numbers[head.connection] = len(self.topics)
         self.topics.append(
             RecordedTopic(
-                name=head.get("topic", b"").decode(errors="replace"),
-                type=type_name(about.get("type", "")),
+                name=head.text("topic"),
+                type=type_name(about.text("type")),
                 encoding="ros1",
                 schema="ros1msg",
-                definition=about.get("message_definition", ""),
-                latched=about.get("latching") == "1",
-                md5=about.get("md5sum", ""),
+                definition=about.text("message_definition"),
+                latched=about.text("latching") == "1",
+                md5=about.text("md5sum"),
             )
         )
+
+
+class _Header(dict[bytes, bytes]):
+    """Fields at the start of a record.
+
+    Raises:
+        ValueError: The data is not a valid header.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        at = 0
+        while at < len(data):
+            begin = at + 4
+            at = begin + int.from_bytes(data[at:begin], "little")
+            name, mark, value = data[begin:at].partition(b"=")
+            if at > len(data):
+                raise ValueError("the data is truncated")
+            if not mark:
+                raise ValueError('a header field of a bag record contains no "="')
+            self[name] = value
+        self.op = int.from_bytes(self.get(b"op", b"")[:1], "little")
+
+    @property
+    def connection(self) -> int:
+        """Number of the connection."""
+        return int(self.numbers("conn", "<I")[0])
+
+    def numbers(self, name: str, form: str) -> tuple[int, ...]:
+        """Numbers in a field, in a format of `struct`."""
+        if name.encode() not in self:
+            raise ValueError(f'a bag record has no field "{name}"')
+        return struct.unpack(form, self[name.encode()])
+
+    def text(self, name: str, default: str = "") -> str:
+        """Text of a field."""
+        return self.get(name.encode(), default.encode()).decode(errors="replace")
 
 
 def open_bag(path: Path) -> BagRecording:
@@ -96,101 +145,12 @@ def open_bag(path: Path) -> BagRecording:
         magic = file.readline(32)
         if magic != MAGIC:
             version = magic.decode(errors="replace").strip()
-            raise RecordingError(
+            raise path_error(
+                RECORDING_VERSION_UNKNOWN,
+                path,
                 f'"{path}" has the unsupported bag version {version}',
-                code=RECORDING_VERSION_UNKNOWN,
                 hint="Convert the bag to version 2.0 with rosbag fix.",
-                values={"path": str(path), "version": version},
+                version=version,
             )
-        try:
-            unclear = _scan(file, recording)
-            if unclear and not recording.complete:
-                # Its index may be truncated.
-                unclear[-1] = (unclear[-1][0], {})
-            for block, times in unclear:
-                _clear_up(recording, block, times)
-        except (ValueError, KeyError, struct.error) as error:
-            raise RecordingError(
-                f'"{path}" is damaged near byte {file.tell()}: {error}',
-                code=RECORDING_DAMAGED,
-                values={"path": str(path), "byte": file.tell()},
-            ) from error
-    # A bag has one connection per publisher of a topic.
+        recording.survey(file)
     return recording
-
-
-def _clear_up(recording: BagRecording, block: Block, times: dict[int, list[int]]) -> None:
-    """Counts the messages in a chunk. Loads the chunk if it has no index or new connections."""
-    if not times or not set(times) <= set(recording.numbers):
-        messages = recording.load(block)
-        seen = defaultdict(list)
-        for message in messages:
-            seen[message.number].append(message.time_ns)
-    else:
-        seen = defaultdict(list, {recording.numbers[c]: found for c, found in times.items()})
-    for number, found in seen.items():
-        recording.topics[number].see(found)
-    every = [time_ns for found in seen.values() for time_ns in found]
-    if every:
-        block.topics = frozenset(seen)
-        block.first_ns, block.last_ns = min(every), max(every)
-        recording.blocks.append(block)
-
-
-def _scan(file: BinaryIO, recording: BagRecording) -> list[tuple[Block, dict[int, list[int]]]]:
-    found: list[tuple[Block, dict[int, list[int]]]] = []
-    while True:
-        begin = file.tell()
-        head_size = file.read(4)
-        if len(head_size) < 4:
-            return found
-        size = struct.unpack("<I", head_size)[0]
-        if begin + 8 + size > recording.size:
-            return found
-        head = fields(file.read(size))
-        data_size = struct.unpack("<I", file.read(4))[0]
-        end = file.tell() + data_size
-        if end > recording.size:
-            return found
-        op = op_of(head)
-        if op == BAG_HEADER:
-            recording.complete = struct.unpack("<Q", head["index_pos"])[0] > 0
-        elif op == CHUNK_OP:
-            found.append((Block(begin, end, 0, 0, frozenset()), defaultdict(list)))
-        elif op == INDEX and found:
-            entries = file.read(data_size)
-            times = found[-1][1][_u32(head, "conn")]
-            times += [_time(entries[i : i + 8]) for i in range(0, len(entries), 12)]
-        elif op == CONNECTION:
-            recording.learn(head, file.read(data_size))
-        file.seek(end)
-
-
-def fields(data: bytes) -> Fields:
-    """Header fields at the start of a record.
-
-    Raises:
-        ValueError: The data is not a valid header.
-    """
-    source = Bytes(data)
-    found = {}
-    while source:
-        name, mark, value = source.take(source.number(4)).partition(b"=")
-        if not mark:
-            raise ValueError('a header field of a bag record contains no "="')
-        found[name.decode(errors="replace")] = value
-    return found
-
-
-def op_of(head: Fields) -> int:
-    """Type of a record."""
-    return head.get("op", b"\0")[0]
-
-
-def _u32(head: Fields, name: str) -> int:
-    return int(struct.unpack("<I", head[name])[0])
-
-
-def _time(data: bytes) -> int:
-    seconds, nanoseconds = struct.unpack("<II", data)
-    return int(seconds) * 1_000_000_000 + int(nanoseconds)

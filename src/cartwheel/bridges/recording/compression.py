@@ -45,18 +45,9 @@ def decompress(data: bytes, kind: str) -> bytes:
         return data
     make, damage = _unpacker(kind)
     try:
-        if kind == "zstd" and _is_stated(data):
-            return bytes(_zstd().decompress(data))
         return _unpacked(data, make)
     except damage as error:
         raise ValueError(str(error)) from error
-
-
-def _is_stated(data: bytes) -> bool:
-    """Whether the data is a single zstd frame with a declared size within the limit."""
-    zstd = _zstd()
-    size = zstd.get_frame_info(data).decompressed_size
-    return size is not None and size <= MOST_BYTES and zstd.get_frame_size(data) == len(data)
 
 
 def _unpacker(kind: str) -> tuple[Callable[[], Any], type[Exception]]:

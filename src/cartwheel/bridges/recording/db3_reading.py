@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from cartwheel.bridges.recording.compression import MOST_BYTES
-from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, is_latched
+from cartwheel.bridges.recording.formats import path_error
+from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording, is_latched
 from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_DAMAGED
-from cartwheel.errors import RecordingError
 from cartwheel.messages import type_name
 
 
-class Db3Recording:
+class Db3Recording(Recording):
     """An SQLite file.
 
     Args:
@@ -24,25 +24,18 @@ class Db3Recording:
         RecordingError: The file is not a ROS 2 bag.
     """
 
-    form = "ROS 2 bag, SQLite"
-
     def __init__(self, path: Path, *, unpack: Callable[[bytes], bytes] = lambda data: data) -> None:
+        super().__init__(form="ROS 2 bag, SQLite", size=path.stat().st_size)
         self.path = path
-        self.size = path.stat().st_size
-        self.topics: list[RecordedTopic] = []
-        self.notes: Mapping[str, str] = {}
-        self.attachments: dict[str, int] = {}
         self._unpack = unpack
         self._numbers: dict[int, int] = {}
         try:
             self._base = self._connect()
             self._survey()
         except (sqlite3.Error, ValueError, OverflowError) as error:
-            raise RecordingError(
-                f'"{path}" is not a ROS 2 bag: {str(error).partition(chr(10))[0]}',
-                code=NOT_A_RECORDING,
-                values={"path": str(path)},
-            ) from error
+            why = str(error).partition("\n")[0]
+            message = f'"{path}" is not a ROS 2 bag: {why}'
+            raise path_error(NOT_A_RECORDING, path, message) from error
 
     def messages(
         self, *, start_ns: int = 0, topics: Collection[int] | None = None
@@ -60,11 +53,8 @@ class Db3Recording:
                     raise ValueError("a row of the messages table has no timestamp or no data")
                 yield Recorded(time_ns, self._numbers[own], self._unpack(data))
         except (sqlite3.Error, ValueError, OverflowError) as error:
-            raise RecordingError(
-                f'"{self.path}" is damaged: {error}',
-                code=RECORDING_DAMAGED,
-                values={"path": str(self.path)},
-            ) from error
+            message = f'"{self.path}" is damaged: {error}'
+            raise path_error(RECORDING_DAMAGED, self.path, message) from error
 
     def close(self) -> None:
         self._base.close()

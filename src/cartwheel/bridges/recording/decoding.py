@@ -10,7 +10,7 @@ from rosbags.interfaces import Nodetype
 
 from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
-from cartwheel.errors import CartwheelError, RecordingError
+from cartwheel.errors import CartwheelError, RecordingError, Value
 from cartwheel.messages import decode_cdr, store
 from cartwheel.messages.fields import FILLER
 from cartwheel.messages.learnt import learnt, recorded, register
@@ -38,12 +38,9 @@ def decoder(topic: RecordedTopic) -> Decode:
             the fields of a known type.
     """
     if topic.encoding not in ("cdr", "ros1"):
-        raise RecordingError(
-            f"the messages on {topic.name} are not ROS messages (encoding: "
-            f"{topic.encoding or 'unknown'})",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={"topic": topic.name, "encoding": topic.encoding, "why": "encoding"},
-        )
+        stated = topic.encoding or "unknown"
+        message = f"the messages on {topic.name} are not ROS messages (encoding: {stated})"
+        raise _unusable(topic, "encoding", message, encoding=topic.encoding)
     kind = topic.type
     try:
         _learn(topic)
@@ -54,28 +51,16 @@ def decoder(topic: RecordedTopic) -> Decode:
             return lambda data: decode_ros1(data, kind)
         kind = _in_graph(kind, topic)
         if kind not in store().types:
-            raise RecordingError(
-                f"{topic.name} has the type {kind}, which is unknown and not defined in the "
-                "recording",
-                code=RECORDED_TYPE_UNUSABLE,
-                values={"topic": topic.name, "type": kind, "why": "unknown"},
-            )
-    except RecordingError:
+            message = f"has the type {kind}, which is unknown and not defined in the recording"
+            raise _unusable(topic, "unknown", f"{topic.name} {message}", type=kind)
+    except (RecordingError, MemoryError):
         raise
     except CartwheelError as error:
-        raise RecordingError(
-            f"the type of {topic.name} cannot be used: {error.message}",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={**error.values, "topic": topic.name, "why": error.code.number},
-        ) from error
-    except MemoryError:
-        raise
+        message = f"the type of {topic.name} cannot be used: {error.message}"
+        raise _unusable(topic, error.code.number, message, **error.values) from error
     except Exception as error:  # rosbags compiles definitions, and detects errors only then
-        raise RecordingError(
-            f"the type definition of {topic.name} cannot be used: {error}",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={"topic": topic.name, "why": "definition"},
-        ) from error
+        message = f"the type definition of {topic.name} cannot be used: {error}"
+        raise _unusable(topic, "definition", message) from error
     return lambda data: decode_cdr(data, kind)
 
 
@@ -86,7 +71,7 @@ def _learn(topic: RecordedTopic) -> None:
     for name, (_, fields) in types.items():
         _check_names(topic, name, fields)
         _check_arrays(topic, name, fields)
-    _check_depth(topic, types)
+    ordered = _nested_first(topic, types)
     ours = store()
     _check_complete(topic, types, ours.fielddefs)
     if topic.encoding == "cdr":
@@ -95,11 +80,11 @@ def _learn(topic: RecordedTopic) -> None:
                 continue
             if name in ours.fielddefs and _plain(_known_fields(name)) != _plain(fields):
                 raise _other_fields(topic, name)
-    new = {name: fields for name, fields in types.items() if name not in ours.fielddefs}
+    new = [name for name in ordered if name not in ours.fielddefs]
     if topic.encoding == "ros1":
         known = ros1_store().fielddefs
         known.update({name: fields for name, fields in types.items() if name not in known})
-    register(recorded(name, new[name]) for name in _nested_first(new))
+    register(recorded(name, types[name]) for name in new)
 
 
 def _known_fields(name: str) -> Any:
@@ -108,8 +93,13 @@ def _known_fields(name: str) -> Any:
     return store().fielddefs[name][1] if known is None else known.fielddefs(hashed=True)[1]
 
 
-def _nested_first(types: dict[str, Any]) -> Iterator[str]:
-    """The names of types in an order in which nested types come first."""
+def _nested_first(topic: RecordedTopic, types: dict[str, Any]) -> list[str]:
+    """The names of types in an order in which nested types come first.
+
+    Raises:
+        RecordingError: A type contains itself.
+    """
+    ordered: list[str] = []
     left = dict(types)
     while left:
         flat = [
@@ -117,9 +107,13 @@ def _nested_first(types: dict[str, Any]) -> Iterator[str]:
             for name, (_, fields) in left.items()
             if not any(used in left for _, used in _elements(fields))
         ]
-        yield from flat
+        if not flat:
+            message = f"{topic.name}: the type {min(left)} contains itself"
+            raise _unusable(topic, "recursive", message, type=min(left))
+        ordered += flat
         for name in flat:
             del left[name]
+    return ordered
 
 
 def _in_graph(kind: str, topic: RecordedTopic) -> str:
@@ -138,30 +132,18 @@ def _in_graph(kind: str, topic: RecordedTopic) -> str:
 def _parsed(topic: RecordedTopic) -> dict[str, Any]:
     from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
-    if len(topic.definition) > _LONGEST:
-        raise RecordingError(
-            f"the type definition of {topic.name} has {len(topic.definition)} characters; the "
-            f"limit is {_LONGEST}",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={"topic": topic.name, "why": "length"},
-        )
-    if topic.schema == "ros2idl" and _has_nested_parentheses(topic.definition):
-        raise RecordingError(
-            f"the type definition of {topic.name} contains nested parentheses",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={"topic": topic.name, "why": "parentheses"},
-        )
+    text, subject = topic.definition, f"the type definition of {topic.name}"
+    if len(text) > _LONGEST:
+        message = f"{subject} has {len(text)} characters; the limit is {_LONGEST}"
+        raise _unusable(topic, "length", message)
+    if topic.schema == "ros2idl" and _has_nested_parentheses(text):
+        raise _unusable(topic, "parentheses", f"{subject} contains nested parentheses")
     try:
         if topic.schema == "ros2idl":
-            return dict(get_types_from_idl(topic.definition))
-        return dict(get_types_from_msg(topic.definition, topic.type))
-    except Exception as error:  # any error of the parser
-        raise RecordingError(
-            # The text of the error contains the whole definition.
-            f"the type definition of {topic.name} cannot be parsed",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={"topic": topic.name, "why": "definition"},
-        ) from error
+            return dict(get_types_from_idl(text))
+        return dict(get_types_from_msg(text, topic.type))
+    except Exception as error:  # Any error of the parser. Its text contains the whole definition.
+        raise _unusable(topic, "definition", f"{subject} cannot be parsed") from error
 
 
 def _has_nested_parentheses(idl: str) -> bool:
@@ -181,11 +163,8 @@ def _check_names(topic: RecordedTopic, name: str, fields: Any) -> None:
     """Rejects invalid names, because rosbags generates Python code that contains them."""
     words = [*name.split("/"), *(field[0] for field in fields)]
     if not all(word.isidentifier() for word in words):
-        raise RecordingError(
-            f"{topic.name}: {name} is not a valid type name, or has an invalid field name",
-            code=RECORDED_TYPE_UNUSABLE,
-            values={"topic": topic.name, "type": name, "why": "name"},
-        )
+        message = f"{topic.name}: {name} is not a valid type name, or has an invalid field name"
+        raise _unusable(topic, "name", message, type=name)
 
 
 def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
@@ -197,29 +176,8 @@ def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
         is_plain = element == Nodetype.BASE and "string" not in about[0]
         most = _MOST_NUMBERS if is_plain else _LONGEST_ARRAY
         if not 0 <= size <= most:
-            raise RecordingError(
-                f"{topic.name}: the length of {name}.{field} must be between 0 and {most} "
-                f"(got {size})",
-                code=RECORDED_TYPE_UNUSABLE,
-                values={"topic": topic.name, "type": name, "field": field, "why": "size"},
-            )
-
-
-def _check_depth(topic: RecordedTopic, types: dict[str, Any]) -> None:
-    """Rejects types that contain themselves."""
-    inner = {
-        name: {about for _, about in _elements(fields) if about in types}
-        for name, (_, fields) in types.items()
-    }
-    while inner:
-        flat = {name for name, others in inner.items() if not others & inner.keys()}
-        if not flat:
-            raise RecordingError(
-                f"{topic.name}: the type {min(inner)} contains itself",
-                code=RECORDED_TYPE_UNUSABLE,
-                values={"topic": topic.name, "type": min(inner), "why": "recursive"},
-            )
-        inner = {name: others for name, others in inner.items() if name not in flat}
+            message = f"the length of {name}.{field} must be between 0 and {most} (got {size})"
+            raise _unusable(topic, "size", f"{topic.name}: {message}", type=name, field=field)
 
 
 def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> None:
@@ -227,11 +185,8 @@ def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> 
     for name, (_, fields) in types.items():
         for _, used in _elements(fields):
             if used not in types and used not in known:
-                raise RecordingError(
-                    f"{topic.name}: {name} has a field of type {used}, which is not defined",
-                    code=RECORDED_TYPE_UNUSABLE,
-                    values={"topic": topic.name, "type": used, "why": "unknown"},
-                )
+                message = f"{name} has a field of type {used}, which is not defined"
+                raise _unusable(topic, "unknown", f"{topic.name}: {message}", type=used)
 
 
 def _elements(fields: Any) -> Iterator[tuple[int, Any]]:
@@ -260,3 +215,8 @@ def _other_fields(topic: RecordedTopic, kind: str) -> RecordingError:
         hint="The recording was made with a different version of this type.",
         values={"topic": topic.name, "type": kind, "why": "fields"},
     )
+
+
+def _unusable(topic: RecordedTopic, why: str, message: str, /, **values: Value) -> RecordingError:
+    values.update(topic=topic.name, why=why)
+    return RecordingError(message, code=RECORDED_TYPE_UNUSABLE, values=values)

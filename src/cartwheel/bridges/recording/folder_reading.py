@@ -3,33 +3,32 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from cartwheel import yaml_text
 from cartwheel.bridges.recording.compression import decompress
 from cartwheel.bridges.recording.db3_reading import Db3Recording
-from cartwheel.bridges.recording.reading import Recorded, RecordedTopic, Recording
+from cartwheel.bridges.recording.formats import path_error
+from cartwheel.bridges.recording.reading import Recorded, Recording
 from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_DAMAGED, RECORDING_UNREADABLE
-from cartwheel.errors import RecordingError
 
 _MOST_METADATA = 1 << 24
 """Maximum size in bytes of ``metadata.yaml``, which contains the QoS of each topic."""
 
 
-class FolderRecording:
+class FolderRecording(Recording):
     """Several files, read as one recording."""
 
     def __init__(self, files: Sequence[Recording], *, complete: bool) -> None:
-        self.form = "ROS 2 bag"
-        self.size = sum(file.size for file in files)
-        self.complete = complete and all(file.complete for file in files)
-        self.topics: list[RecordedTopic] = []
-        self.notes: Mapping[str, str] = {k: v for file in files for k, v in file.notes.items()}
-        self.attachments: dict[str, int] = {
-            k: v for file in files for k, v in file.attachments.items()
-        }
+        super().__init__(
+            form="ROS 2 bag",
+            size=sum(file.size for file in files),
+            complete=complete and all(file.complete for file in files),
+            notes={k: v for file in files for k, v in file.notes.items()},
+            attachments={k: v for file in files for k, v in file.attachments.items()},
+        )
         self._files = files
         self._numbers: list[list[int]] = []
         known: dict[tuple[str, str, str], int] = {}
@@ -88,18 +87,12 @@ def open_folder(path: Path, open_file: Callable[[Path], Recording]) -> Recording
     files = [path / name for name in names if name]
     for file in files:
         if not file.is_file():
-            raise RecordingError(
-                f'the metadata in "{path}" lists "{file.name}", which does not exist',
-                code=RECORDING_UNREADABLE,
-                values={"path": str(path), "file": file.name},
-            )
+            message = f'the metadata in "{path}" lists "{file.name}", which does not exist'
+            raise path_error(RECORDING_UNREADABLE, path, message, file=file.name)
     files = files or sorted([*path.glob("*.mcap"), *path.glob("*.db3")])
     if not files:
-        raise RecordingError(
-            f'"{path}" is not a recording: it contains no .mcap or .db3 file',
-            code=NOT_A_RECORDING,
-            values={"path": str(path)},
-        )
+        message = f'"{path}" is not a recording: it contains no .mcap or .db3 file'
+        raise path_error(NOT_A_RECORDING, path, message)
     unpack: Callable[[bytes], bytes] = lambda data: data  # noqa: E731
     mode, kind = about.get("compression_mode"), about.get("compression_format", "zstd")
     if isinstance(mode, str) and mode.upper() == "MESSAGE" and isinstance(kind, str):
@@ -121,8 +114,6 @@ def _metadata(path: Path) -> dict[str, Any]:
         read = yaml_text.load(yaml_text.read(file, _MOST_METADATA))
     except (yaml.YAMLError, ValueError, OSError) as error:
         what = " ".join(str(error).split())
-        raise RecordingError(
-            f'"{file}" cannot be read: {what}', code=RECORDING_DAMAGED, values={"path": str(file)}
-        ) from error
+        raise path_error(RECORDING_DAMAGED, file, f'"{file}" cannot be read: {what}') from error
     about = read.get("rosbag2_bagfile_information") if isinstance(read, dict) else None
     return about if isinstance(about, dict) else {}

@@ -31,7 +31,6 @@ class FolderWriter:
         self._file = path / f"{path.name}_0.mcap"
         self._mcap = McapWriter(self._file, "ros2", notes=notes, pack=pack)
         self._topics: list[TopicCount] = []
-        self._span: tuple[int, int] | None = None
         self._write_metadata()
 
     @property
@@ -45,11 +44,7 @@ class FolderWriter:
         return self._mcap.add(topic, type_name, latched=latched)
 
     def write(self, channel: int, time_ns: int, message: Any) -> int:
-        size = self._mcap.write(channel, time_ns, message)
-        self._topics[channel].count += 1
-        first, last = self._span or (time_ns, time_ns)
-        self._span = (min(first, time_ns), max(last, time_ns))
-        return size
+        return self._mcap.write(channel, time_ns, message)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         self._mcap.attach(name, media_type, data, time_ns)
@@ -64,18 +59,17 @@ class FolderWriter:
 
     def abandon(self) -> None:
         self._mcap.abandon()
-        for topic, count in zip(self._topics, self._mcap.counts, strict=True):
-            topic.count = count
-        self._span = self._mcap.span
         with suppress(OSError):
             self._write_metadata()
 
     def _write_metadata(self) -> None:
+        for topic, count in zip(self._topics, self._mcap.counts, strict=True):
+            topic.count = count
         about = metadata(
             self._topics,
             storage="mcap",
             file=self._file.name,
-            span=self._span,
+            span=self._mcap.span,
             notes=self._notes,
         )
         new = self.path / "metadata.new.yaml"

@@ -12,7 +12,7 @@ from cartwheel.codes.recording import (
     RECORDING_NAME_INVALID,
     RECORDING_NOT_WRITABLE,
 )
-from cartwheel.errors import RecordingError
+from cartwheel.errors import Code, RecordingError, Value
 from cartwheel.options import OVERWRITE
 
 Encoding = Literal["ros1", "ros2"]
@@ -78,43 +78,32 @@ def check_writable(path: Path, *, overwrite: bool) -> None:
     form_of(path)
     folder = path.parent
     if not folder.is_dir():
-        raise RecordingError(
-            f'the folder "{folder}" does not exist',
-            code=RECORDING_NOT_WRITABLE,
-            hint=f"Create it: mkdir -p {folder}",
-            values={"path": str(folder)},
-        )
+        why, hint = f'the folder "{folder}" does not exist', f"Create it: mkdir -p {folder}"
+        raise path_error(RECORDING_NOT_WRITABLE, folder, why, hint=hint)
     if path.exists() or path.is_symlink():
         if not overwrite:
             raise exists(path)
         if path.is_dir() and not _is_bag2(path):
-            raise RecordingError(
-                f'"{path}" is a folder but not a recording, so it is not replaced',
-                code=RECORDING_NOT_WRITABLE,
-                values={"path": str(path)},
-            )
+            why = f'"{path}" is a folder but not a recording, so it is not replaced'
+            raise path_error(RECORDING_NOT_WRITABLE, path, why)
         if path.is_dir() and form_of(path) != "folder":
-            raise RecordingError(
-                f'"{path}" is a folder, so it is not replaced by a file',
-                code=RECORDING_NOT_WRITABLE,
-                values={"path": str(path)},
-            )
+            why = f'"{path}" is a folder, so it is not replaced by a file'
+            raise path_error(RECORDING_NOT_WRITABLE, path, why)
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise RecordingError(
-            f'the folder "{folder}" is not writable',
-            code=RECORDING_NOT_WRITABLE,
-            values={"path": str(folder)},
-        )
+        raise path_error(RECORDING_NOT_WRITABLE, folder, f'the folder "{folder}" is not writable')
 
 
 def exists(path: Path) -> RecordingError:
     """Error for a path that already exists."""
-    return RecordingError(
-        f'"{path}" already exists',
-        code=RECORDING_EXISTS,
-        hint=f"To replace it: {OVERWRITE.given()}",
-        values={"path": str(path)},
-    )
+    hint = f"To replace it: {OVERWRITE.given()}"
+    return path_error(RECORDING_EXISTS, path, f'"{path}" already exists', hint=hint)
+
+
+def path_error(
+    code: Code, path: Path, message: str, *, hint: str | None = None, **values: Value
+) -> RecordingError:
+    """Error about a file or folder, which is one of its values."""
+    return RecordingError(message, code=code, hint=hint, values={"path": str(path), **values})
 
 
 def reason_of(error: OSError) -> str:

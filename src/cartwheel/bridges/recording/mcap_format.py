@@ -37,8 +37,7 @@ MESSAGE = struct.Struct("<HIQQ")
 
 def text(value: str) -> bytes:
     """Encodes a string."""
-    data = value.encode(errors="surrogateescape")
-    return struct.pack("<I", len(data)) + data
+    return blob(value.encode(errors="surrogateescape"))
 
 
 def blob(data: bytes) -> bytes:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cartwheel.bridges.recording.formats import path_error, reason_of
 from cartwheel.bridges.recording.reading import Recording
 from cartwheel.codes.recording import NOT_A_RECORDING, RECORDING_UNREADABLE
-from cartwheel.errors import RecordingError
 
 
 def open_recording(path: Path | str) -> Recording:
@@ -25,11 +25,8 @@ def open_recording(path: Path | str) -> Recording:
             begin = file.read(16)
         return _opened(path, begin)
     except OSError as error:
-        raise RecordingError(
-            f'"{path}" cannot be read: {error.strerror or error}',
-            code=RECORDING_UNREADABLE,
-            values={"path": str(path)},
-        ) from error
+        message = f'"{path}" cannot be read: {reason_of(error)}'
+        raise path_error(RECORDING_UNREADABLE, path, message) from error
 
 
 def _opened(path: Path, begin: bytes) -> Recording:
@@ -45,18 +42,9 @@ def _opened(path: Path, begin: bytes) -> Recording:
         from cartwheel.bridges.recording.db3_reading import Db3Recording
 
         return Db3Recording(path)
-    if not begin:
-        raise RecordingError(
-            f'"{path}" is not a recording: it is empty',
-            code=NOT_A_RECORDING,
-            values={"path": str(path)},
-        )
-    packed = path.suffix == ".zstd"
-    hint = "The whole file is compressed. Decompress it first with unzstd." if packed else None
-    raise RecordingError(
-        f'"{path}" is not a recording: it does not start with the signature of an MCAP file or a '
-        "bag",
-        code=NOT_A_RECORDING,
-        hint=hint,
-        values={"path": str(path)},
+    why = (
+        "it does not start with the signature of an MCAP file or a bag" if begin else "it is empty"
     )
+    packed = begin and path.suffix == ".zstd"
+    hint = "The whole file is compressed. Decompress it first with unzstd." if packed else None
+    raise path_error(NOT_A_RECORDING, path, f'"{path}" is not a recording: {why}', hint=hint)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import heapq
+import struct
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import BinaryIO, NamedTuple
 
 from cartwheel import yaml_text
+from cartwheel.bridges.recording.formats import path_error
 from cartwheel.codes.recording import RECORDING_DAMAGED
 from cartwheel.errors import RecordingError
 
@@ -67,27 +70,29 @@ class RecordedTopic:
             self.count = count
 
 
-class Recording(Protocol):
+@dataclass(kw_only=True)
+class Recording:
     """An open recording, for use on one thread."""
 
     form: str
     """Format name for users: ``MCAP``, ``bag of ROS 1``, ``bag of ROS 2``."""
     size: int
     """Size in bytes."""
-    topics: list[RecordedTopic]
-    complete: bool
+    topics: list[RecordedTopic] = field(default_factory=list)
+    complete: bool = False
     """Whether the recording was closed properly. Incomplete recordings are readable as well."""
-    notes: Mapping[str, str]
-    attachments: dict[str, int]
+    notes: Mapping[str, str] = field(default_factory=dict)
+    attachments: dict[str, int] = field(default_factory=dict)
     """Sizes of attachments in bytes, by name."""
 
     def messages(
         self, *, start_ns: int = 0, topics: Collection[int] | None = None
     ) -> Iterator[Recorded]:
         """Messages of `topics`, or all messages, in the order of time from `start_ns`."""
+        raise NotImplementedError
 
     def close(self) -> None:
-        """Closes the files."""
+        """Closes files that are still open."""
 
 
 @dataclass(slots=True)
@@ -96,48 +101,88 @@ class Block:
 
     position: int
     end: int
-    first_ns: int
-    last_ns: int
-    topics: frozenset[int]
-    about: Any = None
-    """Format-specific data for loading the block."""
+    first_ns: int = 0
+    last_ns: int = 0
+    """Zero if the file does not state the times of the block."""
+    topics: frozenset[int] = frozenset()
 
 
-@dataclass
-class BlockRecording:
+Index = dict[int, list[int]]
+"""Times of the messages in a block in ns, by the file's number of their topic."""
+
+
+@dataclass(kw_only=True)
+class BlockRecording(Recording):
     """A recording that consists of blocks, which are loaded one by one."""
 
     path: Path
-    form: str = ""
-    size: int = 0
-    topics: list[RecordedTopic] = field(default_factory=list)
-    complete: bool = False
-    notes: Mapping[str, str] = field(default_factory=dict)
-    attachments: dict[str, int] = field(default_factory=dict)
     blocks: list[Block] = field(default_factory=list)
+    numbers: dict[int, int] = field(default_factory=dict)
+    """Index in `topics`, by the file's number of the topic."""
 
-    def load(self, block: Block) -> list[Recorded]:
-        """Messages of a block, in file order.
+    def scan(self, file: BinaryIO) -> list[tuple[Block, Index]]:
+        """Finds blocks and their indexes in a file, which is open behind its signature.
+
+        An index is empty if the file does not contain it.
 
         Raises:
-            ValueError: The block is damaged.
+            ValueError, struct.error: The file is damaged.
         """
         raise NotImplementedError
 
-    def loaded(self, block: Block) -> list[Recorded]:
-        """The result of `load`.
+    def load(self, data: bytes) -> list[Recorded]:
+        """Messages of a block, in file order. Adds new topics.
 
         Raises:
-            RecordingError: The block is damaged.
+            ValueError, struct.error: The block is damaged.
+        """
+        raise NotImplementedError
+
+    def survey(self, file: BinaryIO) -> None:
+        """Finds the blocks of a file, and the topics and times in each block.
+
+        Raises:
+            RecordingError: The file is damaged.
         """
         try:
-            return self.load(block)
-        except ValueError as error:
-            raise RecordingError(
-                f'"{self.path}" is damaged at byte {block.position}: {error}',
-                code=RECORDING_DAMAGED,
-                values={"path": str(self.path), "byte": block.position},
-            ) from error
+            found = self.scan(file)
+        except (ValueError, struct.error) as error:
+            raise self._damaged(f"near byte {file.tell()}", file.tell(), error) from error
+        if found and not self.complete:
+            found[-1][1].clear()  # It may be truncated.
+        for block, index in found:
+            self._count(block, index)
+
+    def _count(self, block: Block, index: Index) -> None:
+        """Counts the messages in a block. Loads it if it has no index or contains new topics."""
+        seen: Index = defaultdict(list)
+        if index and index.keys() <= self.numbers.keys():
+            seen.update({self.numbers[number]: times for number, times in index.items()})
+        else:
+            for message in self._loaded(block):
+                seen[message.number].append(message.time_ns)
+        every = [time_ns for times in seen.values() for time_ns in times]
+        if every:
+            for number, times in seen.items():
+                self.topics[number].see(times)
+            block.topics = frozenset(seen)
+            if not block.last_ns:
+                block.first_ns, block.last_ns = min(every), max(every)
+            self.blocks.append(block)
+
+    def _loaded(self, block: Block) -> list[Recorded]:
+        with self.path.open("rb") as file:
+            file.seek(block.position)
+            data = file.read(block.end - block.position)
+        try:
+            return self.load(data)
+        except (ValueError, struct.error) as error:
+            raise self._damaged(f"at byte {block.position}", block.position, error) from error
+
+    def _damaged(self, where: str, byte: int, error: Exception) -> RecordingError:
+        why = "a record is too short" if isinstance(error, struct.error) else error
+        message = f'"{self.path}" is damaged {where}: {why}'
+        return path_error(RECORDING_DAMAGED, self.path, message, byte=byte)
 
     def messages(
         self, *, start_ns: int = 0, topics: Collection[int] | None = None
@@ -157,23 +202,22 @@ class BlockRecording:
                 size -= len(message.data)
                 yield message
             if size > _MOST_WAITING:
-                raise RecordingError(
+                raise path_error(
+                    RECORDING_DAMAGED,
+                    self.path,
                     f'"{self.path}" cannot be read: its chunks contain messages from the same '
                     f"time, and sorting them requires {size >> 20} MiB of memory at byte "
                     f"{block.position} (limit: {_MOST_WAITING >> 20} MiB)",
-                    code=RECORDING_DAMAGED,
-                    values={"path": str(self.path), "byte": block.position, "overlap": size},
+                    byte=block.position,
+                    overlap=size,
                 )
-            for message in self.loaded(block):
+            for message in self._loaded(block):
                 if message.time_ns >= start_ns and (wanted is None or message.number in wanted):
                     heapq.heappush(waiting, (message.time_ns, count, message))
                     count += 1
                     size += len(message.data)
         while waiting:
             yield heapq.heappop(waiting)[2]
-
-    def close(self) -> None:
-        """Does nothing, because files are open only while a block is loaded."""
 
 
 class Bytes:

@@ -143,6 +143,7 @@ class Recorder:
         self._size = 0
         self._topics: set[str] = set()
         self._has_warned = False
+        self._flush_due = 0.0
         self.failure: RecordingError | None = None
         """The error that ended the recording, or None."""
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
@@ -269,20 +270,16 @@ class Recorder:
     # -- on the recorder's thread
 
     def _run(self) -> None:
-        due = time.monotonic() + FLUSH
+        self._flush_due = time.monotonic() + FLUSH
         try:
             while True:
                 was_open = self._backlog.is_open
-                items = self._backlog.get(max(0.0, due - time.monotonic()))
+                items = self._backlog.get(max(0.0, self._flush_due - time.monotonic()))
                 for item in items:
                     self._write(item)
-                    if time.monotonic() >= due:
-                        self._flush()
-                        due = time.monotonic() + FLUSH
+                    self._flush_if_due()
                 self._backlog.done(items)
-                if not items and time.monotonic() >= due:
-                    self._flush()
-                    due = time.monotonic() + FLUSH
+                self._flush_if_due()
                 if not was_open and not items:
                     break
             if self._writer is not None:
@@ -310,9 +307,11 @@ class Recorder:
         self._backlog.close()
         self._on_failure(self.failure)
 
-    def _flush(self) -> None:
-        if self._writer is not None:
-            self._writer.flush()
+    def _flush_if_due(self) -> None:
+        if time.monotonic() >= self._flush_due:
+            if self._writer is not None:
+                self._writer.flush()
+            self._flush_due = time.monotonic() + FLUSH
 
     def _write(self, item: Item) -> None:
         if item.begins:

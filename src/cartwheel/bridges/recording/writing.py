@@ -12,11 +12,11 @@ from cartwheel.bridges.recording.formats import (
     check_writable,
     exists,
     form_of,
+    path_error,
     reason_of,
 )
 from cartwheel.bridges.recording.sink import is_being_written
 from cartwheel.codes.recording import RECORDING_EXISTS, RECORDING_NOT_WRITABLE
-from cartwheel.errors import RecordingError
 
 
 class Writer(Protocol):
@@ -93,11 +93,9 @@ def open_writer(
         # A different process created the file just now.
         raise exists(path) from error
     except OSError as error:
-        raise RecordingError(
-            f'"{path}" cannot be written: {reason_of(error)}',
-            code=RECORDING_NOT_WRITABLE,
-            values={"path": str(path), "reason": reason_of(error)},
-        ) from error
+        reason = reason_of(error)
+        message = f'"{path}" cannot be written: {reason}'
+        raise path_error(RECORDING_NOT_WRITABLE, path, message, reason=reason) from error
 
 
 def _remove(path: Path) -> None:
@@ -111,11 +109,8 @@ def _remove(path: Path) -> None:
     # SQLite uses its own locks for .db3 files, and does not allow opening them separately.
     written = [one for one in (path.iterdir() if folder else (path,)) if one.suffix != ".db3"]
     if any(one.is_file() and is_being_written(one) for one in written):
-        raise RecordingError(
-            f'"{path}" is still being recorded, so it is not replaced',
-            code=RECORDING_EXISTS,
-            values={"path": str(path), "recording": True},
-        )
+        message = f'"{path}" is still being recorded, so it is not replaced'
+        raise path_error(RECORDING_EXISTS, path, message, recording=True)
     if folder:
         shutil.rmtree(path)
     else:
