@@ -558,23 +558,23 @@ def test_a_run_waits_until_its_recorder_is_ready(
 
 
 @pytest.mark.parametrize(
-    ("name", "makes"), [("a.mcap", "ros2.message_class"), ("a.bag", "ros1_writing._flat")]
+    ("name", "module", "function"),
+    [("a.mcap", ros2, "message_class"), ("a.bag", ros1_writing, "_flat")],
 )
 def test_definitions_are_made_before_the_first_message(
-    name: str, makes: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, module: Any, function: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On the thread that writes they would hold up what is to be written in the first second."""
     ros2.ros2_definition.cache_clear()
     ros1_writing._plan.cache_clear()
-    module, _, function = makes.partition(".")
-    real = getattr({"ros2": ros2, "ros1_writing": ros1_writing}[module], function)
+    real = getattr(module, function)
     threads: set[str] = set()
 
     def make(*arguments: Any) -> Any:
         threads.add(threading.current_thread().name)
         return real(*arguments)
 
-    monkeypatch.setattr(f"cartwheel.messages.{makes}", make)
+    monkeypatch.setattr(module, function, make)
     with cw.World("empty") as world:
         world.spawn("rosbots.xacro")
         with world.record(tmp_path / name, topics=["/odom", "/joint_states", "/tf"]):
