@@ -266,7 +266,8 @@ class Writer:
             # It may have been discarded since.
             sample = self._history.get(number)
             if sample is not None:
-                yield from self._datagrams(sample, proxy, proxy.guid[12:], fragments)
+                to, reader = proxy.guid[:12], proxy.guid[12:]
+                yield from sample.datagrams(self.endpoint.guid, to, reader, fragments)
 
     def _reply(self, proxy: ReaderProxy, lost: Sequence[int]) -> None:
         """Announces the kept samples, and those that are no longer kept."""
@@ -325,7 +326,7 @@ class Writer:
 
     def _send_sample(self, sample: Sample, proxy: ReaderProxy, reader: bytes) -> None:
         prefix, address = proxy.guid[:12], proxy.address
-        datagrams = self._datagrams(sample, proxy, reader)
+        datagrams = sample.datagrams(self.endpoint.guid, prefix, reader)
         size = len(sample.payload)
 
         def lost() -> None:
@@ -336,8 +337,3 @@ class Writer:
             self._outbox.put(self, datagrams, size, address, lost=lost, most=depth)
         else:
             self._outbox.put_between(next(datagrams), address, lost)
-
-    def _datagrams(
-        self, sample: Sample, proxy: ReaderProxy, reader: bytes, only: set[int] | None = None
-    ) -> Iterator[Parts]:
-        return sample.datagrams(self.endpoint.guid, proxy.guid[:12], reader, only)
