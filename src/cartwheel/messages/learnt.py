@@ -80,8 +80,8 @@ def _is_known(one: Definition) -> bool:
         "process already uses",
         code=MESSAGE_TYPE_IN_USE,
         origin=one.origin,
-        hint="Use a separate process for each workspace. Start a new process after the "
-        "definition has changed.",
+        hint="If the definition was edited, start a new process. If two workspaces define the "
+        "type differently, use a separate process for each.",
         values={"type": one.name, "file": one.origin.file, "other": known.origin.file},
     )
 

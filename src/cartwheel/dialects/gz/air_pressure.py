@@ -29,7 +29,7 @@ class AirPressure(Plugin[AirPressureParameters]):
 
     The pressure follows the International Standard Atmosphere. ``<reference_altitude>`` is the
     height of the world's origin above sea level. The noise that the sensor's ``<pressure><noise>``
-    specifies is added. Original sensor: ``AirPressureSensor`` in gz-sensors.
+    specifies is added. The sensor corresponds to ``AirPressureSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -29,8 +29,10 @@ class Altimeter(Plugin[AltimeterParameters]):
 
     Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the sensor's
     initial z coordinate in the world. The noise that ``<vertical_position>`` and
-    ``<vertical_velocity>`` specify is added. Original sensor: ``AltimeterSensor`` in gz-sensors.
-    The message type is the same as in ros_gz_bridge.
+    ``<vertical_velocity>`` specify is added.
+
+    The sensor corresponds to ``AltimeterSensor`` in gz-sensors. The message type is the same as in
+    ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -78,7 +78,7 @@ class GzCamera(Plugin[GzCameraParameters]):
     Depths are measured along the optical axis, and are inf for pixels without a surface. In the
     frame of the points, x points forward, y left and z up, as in gz-sim.
 
-    Original sensors: ``CameraSensor``, ``DepthCameraSensor`` and ``RgbdCameraSensor`` in
+    The sensor corresponds to ``CameraSensor``, ``DepthCameraSensor`` and ``RgbdCameraSensor`` in
     gz-sensors. The message types are the same as in ros_gz_bridge.
     """
 

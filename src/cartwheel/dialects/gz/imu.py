@@ -30,7 +30,7 @@ class GzImu(Plugin[GzImuParameters]):
     set. If ``<enable_orientation>`` is false, the orientation is not measured, and the first
     element of its covariance is -1.
 
-    Original sensor: ``ImuSensor`` in gz-sensors. See also REP 145.
+    The sensor corresponds to ``ImuSensor`` in gz-sensors. See also REP 145.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -52,7 +52,7 @@ class GzLidar(Plugin[GzLidarParameters]):
     ``gpu_lidar`` and ``gpu_ray`` sensors detect visual shapes; ``lidar`` and ``ray`` sensors detect
     collision shapes.
 
-    Original sensor: ``GpuLidarSensor`` in gz-sensors. The message types are the same as in
+    The sensor corresponds to ``GpuLidarSensor`` in gz-sensors. The message types are the same as in
     ros_gz_bridge.
     """
 

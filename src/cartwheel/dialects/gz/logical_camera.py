@@ -49,8 +49,8 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
 
     The sensor looks along its x axis. A model is in view if the origin of its model frame is in
     view, even if another model hides it. The message field ``pose`` is the pose of the sensor in
-    the world. Original sensor: ``LogicalCameraSensor`` in gz-sensors. The message type is the same
-    as in ros_gz_bridge.
+    the world. The sensor corresponds to ``LogicalCameraSensor`` in gz-sensors. The message type is
+    the same as in ros_gz_bridge.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -27,7 +27,7 @@ class GzMagnetometerParameters:
 class GzMagnetometer(Plugin[GzMagnetometerParameters]):
     """Publishes the world's ``<magnetic_field>`` in the frame of a magnetometer, in tesla.
 
-    Original sensor: ``MagnetometerSensor`` in gz-sensors.
+    The sensor corresponds to ``MagnetometerSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

@@ -32,7 +32,8 @@ def limit_missing(subject: Subject) -> Iterator[Diagnostic]:
                 place="attribute" if rolls else "inside",
                 hint='For a wheel that turns without limits, use type="continuous".'
                 if rolls
-                else 'Set lower and upper to its range, or use type="continuous" for no limits.'
+                else 'Set lower and upper to the range of the joint, or use type="continuous" for '
+                "no limits."
                 if kind == "revolute"
                 else "Set lower and upper to the joint's range.",
             )

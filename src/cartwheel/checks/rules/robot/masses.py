@@ -99,7 +99,7 @@ def mass_grams(subject: Subject) -> Iterator[Diagnostic]:
         yield robot_codes.MASS_IN_GRAMS.diagnostic(
             message=f'link "{link.name}" weighs {inertial.mass:g} kg and has a bounding box of '
             f"{' x '.join(f'{1000 * value:.3g}' for value in box[1] - box[0])} mm, so its "
-            f"density of {ratio_text(density / 1000)} kg/L is higher than that of any metal",
+            f"density of {ratio_text(density / 1000)} g/cm³ is higher than that of any metal",
             values={"link": link.name, "mass": inertial.mass, "density": density},
             origin=node.origin if node is not None else inertial.origin,
             instead=_mass_text(inertial.mass / 1000, sdf=node is None) if in_grams else "",

@@ -45,7 +45,7 @@ def tag_misplaced(subject: Subject) -> Iterator[Diagnostic]:
             instead=f'reference="{meant}"' if meant else "",
             place="attribute" if meant and alone else "",
             mark="reference" if meant and alone else "",
-            hint="" if meant else 'Move them to a separate <gazebo reference="…">.',
+            hint="" if meant else 'Write a separate <gazebo reference="…"> for this.',
             values={"tags": tags, "needs": needs, "reference": reference, "meant": meant},
         )
 
