@@ -1,4 +1,7 @@
-"""No code goes by the words of a message, except adapters to those of other libraries."""
+"""No code goes by the words of a message, except adapters to those of other libraries.
+
+Nor does a test, unless it has the mark `wording`.
+"""
 
 from __future__ import annotations
 
@@ -75,7 +78,7 @@ def _examinations(tree: ast.AST, names: Collection[str]) -> Iterator[int]:
         if isinstance(node, ast.Compare):
             kinds = (ast.Eq, ast.NotEq, ast.In, ast.NotIn)
             texts = [is_text(each, names) for each in (node.left, *node.comparators)]
-            if any(texts) and any(isinstance(each, kinds) for each in node.ops):
+            if any(texts) and not all(texts) and any(isinstance(each, kinds) for each in node.ops):
                 yield node.lineno
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             examined = (node.func.value, *node.args)
@@ -97,6 +100,39 @@ def test_no_text_of_an_error_is_examined(file: str) -> None:
     assert bool(lines) is (file in ADAPTERS), f"{lines}: compare the code and the values instead"
 
 
+def is_marked(node: ast.stmt) -> bool:
+    """Whether a test, or with `pytestmark` its file, has the mark `wording`."""
+    marks = getattr(node, "decorator_list", [])
+    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "pytestmark":
+        marks = [node.value]
+    return any("mark.wording" in ast.unparse(each) for each in marks)
+
+
+def unmarked_examinations(tree: ast.Module) -> set[int]:
+    """The lines of tests without the mark on which a text is compared or searched."""
+    if any(is_marked(node) for node in tree.body if isinstance(node, ast.Assign)):
+        return set()
+    return {line for node in tree.body if not is_marked(node) for line in examinations(node)}
+
+
+def test_a_test_that_compares_words_has_the_mark() -> None:
+    lines = [
+        f"{file.relative_to(ROOT)}:{line}"
+        for file in sorted((ROOT / "tests").glob("**/*.py"))
+        for line in sorted(unmarked_examinations(ast.parse(file.read_text())))
+    ]
+    assert not lines, f"{lines}: compare the code and the values, or set the mark"
+
+
+def test_a_mark_is_noticed() -> None:
+    compared = 'def test_it():\n    assert "no" in caught.value.message\n'
+    marked = f"@pytest.mark.wording\n{compared}"
+    assert unmarked_examinations(ast.parse(compared)) == {2}
+    assert unmarked_examinations(ast.parse(f"{marked}\n{compared}")) == {6}
+    assert not unmarked_examinations(ast.parse(marked))
+    assert not unmarked_examinations(ast.parse(f"pytestmark = pytest.mark.wording\n{compared}"))
+
+
 def test_adapters_exist() -> None:
     assert set(ADAPTERS) <= set(FILES)
 
@@ -115,6 +151,7 @@ def test_adapters_exist() -> None:
         ("error.code is MISSING", False),
         ('error.values["name"] == "x"', False),
         ('f"{error.message}, so it ends"', False),
+        ("answer.message == error.message", False),
         ("if error.hint: pass", False),
     ],
 )

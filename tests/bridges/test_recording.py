@@ -628,7 +628,7 @@ def _read_broken(name: str, path: Path) -> Found:
             for _, channel, message in reader.iter_messages(log_time_order=False):
                 found[channel.topic].append((message.log_time, b""))
         except Exception as error:  # noqa: BLE001
-            assert "end" in type(error).__name__.lower() or "end" in str(error).lower(), error
+            assert "end" in f"{type(error).__name__} {error}".lower()
     return found
 
 

@@ -290,10 +290,7 @@ def test_errors_within_macros_show_the_calls(folder):
     error = failure()
     assert placed(error.diagnostic()) == "robot.xacro:6 error xacro-name-unknown"
     assert (error.values["name"], error.values["expression"]) == ("nothing", "nothing")
-    assert str(error).splitlines()[1:] == [
-        "  in robot.xacro:3 xacro:inner",
-        "  in robot.xacro:8 xacro:outer",
-    ]
+    assert error.origin.stack == ("robot.xacro:3 xacro:inner", "robot.xacro:8 xacro:outer")
 
 
 def test_macros_that_grow_without_bound_end(folder):

@@ -42,5 +42,5 @@ def test_data_of_an_unknown_frame_is_reported_once(notes):
     ((title, body, how),) = shown
     assert title == f"Warning {SCAN_NOT_SHOWN.number}"
     assert coded(reported, SCAN_NOT_SHOWN, topic="/scan", frame="lasr", model="robot")
-    assert body == reported[0].message
+    assert [body] == [each.message for each in reported]
     assert how["color"] is None
