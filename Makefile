@@ -47,6 +47,7 @@ catalogue: ## generate the tables of modules that define plugins and controllers
 docs: ## generate the plugin reference, and build the site in site/
 	@tools/setup.sh docs
 	@$(BIN)/python tools/make_plugin_reference.py
+	@$(BIN)/python tools/make_controller_tables.py
 	@$(BIN)/python tools/make_site.py $(ARGS)
 
 ros1: ## build the ROS 1 workspace: gazebo_ros, gazebo_msgs, xacro, teleop_twist_keyboard

@@ -1,37 +1,22 @@
-"""The joints that a controller commands, and through which interfaces."""
+"""What controllers command and state, by the tables in which the dialects declare parameters."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from cartwheel.checks import nodes
 from cartwheel.checks.controller_files import ControlFile, Controller, Value
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
 from cartwheel.description.model import Element
-from cartwheel.errors import Severity
+from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
+from cartwheel.dialects.ros_control.interfaces import COMMANDS
+from cartwheel.dialects.ros_control.parameters import OWN, Role, Row, rows
+from cartwheel.errors import Severity, UnknownNameError
 
-DIFF_DRIVE = "diff_drive_controller/DiffDriveController"
-MECANUM = "mecanum_drive_controller/MecanumDriveController"
-TRICYCLE = "tricycle_controller/TricycleController"
-STEERED_BY_ONE = (
-    "ackermann_steering_controller/AckermannSteeringController",
-    "steer_drive_controller/SteerDriveController",
-)
-"""ROS 1 controllers."""
-STEERED = (
-    "ackermann_steering_controller/AckermannSteeringController",
-    "bicycle_steering_controller/BicycleSteeringController",
-    "tricycle_steering_controller/TricycleSteeringController",
-)
-"""ROS 2 controllers."""
-TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
-CORNERS = ("front_left", "front_right", "back_left", "back_right")
-ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
-_BY_NAME = ("position", "velocity", "effort")
-"""Packages such as ``effort_controllers``, which are named after the interface."""
 _INTERFACES = {
     "PositionJointInterface": ("position",),
     "VelocityJointInterface": ("velocity",),
@@ -44,6 +29,8 @@ _SIMULATED = re.compile(
 )
 """Simulated ros2_control hardware: a real robot's tags may describe different interfaces."""
 _STANDARD_HARDWARE = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
+_GAINS = ("p", "i", "ff_velocity_scale")
+"""Gains of ROS 2, one of which moves a joint."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,77 +45,67 @@ class Claim:
     controller: Controller
 
 
+def table(controller: Controller, *roles: Role) -> tuple[Row, ...]:
+    """The parameters of a controller that have one of these roles; empty for an unknown type."""
+    try:
+        family = find_type(controller.kind, ros2=controller.file.is_ros2)
+    except UnknownNameError:
+        return ()
+    found = rows(family.parameters, ros2=controller.file.is_ros2)
+    return tuple(each for each in found if each.role in roles)
+
+
+@cache
+def names_of(role: Role) -> frozenset[str]:
+    """The last parts of all parameter names that have a role in any controller."""
+    return frozenset(
+        name.rpartition("/")[2]
+        for family in set(controller_types().values())
+        for ros2 in (True, False)
+        for row in rows(family.parameters, ros2=ros2)
+        if row.role == role
+        for front in (True, False)
+        for name in row.spelled(front_steering=front)
+    )
+
+
+def names(controller: Controller, row: Row) -> tuple[str, ...]:
+    """The spellings of a parameter in a controller."""
+    front = True
+    for each in table(controller, "front_steering"):
+        value = controller.value(*each.names)
+        front = value is None or value.text.strip().lower() != "false"
+    return row.spelled(front_steering=front)
+
+
+def values(controller: Controller, row: Row) -> list[Value]:
+    """The scalars of a parameter; its default is not included."""
+    return controller.values(*names(controller, row))
+
+
 def claims(controller: Controller) -> list[Claim]:
     """The joints that a controller commands; joints set by a launch file are omitted."""
     return [
         Claim(joint=value.text.strip(), interface=interface, value=value, controller=controller)
-        for value, interface in _claims(controller)
+        for row in table(controller, "joint")
+        for value in values(controller, row)
+        for interface in _interfaces(controller, row)
         if value.text.strip() and "$" not in value.text
     ]
 
 
-def _claims(controller: Controller) -> Iterator[tuple[Value, str]]:
-    kind, ros2 = controller.kind, controller.file.is_ros2
-    package = kind.partition("/")[0]
-    if kind == DIFF_DRIVE:
-        for side in ("left", "right"):
-            for value in wheels_of(controller, side):
-                yield value, "velocity"
-    elif kind == MECANUM:
-        for corner in ROS2_CORNERS if ros2 else CORNERS:
-            wheel = wheel_at(controller, corner)
-            if wheel is not None:
-                yield wheel, "velocity"
-    elif kind == TRICYCLE or (ros2 and kind in STEERED) or (not ros2 and kind in STEERED_BY_ONE):
-        for value in traction(controller):
-            yield value, "velocity"
-        for value in steering(controller):
-            yield value, "position"
-    elif package.removesuffix("_controllers") in _BY_NAME:
-        for value in controller.values("joints", "joint"):
-            yield value, package.removesuffix("_controllers")
-    elif kind == TRAJECTORY:
-        for value in controller.values("command_joints", "joints"):
-            for interface in controller.values("command_interfaces"):
-                yield value, interface.text.strip()
-    elif package == "forward_command_controller":
-        for value in controller.values("joints", "joint"):
-            for interface in controller.values("interface_name", "interface_names"):
-                yield value, interface.text.strip()
-
-
-def wheels_of(controller: Controller, side: str) -> list[Value]:
-    """The wheel joints on one side of a differential drive."""
-    return controller.values(f"{side}_wheel_names", f"{side}_wheel")
-
-
-def wheel_at(controller: Controller, corner: str) -> Value | None:
-    """The joint of one wheel of a mecanum drive."""
-    return controller.value(
-        f"{corner}_wheel_command_joint_name", f"{corner}_wheel_name", f"{corner}_wheel_joint"
-    )
-
-
-def traction(controller: Controller) -> list[Value]:
-    """The joints of the driven wheels of a steered drive."""
-    driven = "rear" if front_steers(controller) else "front"
-    return controller.values(
-        "traction_joint_name", "traction_joints_names", f"{driven}_wheels_names", "rear_wheel"
-    )
-
-
-def steering(controller: Controller) -> list[Value]:
-    """The steered joints of a steered drive."""
-    steered = "front" if front_steers(controller) else "rear"
-    return controller.values(
-        "steering_joint_name", "steering_joints_names", f"{steered}_wheels_names", "front_steer"
-    )
-
-
-def front_steers(controller: Controller) -> bool:
-    """Whether the front axle is steered."""
-    value = controller.value("front_steering")
-    return value is None or value.text.strip().lower() != "false"
+def _interfaces(controller: Controller, row: Row) -> list[str]:
+    """The interfaces by which a controller commands the joints of a parameter."""
+    if row.interface != OWN:
+        return [row.interface]
+    own = controller.kind.partition("_")[0]
+    if own in COMMANDS:
+        return [own]
+    return [
+        value.text.strip()
+        for each in table(controller, "interface")
+        for value in values(controller, each)
+    ]
 
 
 def offers(robot: Robot, *, ros2: bool) -> dict[str, list[tuple[str, Element]]]:
@@ -170,42 +147,29 @@ def has_standard_hardware(robot: Robot, *, ros2: bool) -> bool:
     return True
 
 
-def gains_missing(controller: Controller) -> list[tuple[str, Value]]:
-    """Joints without a PID gain ``p``, each with its value; "" if the controller has a single
-    joint.
+def gains_missing(controller: Controller) -> list[tuple[str, Value, str]]:
+    """Joints without PID gains, for controllers that need them.
+
+    Returns:
+        For each joint its name, or "" if the gains are not listed by joint; the value with its
+        name; and the path of its gains.
     """
-    kind = controller.kind
-    package, _, name = kind.partition("/")
-    if controller.file.is_ros2:
-        if kind != TRAJECTORY:
-            return []
-        commands = [value.text.strip() for value in controller.values("command_interfaces")]
-        if commands not in (["effort"], ["velocity"]):
-            return []
-        joints = controller.values("command_joints", "joints")
-        ahead = ("p", "i", "ff_velocity_scale")
-        return [
-            (each.text.strip(), each)
-            for each in joints
-            if not any(_positive(controller, f"gains/{each.text.strip()}/{key}") for key in ahead)
-        ]
-    pid = {
-        "effort_controllers": ("JointPositionController", "JointVelocityController"),
-        "velocity_controllers": ("JointPositionController",),
-    }
-    if name in pid.get(package, ()):
-        joint = controller.value("joint")
-        return [] if joint is None or controller.has("pid/p") else [("", joint)]
-    held = ""
-    if name == "JointTrajectoryController" and package in pid:
-        held = "gains/{}"
-    elif kind == "effort_controllers/JointGroupPositionController":
-        held = "{}/pid"
-    return [
-        (each.text.strip(), each)
-        for each in (controller.values("joints", "joint") if held else ())
-        if not controller.has(held.format(each.text.strip()) + "/p")
-    ]
+    ros2 = controller.file.is_ros2
+    if {claim.interface for claim in claims(controller)} not in ({"effort"}, {"velocity"}):
+        return []
+    joints = [each for row in table(controller, "joint") for each in values(controller, row)]
+    missing = []
+    for row in table(controller, "gains"):
+        for value in joints:
+            joint = value.text.strip()
+            path = row.names[0].replace("{joint}", joint)
+            if ros2:
+                has_gains = any(_positive(controller, f"{path}/{key}") for key in _GAINS)
+            else:
+                has_gains = controller.has(f"{path}/p")
+            if not has_gains:
+                missing.append((joint if path != row.names[0] else "", value, path))
+    return missing
 
 
 def _positive(controller: Controller, path: str) -> bool:

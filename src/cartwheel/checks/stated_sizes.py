@@ -14,6 +14,7 @@ from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST
 from cartwheel.checks.wheels import wheel_middle, wheel_place
 from cartwheel.description.model import PluginTag
+from cartwheel.dialects.ros_control.parameters import SIZES
 from cartwheel.dialects.tag_roles import TagRole
 from cartwheel.errors import Code, Diagnostic, Origin, Place
 
@@ -55,8 +56,9 @@ _MEASURES: Mapping[str, Measure] = {
     "wheel_base": "base",
     "wheel_radius": "radius",
     "wheel_diameter": "diameter",
+    "wheel_reach": "reach",
 }
-"""Measures by the role of a plugin's tag."""
+"""Measures by the role of a plugin's tag or a controller's parameter."""
 
 
 def stated_sizes(subject: Subject) -> Iterator[Stated]:
@@ -133,64 +135,35 @@ def _joints(robot: Robot, tag: PluginTag, names: Sequence[str]) -> tuple[str, ..
 
 
 def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
-    kind, ros2 = controller.kind, controller.file.is_ros2
-
-    def say(
-        measure: Measure,
-        names: Sequence[str],
-        first: Sequence[Value | None],
-        second: Sequence[Value | None] = (),
-    ) -> Iterator[Stated]:
-        value = controller.value(*names)
+    joints = {
+        row.field: claimed.values(controller, row) for row in claimed.table(controller, "joint")
+    }
+    for row in claimed.table(controller, *SIZES):
+        spellings = claimed.names(controller, row)
+        value = controller.value(*spellings)
         number = value.number if value is not None else None
-        sides = [tuple(_known(robot, side)) for side in (first, second)]
-        if value is None or number is None or not sides[0] or (second and not sides[1]):
-            return
+        groups = [joints[field] for field in row.wheels]
+        if len(groups) == 2 and groups[0] is groups[1]:
+            # The distance between both wheels of one axle.
+            groups = [groups[0][:1], groups[0][1:2]] if len(groups[0]) == 2 else [[], []]
+        sides = [tuple(_known(robot, group)) for group in groups]
+        if value is None or number is None or not all(sides):
+            continue
+        name = next(each for each in spellings if controller.has(each))
         yield Stated(
             robot=robot,
-            measure=measure,
-            label=f'"{next(name for name in names if controller.has(name)).rpartition("/")[2]}"',
+            measure=_MEASURES[row.role],
+            label=f'"{name.rpartition("/")[2]}"',
             value=number,
             written=True,
             first=sides[0],
-            second=sides[1],
-            skids=len(sides[0]) > 1 and kind == claimed.DIFF_DRIVE,
+            second=sides[1] if len(sides) == 2 else (),
+            skids=len(sides[0]) > 1,
             origin=value.origin,
             mark=value.text,
             write=value.replaced,
             place="line",
         )
-
-    if kind == claimed.DIFF_DRIVE:
-        left, right = (claimed.wheels_of(controller, side) for side in ("left", "right"))
-        yield from say("apart", ["wheel_separation"], left, right)
-        yield from say("radius", ["wheel_radius"], left)
-    elif kind == claimed.MECANUM:
-        corners = claimed.ROS2_CORNERS if ros2 else claimed.CORNERS
-        wheels = [claimed.wheel_at(controller, corner) for corner in corners]
-        yield from say("base", ["wheel_separation_x"], wheels[:1], wheels[2:3])
-        yield from say("apart", ["wheel_separation_y"], wheels[:1], wheels[1:2])
-        reach = "kinematics/sum_of_robot_center_projection_on_X_Y_axis"
-        yield from say("reach", [reach], wheels[:1], wheels[3:])
-        yield from say("radius", ["kinematics/wheels_radius", "wheel_radius"], wheels[:1])
-    elif ros2 and kind in claimed.STEERED:
-        driven, steered = (
-            ("rear", "front") if claimed.front_steers(controller) else ("front", "rear")
-        )
-        axles = {driven: claimed.traction(controller), steered: claimed.steering(controller)}
-        yield from say("base", ["wheelbase"], axles[steered], axles[driven])
-        for axle, role in ((driven, "traction"), (steered, "steering")):
-            names = [f"{role}_track_width", "wheel_track", f"{axle}_wheel_track"]
-            if len(axles[axle]) == 2:
-                yield from say("apart", names, axles[axle][:1], axles[axle][1:])
-        radii = ("traction_wheels_radius", "wheels_radius", f"{driven}_wheels_radius")
-        yield from say("radius", radii, axles[driven])
-    elif not ros2 and kind in claimed.STEERED_BY_ONE:
-        wheel, steer = claimed.traction(controller), claimed.steering(controller)
-        yield from say("base", ["wheel_separation_h"], steer, wheel)
-        yield from say("radius", ["wheel_radius"], wheel)
-    elif kind == claimed.TRICYCLE:
-        yield from say("radius", ["wheel_radius"], claimed.traction(controller))
 
 
 def _known(robot: Robot, values: Sequence[Value | None]) -> Iterator[str]:

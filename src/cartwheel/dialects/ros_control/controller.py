@@ -10,6 +10,7 @@ from cartwheel.component import Component
 from cartwheel.dialects.ros_control.chaining import Reference
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.parameter_services import ParameterServices
+from cartwheel.dialects.ros_control.parameters import read_parameters_of
 from cartwheel.dialects.ros_control.robot import ControlledRobot
 from cartwheel.dialects.ros_control.scope import ControllerScope
 from cartwheel.dialects.ros_control.settings import Settings
@@ -21,12 +22,15 @@ from cartwheel.messages import message_class
 class Controller(Component):
     """Base class of all controllers, created when a controller is loaded.
 
-    A subclass lists its `types`. Its `configure` reads the parameters and calls `claim` for each
-    joint that it commands. While the controller runs, `update` is called at the manager's rate.
+    A subclass lists its `types` and declares its `parameters`. Its `configure` calls `claim` for
+    each joint that it commands. While the controller runs, `update` is called at the manager's
+    rate.
     """
 
     types: ClassVar[tuple[str, ...]]
     """Names of the type in ROS 1 and ROS 2."""
+    parameters: ClassVar[type]
+    """Dataclass with fields from `parameter`."""
 
     def __init__(
         self, name: str, type_name: str, settings: Settings, robot: ControlledRobot
@@ -66,7 +70,7 @@ class Controller(Component):
         if robot.ros2:
             self.graph.nodes[self.node] = resolve_name(name, robot.namespace)
         try:
-            self.configure(settings)
+            self.configure(read_parameters_of(self.parameters, settings, ros2=robot.ros2))
         except CartwheelError:
             Controller.close(self)
             raise
@@ -74,8 +78,11 @@ class Controller(Component):
             values = {**settings.flat(), "type": type_name, "use_sim_time": True}
             ParameterServices(self._offer_parameters, self.graph.nodes[self.node], values)
 
-    def configure(self, settings: Settings) -> None:
-        """Reads parameters, claims joints, and creates publishers and subscriptions.
+    def configure(self, given: Any) -> None:
+        """Claims joints, and creates publishers and subscriptions.
+
+        Args:
+            given: The parameters, an instance of `parameters`.
 
         Raises:
             PluginError: A parameter is not allowed.

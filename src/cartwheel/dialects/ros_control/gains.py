@@ -7,6 +7,12 @@ import math
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros_control.settings import Settings
 
+GAINS = (
+    "PID gains `p`, `i`, `d`, `i_clamp`, `i_clamp_min`, `i_clamp_max` and `antiwindup`; in ROS 2 "
+    "also `u_clamp_min`, `u_clamp_max` and `antiwindup_strategy`."
+)
+"""Description for the reference."""
+
 
 def read_gains(settings: Settings) -> PidGains:
     """Reads ``p``, ``i``, ``d``, ``i_clamp``, ``i_clamp_min``, ``i_clamp_max`` and ``antiwindup``.

@@ -26,16 +26,15 @@ def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
         if not missing:
             continue
         ros2 = controller.file.is_ros2
-        names = [joint for joint, _ in missing]
-        group = controller.kind.endswith("JointGroupPositionController")
+        names = [joint for joint, _, _ in missing]
+        path = missing[0][2]
+        under, top, text = f"{path}/p", path.partition("/")[0], ""
         if names == [""]:
-            text, under = f"pid: {_GAINS}", "pid/p"
-        elif group:
-            text, under = "", f"{names[0]}/pid/p"
-        else:
+            text = f"{path}: {_GAINS}"
+        elif path == f"{top}/{names[0]}":
             inner = ", ".join(f"{name}: {_GAINS}" for name in names)
-            text, under = f"gains: {{{inner}}}", f"gains/{names[0]}/p"
-        whole = bool(text) and not controller.has(under.partition("/")[0])
+            text = f"{top}: {{{inner}}}"
+        whole = bool(text) and not controller.has(top)
         of = "" if names == [""] else f" for {', '.join(names)}"
         yield devices_codes.CONTROLLER_GAINS_MISSING.diagnostic(
             severity="warning" if ros2 else severity_in(controller.file),

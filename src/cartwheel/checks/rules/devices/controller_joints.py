@@ -7,19 +7,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from cartwheel.checks import spelling
-from cartwheel.checks.controller_claims import (
-    severity_in,
-)
+from cartwheel.checks.controller_claims import names_of, severity_in
 from cartwheel.checks.controller_files import ControlFile, Value, pairs
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.plugin_joints import NOT_A_NAME
 from cartwheel.checks.subject import Subject, is_known
 from cartwheel.codes import devices as devices_codes
 from cartwheel.errors import Diagnostic
-
-_JOINT_KEY = re.compile(
-    r"(.*_)?joints?(_names?)?|.*wheels?_names?|(left|right|rear)_wheel|.*_steer"
-)
 
 
 @rule(devices_codes.CONTROLLER_JOINT_UNKNOWN)
@@ -75,7 +69,7 @@ def _joints_in(file: ControlFile) -> Iterator[tuple[str, Value]]:
             waiting.extend(node.value)
         for key, value in pairs(node):
             held = value.value if value.id == "sequence" else [value]
-            if _JOINT_KEY.fullmatch(key.value):
+            if key.value.replace(".", "/").rpartition("/")[2] in names_of("joint"):
                 for one in held:
                     if one.id == "scalar":
                         yield key.value, Value(text=one.value, file=file, node=one)

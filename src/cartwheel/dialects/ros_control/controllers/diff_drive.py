@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from cartwheel.codes import devices, running
@@ -11,19 +12,103 @@ from cartwheel.devices.drives.differential import (
     DifferentialDriveConfig,
     WheelPair,
 )
+from cartwheel.devices.drives.limiter import Limits
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
+    FramePrefixParameters,
     check_axis,
     frame_prefix,
     joint_place,
     wheel_radius,
 )
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.messages import header, message_class
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DiffDriveParameters(FramePrefixParameters):
+    left: tuple[str, ...] = parameter(
+        ros1=("left_wheel",),
+        ros2=("left_wheel_names",),
+        role="joint",
+        interface="velocity",
+        doc="Joints of the left wheels.",
+    )
+    right: tuple[str, ...] = parameter(
+        ros1=("right_wheel",),
+        ros2=("right_wheel_names",),
+        role="joint",
+        interface="velocity",
+        doc="Joints of the right wheels.",
+    )
+    separation: float | None = parameter(
+        "wheel_separation",
+        default=None,
+        unit="m",
+        role="wheel_separation",
+        wheels=("left", "right"),
+        positive=True,
+        doc="Distance between the left and right wheels. Default: read from the description.",
+    )
+    separation_factor: float = parameter(
+        "wheel_separation_multiplier", default=1.0, doc="Factor on the wheel separation."
+    )
+    radius: float | None = parameter(
+        "wheel_radius",
+        default=None,
+        unit="m",
+        role="wheel_radius",
+        wheels=("left",),
+        doc="Radius of the wheels. Default: read from the description.",
+    )
+    radius_factor: float = parameter(
+        "wheel_radius_multiplier", default=1.0, doc="Factor on the radius of all wheels."
+    )
+    left_factor: float | None = parameter(
+        "left_wheel_radius_multiplier",
+        default=None,
+        doc="Factor on the radius of the left wheels. Default: `wheel_radius_multiplier`.",
+    )
+    right_factor: float | None = parameter(
+        "right_wheel_radius_multiplier",
+        default=None,
+        doc="Factor on the radius of the right wheels. Default: `wheel_radius_multiplier`.",
+    )
+    linear: Limits = parameter("linear/x", read=read_limits, doc="Limits of the forward speed.")
+    angular: Limits = parameter("angular/z", read=read_limits, doc="Limits of the turning rate.")
+    open_loop: bool = parameter(
+        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
+    )
+    position_feedback: bool = parameter(
+        "position_feedback",
+        default=True,
+        doc="Compute odometry from wheel positions instead of velocities.",
+    )
+    timeout: float = parameter(
+        "cmd_vel_timeout", default=0.5, unit="s", doc="Time after which a command expires."
+    )
+    stamped: bool = parameter(
+        ros1=(),
+        ros2=("use_stamped_vel",),
+        default=True,
+        doc="Subscribe to TwistStamped on `cmd_vel` instead of Twist on `cmd_vel_unstamped`.",
+    )
+    publish_limited: bool = parameter(
+        ros1=("publish_cmd",),
+        ros2=("publish_limited_velocity",),
+        default=False,
+        doc="Publish the limited command on `cmd_vel_out`.",
+    )
+    unused: None = ignored(
+        "wheels_per_side",
+        "allow_multiple_cmd_vel_publishers",
+        "publish_wheel_joint_controller_state",
+        "publish_wheel_data",
+    )
 
 
 class DiffDriveController(Controller):
@@ -36,12 +121,12 @@ class DiffDriveController(Controller):
 
     types: ClassVar[tuple[str, ...]] = ("diff_drive_controller/DiffDriveController",)
 
-    def configure(self, settings: Settings) -> None:
-        ros2 = self.robot.ros2
-        left = settings.texts("left_wheel_names" if ros2 else "left_wheel")
-        right = settings.texts("right_wheel_names" if ros2 else "right_wheel")
+    parameters = DiffDriveParameters
+
+    def configure(self, given: DiffDriveParameters) -> None:
+        ros2, left, right = self.robot.ros2, given.left, given.right
         if not left or len(left) != len(right):
-            raise settings.error(
+            raise self.settings.error(
                 devices.WHEELS_UNPAIRED,
                 "the numbers of left and right wheels must be equal and positive "
                 f"(got {len(left)} and {len(right)})",
@@ -52,28 +137,18 @@ class DiffDriveController(Controller):
         for wheel in claims:
             check_axis(self, wheel.joint, LEFT)
         first_left, first_right = claims[0].joint, claims[len(left)].joint
-        separation = self._separation(settings, first_left, first_right)
-        radius = self._radius(settings, first_left)
-        separation *= settings.number("wheel_separation_multiplier", 1.0)
-        both = settings.number("wheel_radius_multiplier", 1.0)
-        left_radius = radius * settings.number("left_wheel_radius_multiplier", both)
-        right_radius = radius * settings.number("right_wheel_radius_multiplier", both)
-        linear = read_limits(settings.section("linear/x"))
-        angular = read_limits(settings.section("angular/z"))
-        settings.ignore("wheels_per_side", "allow_multiple_cmd_vel_publishers")
-        open_loop = settings.boolean("open_loop", False)
-        by_position = settings.boolean("position_feedback", True)
-        timeout = settings.number("cmd_vel_timeout", 0.5)
-        settings.ignore("publish_wheel_joint_controller_state", "publish_wheel_data")
-        stamped = ros2 and settings.boolean("use_stamped_vel", True)
-        topic = "cmd_vel_unstamped" if ros2 and not stamped else "cmd_vel"
-        self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
-        self._odometry = wheel_odometry(
-            self,
-            settings,
-            transform=settings.boolean("enable_odom_tf", True),
-            prefix=frame_prefix(self, settings) if ros2 else "",
+        separation = given.separation_factor * self._separation(given, first_left, first_right)
+        radius = self._radius(given, first_left)
+        left_factor, right_factor = (
+            given.radius_factor if each is None else each
+            for each in (given.left_factor, given.right_factor)
         )
+        topic = "cmd_vel_unstamped" if ros2 and not given.stamped else "cmd_vel"
+        self._command = TwistCommand(
+            self, topic, timeout=given.timeout, stamped=ros2 and given.stamped
+        )
+        self._odometry = wheel_odometry(self, given, prefix=frame_prefix(self, given))
+        by_position = given.position_feedback
         measured: Literal["positions", "velocities"] = "positions" if by_position else "velocities"
         self._drive = self.add(
             DifferentialDrive(
@@ -84,14 +159,14 @@ class DiffDriveController(Controller):
                             left=one,
                             right=other,
                             separation=separation,
-                            left_radius=left_radius,
-                            right_radius=right_radius,
+                            left_radius=radius * left_factor,
+                            right_radius=radius * right_factor,
                         )
                         for one, other in pairs
                     ),
-                    linear=linear,
-                    angular=angular,
-                    odometry="commands" if open_loop else measured,
+                    linear=given.linear,
+                    angular=given.angular,
+                    odometry="commands" if given.open_loop else measured,
                     measured_pairs=None,
                     drive=None,
                 ),
@@ -99,9 +174,10 @@ class DiffDriveController(Controller):
                 reckoning=self._odometry.reckoning,
             )
         )
-        published = settings.boolean("publish_limited_velocity" if ros2 else "publish_cmd", False)
         self._limited = (
-            self.advertise("cmd_vel_out", "geometry_msgs/msg/TwistStamped") if published else None
+            self.advertise("cmd_vel_out", "geometry_msgs/msg/TwistStamped")
+            if given.publish_limited
+            else None
         )
 
     def start(self, time_ns: int) -> None:
@@ -134,27 +210,24 @@ class DiffDriveController(Controller):
             )
         )
 
-    def _separation(self, settings: Settings, left: str, right: str) -> float:
+    def _separation(self, given: DiffDriveParameters, left: str, right: str) -> float:
         description = self.part.description
-        value = settings.number(
-            "wheel_separation",
-            math.dist(joint_place(description, left), joint_place(description, right)),
-        )
+        value = given.separation
+        if value is None:
+            value = math.dist(joint_place(description, left), joint_place(description, right))
         if value <= 0:
-            raise settings.invalid("wheel_separation", value, "positive")
+            raise self.settings.invalid("wheel_separation", value, "positive")
         return value
 
-    def _radius(self, settings: Settings, wheel: str) -> float:
-        value = settings.optional_number("wheel_radius") or wheel_radius(
-            self.part.description, wheel
-        )
+    def _radius(self, given: DiffDriveParameters, wheel: str) -> float:
+        value = given.radius or wheel_radius(self.part.description, wheel)
         if value is None:
-            raise settings.error(
+            raise self.settings.error(
                 running.NOT_A_WHEEL,
                 f'"wheel_radius" is missing, and the wheel of joint "{wheel}" has no cylinder from '
                 "which to derive it",
                 values={"parameter": "wheel_radius", "joint": wheel},
             )
         if value <= 0:
-            raise settings.invalid("wheel_radius", value, "positive")
+            raise self.settings.invalid("wheel_radius", value, "positive")
         return value

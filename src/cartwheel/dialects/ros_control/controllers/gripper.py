@@ -2,13 +2,44 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
 
 from cartwheel.devices.joints.gripper import Gripper, GripperConfig
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.gains import read_gains
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.gains import GAINS, read_gains
+from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GripperParameters:
+    joint: str = parameter("joint", role="joint", interface=OWN, doc="Joint of the gripper.")
+    tolerance: float = parameter(
+        "goal_tolerance", default=0.01, unit="rad or m", doc="Position error of a reached goal."
+    )
+    max_effort: float = parameter(
+        "max_effort",
+        default=0.0,
+        unit="N m or N",
+        doc="Maximum effort of goals without an effort; 0 is the joint's limit.",
+    )
+    stall_velocity: float = parameter(
+        "stall_velocity_threshold",
+        default=0.001,
+        unit="rad/s or m/s",
+        doc="The joint stalls if it is slower.",
+    )
+    stall_timeout: float = parameter(
+        "stall_timeout", default=1.0, unit="s", doc="The goal ends if the joint stalls this long."
+    )
+    allow_stalling: bool = parameter(
+        "allow_stalling", default=False, doc="A goal succeeds when the joint stalls."
+    )
+    monitor_rate: float = parameter(
+        "action_monitor_rate", default=20.0, unit="Hz", doc="Rate of the feedback."
+    )
+    gains: None = ignored("gains/{joint}", role="gains", doc=GAINS)
 
 
 class GripperActionController(Controller):
@@ -25,14 +56,12 @@ class GripperActionController(Controller):
     )
     action: ClassVar[Literal["GripperCommand", "ParallelGripperCommand"]] = "GripperCommand"
 
-    def configure(self, settings: Settings) -> None:
+    parameters: ClassVar[type] = GripperParameters
+
+    def configure(self, given: GripperParameters) -> None:
+        settings = self.settings
         interface = "effort" if self.type.startswith("effort_") else "position"
-        joint = self.claim(settings.text("joint"), interface)
-        tolerance = settings.number("goal_tolerance", 0.01)
-        max_effort = self.read_max_effort(settings)
-        stall_velocity = settings.number("stall_velocity_threshold", 0.001)
-        stall_timeout = settings.number("stall_timeout", 1.0)
-        allow_stalling = settings.boolean("allow_stalling", False)
+        joint = self.claim(given.joint, interface)
         gains: PidGains | None = None
         if interface == "effort":
             gains = read_gains(settings.section(f"gains/{joint.name}"))
@@ -42,12 +71,12 @@ class GripperActionController(Controller):
                 self.scope,
                 GripperConfig(
                     action=self.action,
-                    tolerance=tolerance,
-                    max_effort=max_effort,
-                    stall_velocity=stall_velocity,
-                    stall_timeout=stall_timeout,
-                    allow_stalling=allow_stalling,
-                    monitor_rate=settings.number("action_monitor_rate", 20.0),
+                    tolerance=given.tolerance,
+                    max_effort=self.max_effort(given),
+                    stall_velocity=given.stall_velocity,
+                    stall_timeout=given.stall_timeout,
+                    allow_stalling=given.allow_stalling,
+                    monitor_rate=given.monitor_rate,
                     # In ROS 2, only clients cancel goals.
                     preempted="abort" if self.robot.ros2 else "cancel",
                     gains=gains,
@@ -59,9 +88,10 @@ class GripperActionController(Controller):
         )
         self.accept_positions(lambda wanted, _: self._gripper.move(wanted))
 
-    def read_max_effort(self, settings: Settings) -> float:
+    def max_effort(self, given: Any) -> float:
         """Returns the maximum effort of goals without an effort, N m or N."""
-        return settings.number("max_effort", 0.0)
+        effort: float = given.max_effort
+        return effort
 
     def start(self, time_ns: int) -> None:
         self._gripper.start(time_ns)
@@ -76,6 +106,16 @@ class GripperActionController(Controller):
         self._gripper.stop()
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ParallelGripperParameters(GripperParameters):
+    effort_interface: str = parameter(
+        "max_effort_interface",
+        default="",
+        doc="Without this interface, `max_effort` has no effect.",
+    )
+    unused: None = ignored("state_interfaces", "max_velocity", "max_velocity_interface")
+
+
 class ParallelGripperActionController(GripperActionController):
     """Like `GripperActionController`, with the action ``ParallelGripperCommand``.
 
@@ -87,11 +127,7 @@ class ParallelGripperActionController(GripperActionController):
     )
     action = "ParallelGripperCommand"
 
-    def configure(self, settings: Settings) -> None:
-        settings.ignore("state_interfaces", "max_velocity", "max_velocity_interface")
-        super().configure(settings)
+    parameters = ParallelGripperParameters
 
-    def read_max_effort(self, settings: Settings) -> float:
-        effort = super().read_max_effort(settings)
-        # Without this interface, the parameter max_effort has no effect.
-        return effort if settings.text("max_effort_interface", "") else 0.0
+    def max_effort(self, given: ParallelGripperParameters) -> float:
+        return given.max_effort if given.effort_interface else 0.0

@@ -3,21 +3,56 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from cartwheel.codes import running
 from cartwheel.devices.elementwise import clamp
-from cartwheel.devices.joints.pid import Pid
+from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.gains import read_gains
+from cartwheel.dialects.ros_control.gains import GAINS, read_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import header, message_class, zero
 
 _FLOAT = "std_msgs/msg/Float64"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointCommandParameters:
+    joint: str = parameter("joint", role="joint", interface=OWN, doc="Joint.")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointPidParameters(JointCommandParameters):
+    gains: PidGains = parameter("pid", read=read_gains, role="gains", doc=GAINS)
+    unused: None = ignored("pid")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointGroupParameters:
+    joints: tuple[str, ...] = parameter(
+        "joints", "joint", role="joint", interface=OWN, doc="Joints, in the order of the commands."
+    )
+    interfaces: tuple[str, ...] = parameter(
+        "interface_name",
+        "interface_names",
+        default=(),
+        role="interface",
+        doc="Interface of the commands, for types whose name contains none.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointGroupPidParameters(JointGroupParameters):
+    gains: None = ignored("{joint}/pid", ros2=(), role="gains", doc=GAINS)
+    ros2_gains: None = parameter(
+        ros1=(), ros2=("gains/{joint}", "{joint}/pid"), default=None, doc=GAINS
+    )
 
 
 class JointCommand(Controller):
@@ -32,9 +67,11 @@ class JointCommand(Controller):
         "position_controllers/JointPositionController",
     )
 
-    def configure(self, settings: Settings) -> None:
+    parameters = JointCommandParameters
+
+    def configure(self, given: JointCommandParameters) -> None:
         interface = self.type.partition("_")[0]
-        self._joint = self.claim(settings.text("joint"), interface)
+        self._joint = self.claim(given.joint, interface)
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
         if interface == "position":
@@ -64,12 +101,13 @@ class JointPid(Controller):
         "velocity_controllers/JointPositionController",
     )
 
-    def configure(self, settings: Settings) -> None:
+    parameters = JointPidParameters
+
+    def configure(self, given: JointPidParameters) -> None:
         self._interface = self.type.partition("_")[0]
         self._quantity = "position" if self.type.endswith("JointPositionController") else "velocity"
-        self._joint = self.claim(settings.text("joint"), self._interface)
-        self._gains = read_gains(settings.section("pid"))
-        settings.ignore("pid")
+        self._joint = self.claim(given.joint, self._interface)
+        self._gains = given.gains
         self._pid = Pid(self._gains)
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
@@ -130,52 +168,40 @@ class JointPid(Controller):
 class JointGroup(Controller):
     """Forwards a Float64MultiArray to several joints: ``command``, or ``commands`` in ROS 2.
 
-    ``effort_controllers/JointGroupPositionController`` has a PID for each joint. Source:
-    forward_command_controller, effort_controllers/JointGroupPositionController.
+    Source: forward_command_controller.
     """
 
     types: ClassVar[tuple[str, ...]] = (
         "effort_controllers/JointGroupEffortController",
         "velocity_controllers/JointGroupVelocityController",
         "position_controllers/JointGroupPositionController",
-        "effort_controllers/JointGroupPositionController",
         "forward_command_controller/ForwardCommandController",
         "forward_command_controller/MultiInterfaceForwardCommandController",
     )
+    parameters: ClassVar[type] = JointGroupParameters
 
-    def configure(self, settings: Settings) -> None:
+    def configure(self, given: Any) -> None:
+        settings, names = self.settings, given.joints
         interface = self.type.partition("_")[0]
-        if self.type.startswith("forward_"):
-            interface = settings.text("interface_name", "")
-            if not interface:
-                names = settings.texts("interface_names")
-                if len(names) != 1:
-                    raise settings.invalid("interface_names", names, "a list of one interface")
-                interface = names[0]
-        else:
-            # Published files also specify it for these types, whose name contains the interface.
-            settings.ignore("interface_name")
-        names = (
-            [settings.text("joint")]
-            if self.type.endswith("MultiInterfaceForwardCommandController")
-            else settings.texts("joints")
-        )
+        if interface == "forward":
+            if len(given.interfaces) != 1:
+                raise settings.invalid(
+                    "interface_names", list(given.interfaces), "a list of one interface"
+                )
+            interface = given.interfaces[0]
         if not names:
             raise settings.invalid("joints", names, "a list of at least one joint")
         self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
-        self._pids: list[Pid] = []
-        if self.type == "effort_controllers/JointGroupPositionController":
-            # ROS 2 files have the gains under the same key as for trajectory controllers.
-            path = "gains/{}" if self.robot.ros2 and settings.raw("gains") else "{}/pid"
-            gains = [read_gains(settings.section(path.format(name))) for name in names]
-            self._pids = [Pid(each) for each in gains]
-            for name in ("gains", *names):
-                settings.ignore(name)
+        self._pids = self.read_pids(settings, names)
         self._commands: list[float] | None = None
         topic = "commands" if self.robot.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
         if interface == "position" or self._pids:
             self.accept_positions(lambda wanted, _: self._publish_targets(topic, wanted))
+
+    def read_pids(self, settings: Settings, names: Sequence[str]) -> list[Pid]:  # noqa: ARG002
+        """Returns a PID controller for each joint; none if commands are forwarded."""
+        return []
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._commands = [joint.position for joint in self._joints] if self._pids else None
@@ -212,6 +238,23 @@ class JointGroup(Controller):
             )
         elif all(math.isfinite(value) for value in values):
             self._commands = values
+
+
+class JointGroupPid(JointGroup):
+    """Controls the positions of several joints with a PID for each. ``commands`` in ROS 2.
+
+    Source: effort_controllers/JointGroupPositionController.
+    """
+
+    types = ("effort_controllers/JointGroupPositionController",)
+    parameters = JointGroupPidParameters
+
+    def read_pids(self, settings: Settings, names: Sequence[str]) -> list[Pid]:
+        # ROS 2 files have the gains under the same key as for trajectory controllers.
+        path = "gains/{}" if self.robot.ros2 and settings.raw("gains") else "{}/pid"
+        gains = [read_gains(settings.section(path.format(name))) for name in names]
+        settings.ignore("gains", *names)
+        return [Pid(each) for each in gains]
 
 
 def _publish_target(controller: Controller, wanted: Mapping[str, float]) -> None:

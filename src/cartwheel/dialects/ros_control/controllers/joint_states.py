@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,12 +13,71 @@ from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.graph import Publisher
 from cartwheel.messages import header, message_class
 from cartwheel.messages.store import TWIN
 
 _DYNAMIC = f"control_msgs{TWIN}/msg/DynamicJointState"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointStateParameters:
+    publish_rate: float | None = parameter(
+        "publish_rate",
+        ros2=(),
+        default=None,
+        unit="Hz",
+        positive=True,
+        doc="Publish rate; required.",
+    )
+    extra: None = ignored(
+        "extra_joints",
+        doc="Further joints. In ROS 1, a list of mappings with `name`, `position`, `velocity` and "
+        "`effort`; in ROS 2, a list of names.",
+    )
+    joints: tuple[str, ...] = parameter(
+        ros1=(),
+        ros2=("joints",),
+        default=(),
+        itself=True,
+        doc="Published joints. Only has an effect together with `interfaces`.",
+    )
+    interfaces: tuple[str, ...] = parameter(
+        ros1=(),
+        ros2=("interfaces",),
+        default=(),
+        itself=True,
+        doc="Published interfaces.",
+    )
+    local: bool = parameter(
+        ros1=(),
+        ros2=("use_local_topics",),
+        default=False,
+        doc="Publish below the controller's name.",
+    )
+    dynamic: bool = parameter(
+        ros1=(),
+        ros2=("publish_dynamic_joint_states",),
+        default=True,
+        doc="Publish `dynamic_joint_states`.",
+    )
+    frame: str = parameter(
+        ros1=(), ros2=("frame_id",), default="base_link", doc="Frame of the messages."
+    )
+    unused: None = parameter(
+        ros1=(),
+        ros2=("use_urdf_to_filter",),
+        default=None,
+        doc="No effect, because all joints are in the URDF.",
+    )
+    mapped: None = parameter(
+        ros1=(),
+        ros2=tuple(f"map_interface_to_joint_state/{kind}" for kind in COMMANDS),
+        default=None,
+        doc="Interface that is published as the position, velocity or effort.",
+    )
 
 
 class JointStateController(Controller):
@@ -35,38 +95,40 @@ class JointStateController(Controller):
         "joint_state_broadcaster/JointStateBroadcaster",
     )
 
-    def configure(self, settings: Settings) -> None:
-        robot = self.robot
-        self._rate = 0.0 if robot.ros2 else settings.number("publish_rate")
-        if self._rate < 0 or (not robot.ros2 and self._rate == 0):
-            raise settings.invalid("publish_rate", self._rate, "positive")
+    parameters = JointStateParameters
+
+    def configure(self, given: JointStateParameters) -> None:
+        robot, settings = self.robot, self.settings
+        if given.publish_rate is None and not robot.ros2:
+            raise settings.missing("publish_rate")
+        self._rate = given.publish_rate or 0.0
         names = sorted(robot.hardware.names) if not robot.ros2 else robot.hardware.names
         self._sources = {kind: kind for kind in COMMANDS}
         self._chosen: list[str] = []
         self._frame = ""
         if robot.ros2:
-            names = self._choose(settings, names)
+            names = self._choose(given, names)
         self._joints = [robot.hardware.joint(name) for name in names]
-        local = robot.ros2 and settings.boolean("use_local_topics", False)
         self._extra: list[tuple[str, float, float, float]] = []
         if robot.ros2:
             extra = settings.texts("extra_joints", [])
             self._extra = [(name, 0.0, 0.0, 0.0) for name in extra if name not in names]
         else:
             self._extra = self._read_extra(settings.raw("extra_joints") or [], names)
-        space = "" if local else f"/{robot.namespace.strip('/')}/"
+        space = "" if given.local else f"/{robot.namespace.strip('/')}/"
         self._publisher = self.advertise(
             f"{space}joint_states", "sensor_msgs/msg/JointState", rate=self._rate or None
         )
         self._dynamic: Publisher | None = None
-        if robot.ros2 and settings.boolean("publish_dynamic_joint_states", True):
+        if robot.ros2 and given.dynamic:
             self._dynamic = self.advertise(f"{space}dynamic_joint_states", _DYNAMIC)
         self._names = [*names, *(each[0] for each in self._extra)]
         self._periodic = Periodic(self._rate)
         self._JointState = message_class("sensor_msgs/msg/JointState")
 
-    def _choose(self, settings: Settings, names: list[str]) -> list[str]:
+    def _choose(self, given: JointStateParameters, names: list[str]) -> list[str]:
         """Reads ROS 2's parameters for the published joints and interfaces; returns the joints."""
+        settings = self.settings
         # Only both together select anything. One alone is reported as a parameter without effect.
         if {"joints", "interfaces"} <= set(settings.names()):
             joints, interfaces = settings.texts("joints"), settings.texts("interfaces")
@@ -85,9 +147,7 @@ class JointStateController(Controller):
             self._sources[kind] = source
             if self._chosen and source not in self._chosen:
                 self._sources[kind] = ""
-        self._frame = settings.text("frame_id", "base_link")
-        # All joints are in the URDF.
-        settings.ignore("use_urdf_to_filter")
+        self._frame = given.frame
         return names
 
     def _read_extra(self, entries: Any, known: list[str]) -> list[tuple[str, float, float, float]]:

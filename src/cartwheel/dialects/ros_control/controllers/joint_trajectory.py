@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -28,8 +29,9 @@ from cartwheel.devices.joints.trajectory_reading import (
 from cartwheel.devices.joints.trajectory_tolerances import Tolerance, Tolerances
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.gains import read_gains, read_ros2_gains
+from cartwheel.dialects.ros_control.gains import GAINS, read_gains, read_ros2_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
+from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import header, message_class, nanoseconds, zero
 from cartwheel.messages.store import TWIN
@@ -38,6 +40,67 @@ from cartwheel.simulation.clock import NANOSECONDS
 Interface = Literal["position", "velocity", "effort"]
 _TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
 _INTERFACES: tuple[Interface, ...] = ("position", "velocity", "effort")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrajectoryParameters:
+    joints: tuple[str, ...] = parameter("joints", doc="Joints of the trajectories.")
+    commanded: tuple[str, ...] = parameter(
+        "command_joints",
+        "joints",
+        default=(),
+        role="joint",
+        interface=OWN,
+        doc="Joints that are commanded. Default: `joints`.",
+    )
+    interfaces: tuple[str, ...] = parameter(
+        "command_interfaces",
+        default=("position",),
+        role="interface",
+        doc="Interface of the commands, for types whose name contains none.",
+    )
+    gains: None = ignored("gains/{joint}", role="gains", doc=GAINS)
+    feedforward: None = ignored(
+        "velocity_ff/{joint}",
+        doc="Output per desired velocity. In ROS 2 also `ff_velocity_scale` among the gains.",
+    )
+    goal_time: None = ignored(
+        "constraints/goal_time",
+        doc="Time by which a goal may be late, s. Default: 0.",
+    )
+    stopped: None = ignored(
+        "constraints/stopped_velocity_tolerance",
+        doc="Maximum velocity at the goal, rad/s or m/s. Default: 0.01.",
+    )
+    tolerances: None = ignored(
+        "constraints/{joint}/trajectory",
+        "constraints/{joint}/goal",
+        doc="Position tolerance on the path and at the goal, rad or m; 0 is not checked.",
+    )
+    state_rate: float = parameter(
+        "state_publish_rate", default=50.0, unit="Hz", doc="Publish rate of the state."
+    )
+    monitor_rate: float = parameter(
+        "action_monitor_rate", default=20.0, unit="Hz", doc="Rate of the feedback."
+    )
+    allow_partial: bool = parameter(
+        "allow_partial_joints_goal", default=False, doc="Trajectories may omit joints."
+    )
+    allow_integration: bool = parameter(
+        "allow_integration_in_goal_trajectories",
+        default=False,
+        doc="Trajectories may contain velocities without positions.",
+    )
+    allow_moving_end: bool = parameter(
+        "allow_nonzero_velocity_at_trajectory_end",
+        default=False,
+        doc="Trajectories may end with a velocity; only checked in ROS 2.",
+    )
+    unused: None = ignored(
+        "state_interfaces", "stop_trajectory_duration", "hold_trajectory_duration", "verbose",
+        "open_loop_control", "interpolate_from_desired_state",
+        "set_last_command_interface_value_as_state_on_activation",
+    )  # fmt: skip
 
 
 class JointTrajectoryController(Controller):
@@ -63,15 +126,16 @@ class JointTrajectoryController(Controller):
         "position_controllers/PilzJointTrajectoryController",
     )
 
-    def configure(self, settings: Settings) -> None:
-        ros2 = self.robot.ros2
-        self._names = settings.texts("joints")
+    parameters = TrajectoryParameters
+
+    def configure(self, given: TrajectoryParameters) -> None:
+        ros2, settings = self.robot.ros2, self.settings
+        self._names = list(given.joints)
         if not self._names:
             raise settings.invalid("joints", self._names, "a list of at least one joint")
-        self._interface = self._read_interface(settings)
-        commanded = settings.texts("command_joints", []) or self._names
+        self._interface = self._read_interface(given)
         self._joints: list[JointHardware] = [
-            self.claim(name, self._interface) for name in commanded
+            self.claim(name, self._interface) for name in given.commanded
         ]
         gains: list[PidGains] = []
         feedforward: list[float] = []
@@ -79,17 +143,10 @@ class JointTrajectoryController(Controller):
             gains, feedforward = self._read_gains(settings)
         else:
             settings.ignore("gains", "velocity_ff")
-        settings.ignore("constraints", "state_interfaces", "command_interfaces")
+        settings.ignore("constraints")
         tolerances = _tolerances(settings.section("constraints"), self._names)
-        self._reader = TrajectoryReader(self._names, self._joints, _rules(settings, ros2=ros2))
-        rate = settings.number("state_publish_rate", 50.0)
-        self._periodic = Periodic(rate)
-        monitor_rate = settings.number("action_monitor_rate", 20.0)
-        settings.ignore(
-            "stop_trajectory_duration", "hold_trajectory_duration", "verbose",
-            "open_loop_control", "interpolate_from_desired_state",
-            "set_last_command_interface_value_as_state_on_activation",
-        )  # fmt: skip
+        self._reader = TrajectoryReader(self._names, self._joints, _rules(given, ros2=ros2))
+        self._periodic = Periodic(given.state_rate)
         self._follower = TrajectoryFollower(
             self._joints,
             FollowerConfig(
@@ -108,7 +165,7 @@ class JointTrajectoryController(Controller):
                 self.scope,
                 TrajectoryGoalsConfig(
                     tolerances=tolerances,
-                    monitor_rate=monitor_rate,
+                    monitor_rate=given.monitor_rate,
                     # In ROS 2, only clients cancel goals.
                     preempted="abort" if ros2 else "cancel",
                     waits_without_goal_time=ros2,
@@ -122,7 +179,7 @@ class JointTrajectoryController(Controller):
         self._state = self.advertise(
             "controller_state" if ros2 else "state",
             f"control_msgs{TWIN if ros2 else ''}/msg/JointTrajectoryControllerState",
-            rate=rate or None,
+            rate=given.state_rate or None,
         )
         if not ros2:
             self.serve("query_state", "control_msgs/srv/QueryTrajectoryState", self._on_query)
@@ -149,18 +206,18 @@ class JointTrajectoryController(Controller):
 
     # -- parameters
 
-    def _read_interface(self, settings: Settings) -> Interface:
+    def _read_interface(self, given: TrajectoryParameters) -> Interface:
         prefix = self.type.partition("_")[0]
         if prefix == "pos":
             return "position"
         for interface in _INTERFACES:
             if interface == prefix:
                 return interface
-        wanted = settings.texts("command_interfaces", ["position"])
+        wanted = list(given.interfaces)
         for interface in _INTERFACES:
             if interface in wanted:
                 return interface
-        raise settings.invalid(
+        raise self.settings.invalid(
             "command_interfaces", wanted, "a list of position, velocity or effort"
         )
 
@@ -252,12 +309,11 @@ class JointTrajectoryController(Controller):
         )
 
 
-def _rules(settings: Settings, *, ros2: bool) -> TrajectoryRules:
-    moving_end = settings.boolean("allow_nonzero_velocity_at_trajectory_end", False)
+def _rules(given: TrajectoryParameters, *, ros2: bool) -> TrajectoryRules:
     return TrajectoryRules(
-        partial=settings.boolean("allow_partial_joints_goal", False),
-        integrates=settings.boolean("allow_integration_in_goal_trajectories", False),
-        must_stop=ros2 and not moving_end,
+        partial=given.allow_partial,
+        integrates=given.allow_integration,
+        must_stop=ros2 and not given.allow_moving_end,
     )
 
 

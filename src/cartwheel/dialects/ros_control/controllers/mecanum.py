@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices, running
+from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
 from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
@@ -13,19 +15,141 @@ from cartwheel.dialects.ros_control.controllers.twist_command import TwistComman
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
+    FramePrefixParameters,
     check_axis,
     frame_prefix,
     joint_place,
     wheel_radius,
 )
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import parameter
 from cartwheel.geometry import Vec3
 from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
 
 _CORNERS = ("front_left", "front_right", "back_left", "back_right")
-_ROS2_CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
 _STATE = f"control_msgs{TWIN}/msg/MecanumDriveControllerState"
+
+
+def _wheel(corner: str, ros1: str) -> Any:
+    """The parameter with the joint of a wheel; Husarion's name comes first."""
+    return parameter(
+        ros1=(f"{ros1}_wheel_joint",),
+        ros2=(f"{corner}_wheel_name", f"{corner}_wheel_command_joint_name"),
+        default=f"{ros1}_wheel_joint",
+        role="joint",
+        interface="velocity",
+        doc=f"Joint of the {corner.replace('_', ' ')} wheel.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MecanumParameters(FramePrefixParameters):
+    front_left: str = _wheel("front_left", "front_left")
+    front_right: str = _wheel("front_right", "front_right")
+    rear_left: str = _wheel("rear_left", "back_left")
+    rear_right: str = _wheel("rear_right", "back_right")
+    radius: float | None = parameter(
+        "wheel_radius",
+        ros2=("kinematics/wheels_radius", "wheel_radius"),
+        default=None,
+        unit="m",
+        role="wheel_radius",
+        wheels=("front_left",),
+        doc="Radius of the wheels. Default: read from the description.",
+    )
+    radius_factor: float = parameter(
+        "wheel_radius_multiplier", default=1.0, doc="Factor on the radius."
+    )
+    reach: float | None = parameter(
+        ros1=(),
+        ros2=("kinematics/sum_of_robot_center_projection_on_X_Y_axis",),
+        default=None,
+        unit="m",
+        role="wheel_reach",
+        wheels=("front_left", "rear_right"),
+        doc="Half the sum of both wheel separations. Default: read from the description.",
+    )
+    reach_factor: float = parameter(
+        "wheel_separation_multiplier", default=1.0, doc="Factor on both wheel separations."
+    )
+    along: float | None = parameter(
+        "wheel_separation_x",
+        default=None,
+        unit="m",
+        role="wheel_base",
+        wheels=("front_left", "rear_left"),
+        doc="Distance between the axles. Default: read from the description.",
+    )
+    along_factor: float = parameter(
+        ros1=(),
+        ros2=("wheel_separation_x_multiplier",),
+        default=1.0,
+        doc="Factor on the distance of the axles.",
+    )
+    across: float | None = parameter(
+        "wheel_separation_y",
+        default=None,
+        unit="m",
+        role="wheel_separation",
+        wheels=("front_left", "front_right"),
+        doc="Distance between left and right wheels. Default: read from the description.",
+    )
+    across_factor: float = parameter(
+        ros1=(),
+        ros2=("wheel_separation_y_multiplier",),
+        default=1.0,
+        doc="Factor on the distance between left and right wheels.",
+    )
+    offset_x: float = parameter(
+        "kinematics/base_frame_offset/x",
+        default=0.0,
+        unit="m",
+        doc="Position of the base frame relative to the centre of the wheels.",
+    )
+    offset_y: float = parameter(
+        "kinematics/base_frame_offset/y", default=0.0, unit="m", doc="The same along y."
+    )
+    offset_yaw: float = parameter(
+        "kinematics/base_frame_offset/theta", default=0.0, unit="rad", doc="The same as an angle."
+    )
+    linear_x: Limits = parameter("linear/x", read=read_limits, doc="Limits of the forward speed.")
+    linear_y: Limits = parameter("linear/y", read=read_limits, doc="Limits of the sideways speed.")
+    angular: Limits = parameter("angular/z", read=read_limits, doc="Limits of the turning rate.")
+    stamped: bool = parameter(
+        ros1=(),
+        ros2=("use_stamped_vel",),
+        default=True,
+        doc="Subscribe to TwistStamped instead of Twist on a topic that ends in `_unstamped`.",
+    )
+    timeout: float = parameter(
+        "cmd_vel_timeout",
+        default=0.5,
+        unit="s",
+        doc="Time after which a command expires. In ROS 2, only Husarion's controller reads it.",
+    )
+    reference_timeout: float = parameter(
+        ros1=(),
+        ros2=("reference_timeout",),
+        default=0.0,
+        unit="s",
+        doc="Time after which a reference expires; 0 is never.",
+    )
+    open_loop: bool = parameter(ros1=(), ros2=("open_loop",), default=False, doc="Not supported.")
+    publish_limited: bool = parameter(
+        ros1=(), ros2=("publish_limited_velocity",), default=False, doc="Not supported."
+    )
+    unused: None = parameter(
+        ros1=(),
+        ros2=(
+            "position_feedback",
+            *(
+                f"{corner}_wheel_state_joint_name"
+                for corner in ("front_left", "front_right", "rear_left", "rear_right")
+            ),
+        ),
+        default=None,
+        doc="No effect.",
+    )
 
 
 class MecanumDriveController(WheelController):
@@ -41,84 +165,65 @@ class MecanumDriveController(WheelController):
     types: ClassVar[tuple[str, ...]] = ("mecanum_drive_controller/MecanumDriveController",)
     _wheels: MecanumWheels
 
-    def configure(self, settings: Settings) -> None:
-        ros2 = self.robot.ros2
+    parameters = MecanumParameters
+
+    def configure(self, given: MecanumParameters) -> None:
+        ros2, settings = self.robot.ros2, self.settings
         husarion = ros2 and settings.has("front_left_wheel_name")
-        names = []
-        for corner, plain in zip(_ROS2_CORNERS, _CORNERS, strict=True):
-            if husarion:
-                names.append(settings.text(f"{corner}_wheel_name"))
-            elif ros2:
-                names.append(settings.text(f"{corner}_wheel_command_joint_name"))
-                settings.ignore(f"{corner}_wheel_state_joint_name")
-            else:
-                names.append(settings.text(f"{plain}_wheel_joint", f"{plain}_wheel_joint"))
-        self._joints = [self.claim(name, "velocity") for name in names]
+        nested = ros2 and not husarion
+        self._joints = [
+            self.claim(name, "velocity")
+            for name in (given.front_left, given.front_right, given.rear_left, given.rear_right)
+        ]
         names = [wheel.joint for wheel in self._joints]
         for name in names:
             check_axis(self, name, LEFT)
         description = self.part.description
-        nested = ros2 and not husarion
-        stated = settings.optional_number("kinematics/wheels_radius" if nested else "wheel_radius")
-        radius = stated or wheel_radius(description, names[0]) or 0.0
-        reach = (
-            settings.optional_number("kinematics/sum_of_robot_center_projection_on_X_Y_axis")
-            if nested
-            else None
-        )
+        radius = given.radius or wheel_radius(description, names[0]) or 0.0
+        reach = given.reach
         if not reach:
             along = [joint_place(description, name)[0] for name in names]
             across = [joint_place(description, name)[1] for name in names]
-            x = settings.number("wheel_separation_x", max(along) - min(along))
-            y = settings.number("wheel_separation_y", max(across) - min(across))
-            if husarion:
-                x *= settings.number("wheel_separation_x_multiplier", 1.0)
-                y *= settings.number("wheel_separation_y_multiplier", 1.0)
-            reach = (x + y) / 2
-        reach *= settings.number("wheel_separation_multiplier", 1.0)
-        radius *= settings.number("wheel_radius_multiplier", 1.0)
+            x = max(along) - min(along) if given.along is None else given.along
+            y = max(across) - min(across) if given.across is None else given.across
+            reach = (x * given.along_factor + y * given.across_factor) / 2
+        reach *= given.reach_factor
+        radius *= given.radius_factor
         if radius <= 0 or reach <= 0:
             raise settings.error(
                 devices.CONTROLLER_PARAMETER_INVALID,
                 f"the wheel radius and separations must be positive (got {radius:g} and {reach:g})",
                 values={"radius": radius, "reach": reach},
             )
-        offset = settings.section("kinematics/base_frame_offset")
         config = MecanumWheelsConfig(
             radius=radius,
             reach=reach,
-            offset=(offset.number("x", 0.0), offset.number("y", 0.0), offset.number("theta", 0.0)),
-            limits=(
-                read_limits(settings.section("linear/x")),
-                read_limits(settings.section("linear/y")),
-                read_limits(settings.section("angular/z")),
-            ),
+            offset=(given.offset_x, given.offset_y, given.offset_yaw),
+            limits=(given.linear_x, given.linear_y, given.angular),
         )
-        stamped = ros2 and settings.boolean("use_stamped_vel", True)
+        stamped = ros2 and given.stamped
         topic = "reference" if nested else "cmd_vel"
         if ros2 and not stamped:
             topic += "_unstamped"
         # In ROS 2, commands do not expire by default.
-        limit = ("reference_timeout", 0.0) if nested else ("cmd_vel_timeout", 0.5)
-        timeout = settings.number(*limit)
+        timeout = given.reference_timeout if nested else given.timeout
         self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
-        prefix = frame_prefix(self, settings) if ros2 else ""
+        prefix = frame_prefix(self, given)
         self._odometry = wheel_odometry(
             self,
-            settings,
+            given,
             topic="odometry" if nested else "odom",
             tf_topic="tf_odometry" if nested else "/tf",
-            transform=settings.boolean("enable_odom_tf", True),
             prefix=prefix,
         )
-        self._frame = prefix + settings.text("odom_frame_id", "odom")
+        self._frame = prefix + given.odom_frame
         self._state = self.advertise("controller_state", _STATE) if nested else None
         if husarion:
-            # No effect: wheel positions are always measured, and their changes published as
-            # odometry.
-            settings.ignore("position_feedback")
-            for name in ("open_loop", "publish_limited_velocity"):
-                if settings.boolean(name, False):
+            for name, wanted in (
+                ("open_loop", given.open_loop),
+                ("publish_limited_velocity", given.publish_limited),
+            ):
+                if wanted:
                     self.warn(
                         devices.CONTROLLER_PARAMETER_UNKNOWN,
                         f'the parameter "{name}" has no effect',

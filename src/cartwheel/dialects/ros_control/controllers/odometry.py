@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.drives.reckoning import DeadReckoning
 from cartwheel.devices.drives.wheel_odometry import WheelOdometry
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.parameters import parameter
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.geometry import Array
 
@@ -15,51 +18,82 @@ _MOST_AVERAGED = 10_000
 """Maximum number of averaged velocities."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OdometryParameters:
+    """The parameters that all drives read."""
+
+    publish_rate: float = parameter(
+        "publish_rate",
+        default=50.0,
+        unit="Hz",
+        positive=True,
+        doc="Publish rate of the odometry.",
+    )
+    odom_frame: str = parameter(
+        "odom_frame_id", default="odom", doc="Frame of the odometry messages."
+    )
+    base_frame: str = parameter(
+        "base_frame_id", default="base_link", doc="Frame of the robot in the odometry messages."
+    )
+    enable_odom_tf: bool = parameter(
+        "enable_odom_tf", default=True, doc="Publish the transform from the odometry frame."
+    )
+    pose_covariance: tuple[float, ...] = parameter(
+        "pose_covariance_diagonal",
+        default=(0.0,) * 6,
+        doc="Covariance of the pose: 6 numbers of the diagonal, or all 36.",
+    )
+    twist_covariance: tuple[float, ...] = parameter(
+        "twist_covariance_diagonal",
+        default=(0.0,) * 6,
+        doc="Covariance of the twist: 6 numbers of the diagonal, or all 36.",
+    )
+    window: int = parameter(
+        "velocity_rolling_window_size",
+        default=10,
+        doc="Number of measurements over which the velocity is averaged.",
+    )
+
+
 def wheel_odometry(
     controller: Controller,
-    settings: Settings,
+    given: OdometryParameters,
     *,
     topic: str = "odom",
     tf_topic: str = "/tf",
-    transform: bool,
     prefix: str = "",
 ) -> WheelOdometry:
     """Creates the odometry of a controller.
 
     Args:
         controller: The controller that publishes the topic.
-        settings: ``publish_rate``, frames, covariances, ``velocity_rolling_window_size``.
+        given: Its parameters.
         topic: Topic of the odometry.
         tf_topic: Topic of the transform.
-        transform: Whether to publish the transform.
         prefix: Prefix of the frames.
 
     Raises:
         PluginError: A value is not allowed.
     """
-    rate = settings.number("publish_rate", 50.0)
-    if rate <= 0:
-        raise settings.invalid("publish_rate", rate, "positive")
-    size = settings.integer("velocity_rolling_window_size", 10)
+    settings, size = controller.settings, given.window
     if not 1 <= size <= _MOST_AVERAGED:
         wanted = f"between 1 and {_MOST_AVERAGED:,}"
         raise settings.invalid("velocity_rolling_window_size", size, wanted)
     config = OdometryConfig(
         topic=topic,
-        frame=prefix + settings.text("odom_frame_id", "odom"),
-        base=prefix + settings.text("base_frame_id", "base_link"),
-        rate=rate,
-        transform=transform,
+        frame=prefix + given.odom_frame,
+        base=prefix + given.base_frame,
+        rate=given.publish_rate,
+        transform=given.enable_odom_tf,
         tf_topic=tf_topic,
-        pose_covariance=_covariance(settings, "pose_covariance_diagonal"),
-        twist_covariance=_covariance(settings, "twist_covariance_diagonal"),
+        pose_covariance=_covariance(settings, "pose_covariance_diagonal", given.pose_covariance),
+        twist_covariance=_covariance(settings, "twist_covariance_diagonal", given.twist_covariance),
     )
     return controller.add(WheelOdometry(controller.scope, config, DeadReckoning(size)))
 
 
-def _covariance(settings: Settings, name: str) -> Array:
+def _covariance(settings: Settings, name: str, values: tuple[float, ...]) -> Array:
     """Returns a covariance, shape (36,)."""
-    values = settings.numbers(name, [0.0] * 6)
     if len(values) == 36:
         return np.array(values)
     if len(values) != 6:

@@ -10,10 +10,10 @@ from cartwheel.codes import running
 from cartwheel.devices.joints.pid import DampedEffort, Pid
 from cartwheel.dialects.ros_control.chaining import Reference
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.gains import read_ros2_gains
+from cartwheel.dialects.ros_control.gains import GAINS, read_ros2_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter
 from cartwheel.messages import header, message_class, zero
 from cartwheel.messages.store import TWIN
 
@@ -21,6 +21,42 @@ _COMMAND = f"control_msgs{TWIN}/msg/MultiDOFCommand"
 _STATE = f"control_msgs{TWIN}/msg/MultiDOFStateStamped"
 _ONE_STATE = f"control_msgs{TWIN}/msg/SingleDOFState"
 _UNKNOWN = (math.nan, math.nan)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PidControllerParameters:
+    joints: tuple[str, ...] = parameter(
+        "dof_names", role="joint", interface=OWN, doc="Joints that are commanded."
+    )
+    states: tuple[str, ...] = parameter(
+        "reference_and_state_dof_names",
+        default=(),
+        doc="Joints that are measured, and names of the references. Default: `dof_names`.",
+    )
+    kinds: tuple[str, ...] = parameter(
+        "reference_and_state_interfaces",
+        doc="Measured quantity: `position`, `velocity`, `effort`, or `position` and `velocity`.",
+    )
+    interface: str = parameter(
+        "command_interface", role="interface", doc="Interface of the commands."
+    )
+    external: bool = parameter(
+        "use_external_measured_states",
+        default=False,
+        doc="Use the measurements on the topic `measured_state`.",
+    )
+    feedforward: bool = parameter(
+        "enable_feedforward", default=True, doc="Add the feedforward term to the output."
+    )
+    starts_at_state: bool = parameter(
+        "set_current_state_as_first_setpoint",
+        default=True,
+        doc="Hold the current state until the first reference.",
+    )
+    gains: None = ignored(
+        "gains/{joint}",
+        doc=f"{GAINS} Also `feedforward_gain` and `angle_wraparound`.",
+    )
 
 
 class PidController(Controller):
@@ -34,20 +70,21 @@ class PidController(Controller):
 
     types: ClassVar[tuple[str, ...]] = ("pid_controller/PidController",)
 
-    def configure(self, settings: Settings) -> None:
-        names = settings.texts("dof_names")
-        self._names = settings.texts("reference_and_state_dof_names", []) or names
+    parameters = PidControllerParameters
+
+    def configure(self, given: PidControllerParameters) -> None:
+        settings, names = self.settings, given.joints
+        self._names = list(given.states or names)
         if not names or len(self._names) != len(names):
             wanted = f"a list of {len(names)} names, as many as in dof_names"
             raise settings.invalid("reference_and_state_dof_names", self._names, wanted)
-        kinds = settings.texts("reference_and_state_interfaces")
+        kinds = list(given.kinds)
         if not (len(kinds) == 1 and kinds[0] in COMMANDS) and kinds != ["position", "velocity"]:
             wanted = f"one of {', '.join(COMMANDS)}, or position and velocity"
             raise settings.invalid("reference_and_state_interfaces", kinds, wanted)
-        interface = settings.text("command_interface")
-        self._external = settings.boolean("use_external_measured_states", False)
-        self._feedforward = settings.boolean("enable_feedforward", True)
-        self._starts_at_state = settings.boolean("set_current_state_as_first_setpoint", True)
+        interface = given.interface
+        self._external, self._feedforward = given.external, given.feedforward
+        self._starts_at_state = given.starts_at_state
         self._loops = []
         for name, state_name in zip(names, self._names, strict=True):
             joint = self.claim(name, interface)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,12 +15,63 @@ from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.dialects.ros_control.robot import RobotSensor
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import UnknownNameError
-from cartwheel.geometry import Array
 from cartwheel.graph import Publisher
 from cartwheel.messages import header
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BroadcasterParameters:
+    publish_rate: float | None = parameter(
+        "publish_rate", ros2=(), default=None, unit="Hz", doc="Publish rate; required."
+    )
+    sensor: str = parameter(
+        ros1=(),
+        ros2=("sensor_name",),
+        default="",
+        doc="The sensor; can be omitted if the robot has one sensor of this type.",
+    )
+    frame: str | None = parameter(
+        ros1=(),
+        ros2=("frame_id",),
+        default=None,
+        doc="Frame of the messages. Default: the sensor's link.",
+    )
+
+
+def _covariance(what: str) -> Any:
+    return parameter(
+        f"static_covariance_{what}",
+        default=(0.0,) * 9,
+        doc=f"Covariance of the {what.replace('_', ' ')}: 9 numbers.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ImuBroadcasterParameters(BroadcasterParameters):
+    orientation: tuple[float, ...] = _covariance("orientation")
+    angular_velocity: tuple[float, ...] = _covariance("angular_velocity")
+    linear_acceleration: tuple[float, ...] = _covariance("linear_acceleration")
+
+
+def _six(default: float) -> Callable[[Settings], tuple[float, ...]]:
+    """Reads the numbers of a force and a torque."""
+    names = [f"{what}/{axis}" for what in ("force", "torque") for axis in "xyz"]
+    return lambda settings: tuple(settings.number(name, default) for name in names)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ForceTorqueBroadcasterParameters(BroadcasterParameters):
+    offset: tuple[float, ...] = parameter(
+        "offset", read=_six(0.0), doc="Added to the measurement: `force/x` to `torque/z`."
+    )
+    multiplier: tuple[float, ...] = parameter(
+        "multiplier", read=_six(1.0), doc="Factors on the measurement: `force/x` to `torque/z`."
+    )
+    unused: None = ignored("interface_names")
 
 
 class _SensorBroadcaster(Controller):
@@ -28,13 +81,16 @@ class _SensorBroadcaster(Controller):
     message: ClassVar[str]
     topic: ClassVar[str]
 
-    def configure(self, settings: Settings) -> None:
+    def configure(self, given: Any) -> None:
+        settings = self.settings
         self._outputs: list[tuple[RobotSensor, Publisher, str]] = []
-        rate = 0.0 if self.robot.ros2 else settings.number("publish_rate")
+        if given.publish_rate is None and not self.robot.ros2:
+            raise settings.missing("publish_rate")
+        rate = given.publish_rate or 0.0
         self._periodic = Periodic(rate)
         sensors = [each for each in self.robot.sensors.values() if each.type == self.kind]
         if self.robot.ros2:
-            name = settings.text("sensor_name", "")
+            name = given.sensor
             if not name and len(sensors) == 1:
                 name = sensors[0].name
             if name not in [each.name for each in sensors]:
@@ -45,7 +101,7 @@ class _SensorBroadcaster(Controller):
                     code=running.UNKNOWN_SENSOR,
                 )
             chosen = self.robot.sensors[name]
-            frame = settings.text("frame_id", chosen.sensor.link)
+            frame = chosen.sensor.link if given.frame is None else given.frame
             self._outputs.append((chosen, self.advertise(self.topic, self.message), frame))
         else:
             if not sensors:
@@ -63,10 +119,10 @@ class _SensorBroadcaster(Controller):
                 )
                 for each in sensors
             ]
-        self.read_settings(settings)
+        self.calibrate(given)
 
-    def read_settings(self, settings: Settings) -> None:
-        """Reads the other parameters."""
+    def calibrate(self, given: Any) -> None:
+        """Uses the parameters of the sensor type."""
 
     def start(self, time_ns: int) -> None:
         self._periodic.start(time_ns)
@@ -103,11 +159,15 @@ class ImuBroadcaster(_SensorBroadcaster):
     message = "sensor_msgs/msg/Imu"
     topic = "imu"
 
-    def read_settings(self, settings: Settings) -> None:
-        self._covariances = [
-            _nine(settings, f"static_covariance_{what}")
-            for what in ("orientation", "angular_velocity", "linear_acceleration")
-        ]
+    parameters = ImuBroadcasterParameters
+
+    def calibrate(self, given: ImuBroadcasterParameters) -> None:
+        self._covariances = []
+        for what in ("orientation", "angular_velocity", "linear_acceleration"):
+            values = getattr(given, what)
+            if len(values) != 9:
+                raise self.settings.invalid(f"static_covariance_{what}", values, "9 numbers")
+            self._covariances.append(np.array(values))
 
     def measure(self, sensed: RobotSensor, head: Any) -> Any:
         assert isinstance(sensed.unit, InertialUnit)
@@ -131,11 +191,10 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
     message = WRENCH_STAMPED
     topic = "wrench"
 
-    def read_settings(self, settings: Settings) -> None:
-        settings.ignore("interface_names")
-        names = [f"{what}/{axis}" for what in ("force", "torque") for axis in "xyz"]
-        self._offsets = [settings.number(f"offset/{name}", 0.0) for name in names]
-        self._factors = [settings.number(f"multiplier/{name}", 1.0) for name in names]
+    parameters = ForceTorqueBroadcasterParameters
+
+    def calibrate(self, given: ForceTorqueBroadcasterParameters) -> None:
+        self._offsets, self._factors = given.offset, given.multiplier
 
     def measure(self, sensed: RobotSensor, head: Any) -> Any:
         assert isinstance(sensed.unit, JointLoad)
@@ -146,10 +205,3 @@ class ForceTorqueBroadcaster(_SensorBroadcaster):
             )
         ]
         return wrench_stamped(head, values)
-
-
-def _nine(settings: Settings, name: str) -> Array:
-    values = settings.numbers(name, [0.0] * 9)
-    if len(values) != 9:
-        raise settings.invalid(name, values, "9 numbers")
-    return np.array(values)

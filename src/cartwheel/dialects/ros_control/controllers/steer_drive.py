@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.steered_wheels import SteeredByAngle, SteeredByAngleConfig
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
-from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters, wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
@@ -16,8 +18,60 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
     joint_place,
     wheel_radius,
 )
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.geometry import Vec3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SteerDriveParameters(OdometryParameters):
+    wheel: str = parameter(
+        "rear_wheel",
+        default="rear_wheel_joint",
+        role="joint",
+        interface="velocity",
+        doc="Joint of the driven wheel.",
+    )
+    steer: str = parameter(
+        "front_steer",
+        default="front_steer_joint",
+        role="joint",
+        interface="position",
+        doc="Steering joint.",
+    )
+    base: float | None = parameter(
+        "wheel_separation_h",
+        default=None,
+        unit="m",
+        role="wheel_base",
+        wheels=("steer", "wheel"),
+        doc="Distance between the axles. Default: read from the description.",
+    )
+    base_factor: float = parameter(
+        "wheel_separation_h_multiplier", default=1.0, doc="Factor on the distance of the axles."
+    )
+    radius: float | None = parameter(
+        "wheel_radius",
+        default=None,
+        unit="m",
+        role="wheel_radius",
+        wheels=("wheel",),
+        doc="Radius of the driven wheel. Default: read from the description.",
+    )
+    radius_factor: float = parameter(
+        "wheel_radius_multiplier", default=1.0, doc="Factor on the radius."
+    )
+    angle_factor: float = parameter(
+        "steer_pos_multiplier", default=1.0, doc="Factor on the steering angle."
+    )
+    linear: Limits = parameter("linear/x", read=read_limits, doc="Limits of the forward speed.")
+    angular: Limits = parameter("angular/z", read=read_limits, doc="Limits of the steering angle.")
+    open_loop: bool = parameter(
+        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
+    )
+    timeout: float = parameter(
+        "cmd_vel_timeout", default=0.5, unit="s", doc="Time after which a command expires."
+    )
+    unused: None = ignored("allow_multiple_cmd_vel_publishers")
 
 
 class SteerDriveController(WheelController):
@@ -30,36 +84,34 @@ class SteerDriveController(WheelController):
     types: ClassVar[tuple[str, ...]] = ("steer_drive_controller/SteerDriveController",)
     _wheels: SteeredByAngle
 
-    def configure(self, settings: Settings) -> None:
-        wheel = settings.text("rear_wheel", "rear_wheel_joint")
-        steer = settings.text("front_steer", "front_steer_joint")
+    parameters = SteerDriveParameters
+
+    def configure(self, given: SteerDriveParameters) -> None:
+        wheel, steer = given.wheel, given.steer
         driven = self.claim(wheel, "velocity")
         steering = self.claim(steer, "position")
         check_axis(self, wheel, LEFT)
         check_axis(self, steer, UP)
         description = self.part.description
-        base = settings.optional_number("wheel_separation_h")
+        base = given.base
         if base is None:
             base = abs(joint_place(description, steer)[0] - joint_place(description, wheel)[0])
-        radius = settings.optional_number("wheel_radius") or wheel_radius(description, wheel)
+        radius = given.radius or wheel_radius(description, wheel)
         if not base or base <= 0 or not radius or radius <= 0:
             name = "wheel_radius" if base and base > 0 else "wheel_separation_h"
-            raise settings.invalid(name, radius if name == "wheel_radius" else base, "positive")
+            raise self.settings.invalid(
+                name, radius if name == "wheel_radius" else base, "positive"
+            )
         config = SteeredByAngleConfig(
-            wheel_base=base * settings.number("wheel_separation_h_multiplier", 1.0),
-            radius=radius * settings.number("wheel_radius_multiplier", 1.0),
-            angle_factor=settings.number("steer_pos_multiplier", 1.0),
-            speed_limits=read_limits(settings.section("linear/x")),
-            angle_limits=read_limits(settings.section("angular/z")),
-            open_loop=settings.boolean("open_loop", False),
+            wheel_base=base * given.base_factor,
+            radius=radius * given.radius_factor,
+            angle_factor=given.angle_factor,
+            speed_limits=given.linear,
+            angle_limits=given.angular,
+            open_loop=given.open_loop,
         )
-        settings.ignore("allow_multiple_cmd_vel_publishers")
-        self._command = TwistCommand(
-            self, "cmd_vel", timeout=settings.number("cmd_vel_timeout", 0.5)
-        )
-        self._odometry = wheel_odometry(
-            self, settings, transform=settings.boolean("enable_odom_tf", True)
-        )
+        self._command = TwistCommand(self, "cmd_vel", timeout=given.timeout)
+        self._odometry = wheel_odometry(self, given)
         self._wheels = SteeredByAngle(config, driven, steering, self._odometry.reckoning)
 
     def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.steered_wheels import SteeredAxle, SteeredAxleConfig
-from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters, wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
@@ -19,12 +20,100 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
     joint_place,
 )
 from cartwheel.dialects.ros_control.hardware import JointHardware
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.geometry import Vec3
 from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
 
 _STATE = f"control_msgs{TWIN}/msg/SteeringControllerStatus"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SteeringParameters(OdometryParameters):
+    front_steering: bool = parameter(
+        "front_steering",
+        default=True,
+        role="front_steering",
+        doc="The front axle is steered, and the rear axle driven; otherwise the reverse.",
+    )
+    traction: tuple[str, ...] = parameter(
+        "traction_joints_names",
+        "{driven}_wheels_names",
+        role="joint",
+        interface="velocity",
+        doc="Joints of one or two driven wheels.",
+    )
+    steering: tuple[str, ...] = parameter(
+        "steering_joints_names",
+        "{steered}_wheels_names",
+        role="joint",
+        interface="position",
+        doc="One or two steering joints.",
+    )
+    base: float = parameter(
+        "wheelbase",
+        unit="m",
+        role="wheel_base",
+        wheels=("steering", "traction"),
+        positive=True,
+        doc="Distance between the axles.",
+    )
+    driven_track: float = parameter(
+        "traction_track_width",
+        "wheel_track",
+        "{driven}_wheel_track",
+        default=0.0,
+        unit="m",
+        role="wheel_separation",
+        wheels=("traction", "traction"),
+        positive=True,
+        doc="Distance between two driven wheels. Default: required for two wheels.",
+    )
+    steered_track: float = parameter(
+        "steering_track_width",
+        "wheel_track",
+        "{steered}_wheel_track",
+        default=0.0,
+        unit="m",
+        role="wheel_separation",
+        wheels=("steering", "steering"),
+        positive=True,
+        doc="Distance between two steering joints. Default: required for two joints.",
+    )
+    radius: float = parameter(
+        "traction_wheels_radius",
+        "traction_wheel_radius",
+        "wheels_radius",
+        "{driven}_wheels_radius",
+        "{driven}_wheel_radius",
+        unit="m",
+        role="wheel_radius",
+        wheels=("traction",),
+        positive=True,
+        doc="Radius of the driven wheels.",
+    )
+    open_loop: bool = parameter(
+        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
+    )
+    position_feedback: bool = parameter(
+        "position_feedback",
+        default=False,
+        doc="Compute odometry from wheel positions instead of velocities.",
+    )
+    timeout: float = parameter(
+        "reference_timeout", default=1.0, unit="s", doc="Time after which a reference expires."
+    )
+    stamped: bool = parameter(
+        "use_stamped_vel",
+        default=True,
+        doc="Subscribe to TwistStamped on `reference` instead of Twist on `reference_unstamped`.",
+    )
+    unused: None = ignored(
+        "front_wheels_radius", "rear_wheels_radius", "front_wheel_radius", "rear_wheel_radius",
+        "front_wheel_track", "rear_wheel_track", "front_wheels_state_names",
+        "rear_wheels_state_names", "traction_joints_state_names", "steering_joints_state_names",
+        "reduce_wheel_speed_until_steering_reached",
+    )  # fmt: skip
 
 
 class SteeringController(WheelController):
@@ -43,15 +132,11 @@ class SteeringController(WheelController):
     )
     _wheels: SteeredAxle
 
-    def configure(self, settings: Settings) -> None:
-        front = settings.boolean("front_steering", True)
-        driven_axle, steered_axle = ("rear", "front") if front else ("front", "rear")
-        traction = settings.texts("traction_joints_names", []) or settings.texts(
-            f"{driven_axle}_wheels_names"
-        )
-        steering = settings.texts("steering_joints_names", []) or settings.texts(
-            f"{steered_axle}_wheels_names"
-        )
+    parameters = SteeringParameters
+
+    def configure(self, given: SteeringParameters) -> None:
+        settings = self.settings
+        traction, steering = given.traction, given.steering
         for names in (traction, steering):
             if len(names) not in (1, 2):
                 raise settings.error(
@@ -68,44 +153,25 @@ class SteeringController(WheelController):
             check_axis(self, joint.joint, UP)
         for joint in driven:
             check_axis(self, joint.joint, LEFT)
-        base = _positive(settings, "wheelbase")
-        tracks = ("traction_track_width", "wheel_track", f"{driven_axle}_wheel_track")
-        driven_track = _first(settings, tracks, len(traction) == 2)
-        tracks = ("steering_track_width", "wheel_track", f"{steered_axle}_wheel_track")
-        steered_track = _first(settings, tracks, len(steering) == 2)
-        radii = (
-            "traction_wheels_radius", "traction_wheel_radius", "wheels_radius",
-            f"{driven_axle}_wheels_radius", f"{driven_axle}_wheel_radius",
-        )  # fmt: skip
-        radius = _first(settings, radii, True)
-        settings.ignore(
-            "front_wheels_radius", "rear_wheels_radius", "front_wheel_radius", "rear_wheel_radius",
-            "front_wheel_track", "rear_wheel_track", "front_wheels_state_names",
-            "rear_wheels_state_names", "traction_joints_state_names", "steering_joints_state_names",
-            "reduce_wheel_speed_until_steering_reached",
-        )  # fmt: skip
-        open_loop = settings.boolean("open_loop", False)
-        self._by_position = settings.boolean("position_feedback", False)
+        for name, track, wheels in (
+            ("traction_track_width", given.driven_track, traction),
+            ("steering_track_width", given.steered_track, steering),
+        ):
+            if len(wheels) == 2 and not track:
+                raise settings.missing(name)
+        self._by_position = given.position_feedback
         config = SteeredAxleConfig(
-            wheel_base=base,
-            driven_track=driven_track,
-            steered_track=steered_track,
-            radius=radius,
+            wheel_base=given.base,
+            driven_track=given.driven_track,
+            steered_track=given.steered_track,
+            radius=given.radius,
             measures=(
-                "nothing" if open_loop else "positions" if self._by_position else "velocities"
+                "nothing" if given.open_loop else "positions" if self._by_position else "velocities"
             ),
         )
-        timeout = settings.number("reference_timeout", 1.0)
-        stamped = settings.boolean("use_stamped_vel", True)
-        topic = "reference" if stamped else "reference_unstamped"
-        self._command = TwistCommand(self, topic, timeout=timeout, stamped=stamped)
-        self._odometry = wheel_odometry(
-            self,
-            settings,
-            topic="odometry",
-            tf_topic="tf_odometry",
-            transform=settings.boolean("enable_odom_tf", True),
-        )
+        topic = "reference" if given.stamped else "reference_unstamped"
+        self._command = TwistCommand(self, topic, timeout=given.timeout, stamped=given.stamped)
+        self._odometry = wheel_odometry(self, given, topic="odometry", tf_topic="tf_odometry")
         self._wheels = SteeredAxle(config, driven, steering_joints, self._odometry.reckoning)
 
     def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002
@@ -134,20 +200,3 @@ class SteeringController(WheelController):
         return sorted(
             claimed, key=lambda joint: -joint_place(self.part.description, joint.joint)[1]
         )
-
-
-def _positive(settings: Settings, name: str) -> float:
-    value = settings.number(name)
-    if value <= 0:
-        raise settings.invalid(name, value, "positive")
-    return value
-
-
-def _first(settings: Settings, names: Sequence[str], needed: bool) -> float:
-    """Returns the first of several parameters that is stated; 0 if none is, and none is needed."""
-    for name in names:
-        if settings.has(name):
-            return _positive(settings, name)
-    if needed:
-        raise settings.missing(names[0])
-    return 0.0

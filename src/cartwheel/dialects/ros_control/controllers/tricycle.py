@@ -3,17 +3,70 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
+from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.steered_wheels import SteeredWheel, SteeredWheelConfig
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
-from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters, wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import LEFT, UP, check_axis
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.geometry import Vec3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TricycleParameters(OdometryParameters):
+    traction: str = parameter(
+        "traction_joint_name",
+        role="joint",
+        interface="velocity",
+        doc="Joint of the driven wheel.",
+    )
+    steering: str = parameter(
+        "steering_joint_name", role="joint", interface="position", doc="Steering joint."
+    )
+    base: float = parameter("wheelbase", unit="m", positive=True, doc="Distance between the axles.")
+    radius: float = parameter(
+        "wheel_radius",
+        unit="m",
+        role="wheel_radius",
+        wheels=("traction",),
+        positive=True,
+        doc="Radius of the driven wheel.",
+    )
+    speed_limits: Limits = parameter(
+        "traction", read=read_limits, doc="Limits of the forward speed."
+    )
+    steering_rate: float = parameter(
+        "steering/max_velocity",
+        default=math.inf,
+        unit="rad/s",
+        doc="Maximum velocity of the steering joint.",
+    )
+    steering_lower: float = parameter(
+        "steering/min_position", default=-math.inf, unit="rad", doc="Minimum steering angle."
+    )
+    steering_upper: float = parameter(
+        "steering/max_position", default=math.inf, unit="rad", doc="Maximum steering angle."
+    )
+    open_loop: bool = parameter(
+        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
+    )
+    timeout: float = parameter(
+        "cmd_vel_timeout", default=500.0, unit="ms", doc="Time after which a command expires."
+    )
+    stamped: bool = parameter(
+        "use_stamped_vel", default=True, doc="Subscribe to TwistStamped instead of Twist."
+    )
+    publish_command: bool = parameter(
+        "publish_ackermann_command", default=False, doc="Not supported."
+    )
+    only_twist: bool = parameter("odom_only_twist", default=False, doc="Not supported.")
+    unused: None = ignored("traction", "steering", doc="Other limits have no effect.")
 
 
 class TricycleController(WheelController):
@@ -22,42 +75,34 @@ class TricycleController(WheelController):
     types: ClassVar[tuple[str, ...]] = ("tricycle_controller/TricycleController",)
     _wheels: SteeredWheel
 
-    def configure(self, settings: Settings) -> None:
-        wheel = self.claim(settings.text("traction_joint_name"), "velocity")
-        steering = self.claim(settings.text("steering_joint_name"), "position")
+    parameters = TricycleParameters
+
+    def configure(self, given: TricycleParameters) -> None:
+        wheel = self.claim(given.traction, "velocity")
+        steering = self.claim(given.steering, "position")
         check_axis(self, wheel.joint, LEFT)
         check_axis(self, steering.joint, UP)
-        base = settings.number("wheelbase")
-        radius = settings.number("wheel_radius")
-        for name, value in (("wheelbase", base), ("wheel_radius", radius)):
-            if value <= 0:
-                raise settings.invalid(name, value, "positive")
-        limits = settings.section("steering")
         config = SteeredWheelConfig(
-            wheel_base=base,
-            radius=radius,
-            open_loop=settings.boolean("open_loop", False),
-            speed_limits=read_limits(settings.section("traction")),
-            steering_rate=limits.number("max_velocity", math.inf),
-            steering_range=(
-                limits.number("min_position", -math.inf),
-                limits.number("max_position", math.inf),
-            ),
+            wheel_base=given.base,
+            radius=given.radius,
+            open_loop=given.open_loop,
+            speed_limits=given.speed_limits,
+            steering_rate=given.steering_rate,
+            steering_range=(given.steering_lower, given.steering_upper),
         )
-        settings.ignore("traction", "steering")
-        for name in ("publish_ackermann_command", "odom_only_twist"):
-            if settings.boolean(name, False):
+        for name, wanted in (
+            ("publish_ackermann_command", given.publish_command),
+            ("odom_only_twist", given.only_twist),
+        ):
+            if wanted:
                 self.warn(
                     devices.CONTROLLER_PARAMETER_UNKNOWN,
                     f'the parameter "{name}" has no effect',
                     values={"parameters": (name,)},
                 )
-        timeout = settings.number("cmd_vel_timeout", 500.0) / 1000.0
-        stamped = settings.boolean("use_stamped_vel", True)
-        self._command = TwistCommand(self, "cmd_vel", timeout=timeout, stamped=stamped)
-        self._odometry = wheel_odometry(
-            self, settings, transform=settings.boolean("enable_odom_tf", True)
-        )
+        timeout = given.timeout / 1000.0
+        self._command = TwistCommand(self, "cmd_vel", timeout=timeout, stamped=given.stamped)
+        self._odometry = wheel_odometry(self, given)
         self._wheels = SteeredWheel(config, wheel, steering, self._odometry.reckoning)
 
     def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.devices.elementwise import clamp
 from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.messages import zero
 
 _BRAKE, _SERVO = 0x00, 0x0A
@@ -17,6 +18,14 @@ _NO_POSITION, _NO_VELOCITY = 2.146e9, 16000.0
 """Targets that disable their gain."""
 _BRAKING = 20.0
 """N m s/rad."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class UnitreeJointParameters:
+    joint: str = parameter("joint", role="joint", interface="effort", doc="Joint.")
+    unused: None = ignored(
+        "pid", doc="No effect, as in the original, which reads it only in a tuning build."
+    )
 
 
 class UnitreeJointController(Controller):
@@ -29,10 +38,10 @@ class UnitreeJointController(Controller):
 
     types: ClassVar[tuple[str, ...]] = ("unitree_legged_control/UnitreeJointController",)
 
-    def configure(self, settings: Settings) -> None:
-        self._joint = self.claim(settings.text("joint"), "effort")
-        # The original reads these gains only in a tuning build.
-        settings.ignore("pid")
+    parameters = UnitreeJointParameters
+
+    def configure(self, given: UnitreeJointParameters) -> None:
+        self._joint = self.claim(given.joint, "effort")
         self._set_target(PidGains(p=0.0, d=_BRAKING))
         self.subscribe("command", "unitree_legged_msgs/msg/MotorCmd", self._on_command)
         self._publisher = self.advertise("state", "unitree_legged_msgs/msg/MotorState")

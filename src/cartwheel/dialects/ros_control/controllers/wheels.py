@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from cartwheel.codes import robot
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Cylinder, RobotDescription, Sphere
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.settings import Settings
+from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters
+from cartwheel.dialects.ros_control.parameters import parameter
 from cartwheel.geometry import matrix_from_quat
 
 LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -63,9 +66,25 @@ def wheel_radius(description: RobotDescription, joint: str) -> float | None:
     return None
 
 
-def frame_prefix(controller: Controller, settings: Settings) -> str:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FramePrefixParameters(OdometryParameters):
+    """The parameters of drives whose frames have a prefix in ROS 2."""
+
+    has_prefix: bool = parameter(
+        ros1=(),
+        ros2=("tf_frame_prefix_enable",),
+        default=True,
+        doc="Add a prefix to the frames.",
+    )
+    prefix: str = parameter(
+        ros1=(),
+        ros2=("tf_frame_prefix",),
+        default="",
+        doc="Prefix of the frames; if empty, the namespace of the controller manager.",
+    )
+
+
+def frame_prefix(controller: Controller, given: FramePrefixParameters) -> str:
     """Returns the prefix of a ROS 2 drive's frames: ``tf_frame_prefix``, or the namespace."""
-    wanted = settings.boolean("tf_frame_prefix_enable", True)
-    own = settings.text("tf_frame_prefix", "")
-    space = (own or controller.robot.namespace).strip("/")
-    return f"{space}/" if wanted and space else ""
+    space = (given.prefix or controller.robot.namespace).strip("/")
+    return f"{space}/" if controller.robot.ros2 and given.has_prefix and space else ""
