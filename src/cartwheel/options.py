@@ -75,6 +75,7 @@ PACKAGE_PATH = Option(flag="--package-path", parameter="package_path")
 RMW = Option(flag="--rmw", parameter="rmw")
 FOXGLOVE = Option(flag="--foxglove", parameter="foxglove")
 FOXGLOVE_PORT = Option(flag="--foxglove-port", parameter="foxglove", method="serve_foxglove")
+WITHOUT = Option(flag="--without", parameter="without")
 PORT = Option(flag="--port", parameter="viewer", method="show")
 
 

@@ -45,6 +45,7 @@ class Session:
         plugins: Python files that define plugins. They are executed.
         allow_path: Folders with files that clients of the session's services may load.
         package_path: Folders to search for the packages of message types first.
+        without: Physics that Cartwheel adds to descriptions, to be omitted; see `Simulation`.
 
     Raises:
         CartwheelError: The world or a configuration file cannot be used.
@@ -61,6 +62,7 @@ class Session:
         plugins: Sequence[Path] = (),
         allow_path: Sequence[Path] = (),
         package_path: Sequence[Path] = (),
+        without: Sequence[str] = (),
     ) -> None:
         self.allow_path = tuple(allow_path)
         self._packages = SimulationPackages(package_path)
@@ -96,6 +98,7 @@ class Session:
             attach=attach_model,
             attach_world=attach_to_world,
             seed=seed,
+            without=without,
         )
         self.graph.post = self.simulation.post
         self.graph.post_read = self.simulation.post_read
@@ -200,6 +203,7 @@ class Session:
             "seed": str(simulation.engine.seed),
             "step_ns": str(simulation.step_ns),
             "models": ", ".join(simulation.models),
+            **({"without": ", ".join(sorted(omit))} if (omit := simulation.engine.without) else {}),
         }
 
     def pacer(self, *, until_ns: int | None = None) -> Pacer:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import cartwheel as cw
+from cartwheel.codes.world import CHAIN_DRAG
 from cartwheel.world import chains
 
 STEP = 0.005
@@ -129,3 +130,62 @@ def test_a_double_pendulum_swings_on(make):
     first = energy(simulation) - lowest
     simulation.advance(simulation.time_ns + 5_000_000_000)
     assert energy(simulation) - lowest == pytest.approx(first, rel=0.02)
+
+
+def damped(text, *, damping, velocity=None):
+    """The same links, whose joints state a damping and a maximum velocity."""
+    limit = f"<limit><velocity>{velocity}</velocity></limit>" if velocity else ""
+    stated = f"</xyz>{limit}<dynamics><damping>{damping}</damping></dynamics></axis>"
+    return text.replace("</xyz></axis>", stated)
+
+
+def dragged(make, text, **more):
+    """The joints with drag in a world, by the diagnostic of the load."""
+    simulation = standing(make, text, **more)
+    return [
+        joint
+        for each in simulation.diagnostics
+        if each.code is CHAIN_DRAG
+        for joint in each.values["joints"]
+    ]
+
+
+def test_a_hinge_with_enough_damping_has_no_drag(make):
+    text = arm((0.5, 0.4), (2.0, 1.0))
+    # The energy of a fall: each mass from its largest distance above the first hinge to below it.
+    fall = 2 * 9.8 * (2.0 * 0.25 + 1.0 * (0.5 + 0.2))
+    enough = STEP * fall
+    assert dragged(make, damped(text, damping=1.01 * enough, velocity=1.0)) == []
+    assert dragged(make, damped(text, damping=0.99 * enough, velocity=1.0)) == ["j0", "j1"]
+
+
+def test_a_fast_joint_needs_more_damping(make):
+    text = arm((0.5, 0.4), (2.0, 1.0))
+    tip = 1.0 * 0.4**2 / 12 + 1.0 * 0.2**2
+    enough = 0.5 * STEP * tip * 60.0**2
+    found = dragged(make, damped(text, damping=1.01 * enough, velocity=60.0))
+    assert found == ["j0"]
+    assert dragged(make, damped(text, damping=0.99 * enough, velocity=60.0)) == ["j0", "j1"]
+
+
+def test_without_a_maximum_velocity_damping_must_be_enough_at_one_radian_per_step(make):
+    text = arm((0.5, 0.4), (2.0, 1.0))
+    tip = 1.0 * 0.4**2 / 12 + 1.0 * 0.2**2
+    enough = 0.5 * tip / STEP
+    assert dragged(make, damped(text, damping=1.01 * enough)) == ["j0"]
+    assert dragged(make, damped(text, damping=0.99 * enough)) == ["j0", "j1"]
+
+
+def test_a_falling_arm_with_just_enough_damping_gains_no_energy(make):
+    lengths, masses = FALLING["lengths"], FALLING["masses"]
+    ends = np.cumsum(lengths)
+    middles = ends - np.array(lengths) / 2
+    damping = 1.001 * STEP * 2 * 9.8 * float(np.dot(masses, middles))
+    simulation = standing(make, damped(arm(**FALLING), damping=damping, velocity=0.1))
+    assert not simulation.model.dof_dampingpoly.any()
+    before = energy(simulation)
+    for _ in range(40):
+        simulation.advance(simulation.time_ns + 50_000_000)
+        now = energy(simulation)
+        assert now < before + 1e-3
+        before = now

@@ -53,10 +53,14 @@ class World(RunningWorld):
         host: Address on which the web interface and the Foxglove server listen.
         allow_origin: Origins of further web pages that may connect to them.
         package_path: Folders to search for the packages of message types first.
+        without: Physics that Cartwheel adds to descriptions and that is to be omitted:
+            ``chain-drag``, ``round-tyres``, ``soft-sliding``, ``minimum-inertia``,
+            ``raised-efforts``, ``slow-separation`` or ``all``.
 
     Raises:
         DescriptionError: The world's file cannot be used.
-        CartwheelError: A connection cannot be opened. Nothing remains open.
+        CartwheelError: A name in `without` is unknown, or a connection cannot be opened. Nothing
+            remains open.
     """
 
     def __init__(
@@ -80,6 +84,7 @@ class World(RunningWorld):
         package_path: str | Path | Sequence[str | Path] = (),
         host: str = "127.0.0.1",
         allow_origin: str | Sequence[str] = (),
+        without: str | Sequence[str] = (),
     ) -> None:
         connections = plan = None
         files = _several(record)
@@ -116,6 +121,7 @@ class World(RunningWorld):
                 allow_path=[Path(folder) for folder in _several(allow_path)],
                 plugins=[Path(file) for file in _several(plugins)],
                 package_path=[Path(folder) for folder in _several(package_path)],
+                without=_several(without),
             )
             super().__init__(
                 session,

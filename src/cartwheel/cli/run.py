@@ -42,6 +42,16 @@ def run(
             "--strict", help="Treat every warning as an error.", rich_help_panel=help.WORLD
         ),
     ] = False,
+    without: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--without",
+            metavar="NAME|all",
+            help="Omit physics that Cartwheel adds to descriptions, such as chain-drag; "
+            "--verbose shows the names. Can be repeated.",
+            rich_help_panel=help.WORLD,
+        ),
+    ] = None,
     x: arguments.X = None,
     y: arguments.Y = None,
     z: arguments.Z = None,
@@ -231,6 +241,7 @@ def run(
             paused=paused,
             seed=seed,
             strict=strict,
+            without=tuple(without or ()),
             host=host,
             allow_origin=tuple(allow_origin or ()),
             port=port,

@@ -82,3 +82,13 @@ WORLD_FORKED = Code(
     "a forked process uses a world that its parent connected to other programs",
 )
 RUN_NESTED = Code("CW625", "run-nested", "error", "a callback runs the world that called it")
+CHAIN_DRAG = Code(
+    "CW626", "chain-drag", "info", "drag acts on the hinges of a chain, such as a robot arm"
+)
+TYRES_ROUNDED = Code("CW627", "tyres-rounded", "info", "wheels collide as ellipsoids")
+SLIDING_SOFTENED = Code(
+    "CW628", "sliding-softened", "info", "friction of a sliding body is softer than its contacts"
+)
+INERTIA_RAISED = Code(
+    "CW629", "inertia-raised", "info", "a moment of inertia is raised to a positive value"
+)

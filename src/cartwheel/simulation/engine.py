@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import mujoco
@@ -16,6 +16,7 @@ from cartwheel.simulation.clock import Task, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
 from cartwheel.simulation.sensing.rendering import Renderer
+from cartwheel.world.additions import Addition
 from cartwheel.world.build import step_of
 from cartwheel.world.contact import Bounce
 from cartwheel.world.entry import ModelEntry, scoped
@@ -33,11 +34,15 @@ class Engine:
     Args:
         world: The world; sets the time step.
         seed: Seed for all noise.
+        without: Additions to the descriptions that are omitted.
     """
 
-    def __init__(self, world: WorldDescription, seed: int) -> None:
+    def __init__(
+        self, world: WorldDescription, seed: int, without: Collection[Addition] = ()
+    ) -> None:
         self.world = world
         self.seed = seed
+        self.without = without
         self.step_ns = to_ns(step_of(world))
         self.time_ns = 0
         """Simulation time."""

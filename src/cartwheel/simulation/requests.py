@@ -34,6 +34,7 @@ from cartwheel.simulation.handles import (
     MotorHandle,
 )
 from cartwheel.simulation.sensing.rays import RayHandle
+from cartwheel.world.additions import Addition
 from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, scoped
 from cartwheel.world.tyres import axle_of
 
@@ -75,6 +76,10 @@ class Requests:
     @property
     def description(self) -> RobotDescription:
         return self._entry.description
+
+    def adds(self, addition: Addition) -> bool:
+        """Whether physics that the description does not state may be added to the model."""
+        return addition not in self._engine.without
 
     def schedule(
         self,

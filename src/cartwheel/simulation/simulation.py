@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from cartwheel.description.model import WorldDescription
@@ -16,6 +16,7 @@ from cartwheel.simulation.models.models import Models
 from cartwheel.simulation.models.resident import Attach
 from cartwheel.simulation.snapshot import RunState, Snapshot
 from cartwheel.simulation.world_changes import adjust
+from cartwheel.world.additions import omitted
 
 
 class Simulation(Models):
@@ -30,10 +31,13 @@ class Simulation(Models):
         attach: Creates a model's plugins.
         attach_world: Creates the world's plugins.
         seed: Seed for all noise.
+        without: Names of additions to the descriptions that are omitted; see
+            `cartwheel.world.additions`.
 
     Raises:
         WorldError: The world cannot be built.
         PluginError: A plugin's parameters are invalid.
+        CartwheelError: A name in `without` is unknown.
     """
 
     def __init__(
@@ -43,8 +47,9 @@ class Simulation(Models):
         attach: Attach = lambda _: [],
         attach_world: Attach = lambda _: [],
         seed: int = 0,
+        without: Iterable[str] = (),
     ) -> None:
-        super().__init__(Engine(world, seed), attach)
+        super().__init__(Engine(world, seed, omitted(without)), attach)
         self.faults = Faults(self.engine, self._population)
         self.engine.on_fault = self.faults.disable
         self._population.start(attach_world)

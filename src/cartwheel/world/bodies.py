@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Any
 
 import mujoco
 
 from cartwheel.codes import world as world_codes
-from cartwheel.description.model import Collision, Joint, Link, Plane, RobotDescription
-from cartwheel.errors import WorldError
+from cartwheel.description.model import (
+    Collision,
+    Ellipsoid,
+    Inertial,
+    Joint,
+    Link,
+    Plane,
+    RobotDescription,
+    Shape,
+)
+from cartwheel.errors import Origin, WorldError
 from cartwheel.geometry import Pose, Vec3, rotate
 from cartwheel.world import contact, joints
 from cartwheel.world.actuation import add_requested
+from cartwheel.world.additions import Added, Addition
 from cartwheel.world.entry import SHIFT, TURN, TYRE, ModelEntry, part_name, scoped
 from cartwheel.world.inertials import set_inertial
 from cartwheel.world.lights import add_light
@@ -45,12 +56,28 @@ class _Branch:
 
 
 class BodyBuilder:
-    """Adds one model to a spec."""
+    """Adds one model to a spec.
 
-    def __init__(self, spec: mujoco.MjSpec, assets: Assets, step: float) -> None:
+    Args:
+        spec: The spec.
+        assets: Its meshes and textures.
+        step: Time step, s.
+        without: Additions to the description that are omitted.
+    """
+
+    def __init__(
+        self,
+        spec: mujoco.MjSpec,
+        assets: Assets,
+        step: float,
+        without: Collection[Addition] = (),
+    ) -> None:
         self._spec = spec
         self._assets = assets
         self._step = step
+        self._without = without
+        self.added: list[Added] = []
+        """What was added to the descriptions."""
         self.surfaces: list[contact.BuiltSurface] = []
         """All collision geoms with their contact properties."""
 
@@ -145,7 +172,7 @@ class BodyBuilder:
         trunk: bool,
     ) -> None:
         if link.inertial is not None:
-            set_inertial(body, link.inertial)
+            self._set_inertial(entry, body, link.name, link.inertial, moves=moves)
         if not link.gravity:
             body.gravcomp = 1.0
         for visual in link.visuals:
@@ -156,7 +183,7 @@ class BodyBuilder:
             body = _add_tyre(entry, body, link, axle)
         for collision in link.collisions:
             name = scoped(entry.name, link.name, collision.name)
-            shape, place = tyre(collision, axle)
+            shape, place = self._rounded(entry, link, collision, axle)
             there = link.pose @ place
             tread = None
             if axle is not None:
@@ -204,9 +231,38 @@ class BodyBuilder:
                         friction=friction,
                         reference=reference,
                         surface=collision.surface,
+                        origin=collision.origin,
                         direction=_direction(entry, link, collision),
                     )
                 )
+
+    def _rounded(
+        self, entry: ModelEntry, link: Link, collision: Collision, axle: Axle | None
+    ) -> tuple[Shape, Pose]:
+        """The shape and pose of a collision: a wheel is an ellipsoid."""
+        if "round-tyres" in self._without:
+            return collision.shape, collision.pose
+        shape, place = tyre(collision, axle)
+        if isinstance(shape, Ellipsoid) and shape is not collision.shape:
+            name = scoped(link.name, collision.name)
+            self._note("round-tyres", entry, name, 2 * min(shape.radii), collision.origin)
+        return shape, place
+
+    def _set_inertial(
+        self, entry: ModelEntry, body: Any, link: str, inertial: Inertial, *, moves: bool
+    ) -> None:
+        # The inertia of a body that does not move has no effect, but the engine checks it as well.
+        raises = not moves or "minimum-inertia" not in self._without
+        raised = set_inertial(body, inertial, raises=raises)
+        if raised is not None and moves:
+            self._note("minimum-inertia", entry, link, raised, inertial.origin)
+
+    def _note(
+        self, addition: Addition, entry: ModelEntry, element: str, value: float, origin: Origin
+    ) -> None:
+        self.added.append(
+            Added(addition=addition, model=entry.name, element=element, value=value, origin=origin)
+        )
 
     def _exclude(self, entry: ModelEntry, description: RobotDescription) -> None:
         """Links of one model collide only if both enable self-collision, as in Gazebo.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 import mujoco
@@ -15,8 +15,9 @@ from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Origin, WorldError
 from cartwheel.world import chains, contact, joints, pairs
 from cartwheel.world.actuation import ROTOR_INERTIA
+from cartwheel.world.additions import Added, Addition
 from cartwheel.world.bodies import BodyBuilder
-from cartwheel.world.entry import ModelEntry, scoped
+from cartwheel.world.entry import ModelEntry, collision_of, scoped
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets
 
@@ -51,6 +52,8 @@ class Build:
     """Friction directions of pairs with direction-dependent friction."""
     bounces: tuple[contact.Bounce, ...] = ()
     """The surfaces with restitution."""
+    added: tuple[Added, ...] = ()
+    """What was added to the descriptions."""
     xml: str | None = None
 
 
@@ -59,12 +62,19 @@ def step_of(world: WorldDescription) -> float:
     return world.physics.max_step_size or DEFAULT_STEP
 
 
-def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool = False) -> Build:
+def build(
+    world: WorldDescription,
+    entries: Iterable[ModelEntry],
+    *,
+    without: Collection[Addition] = (),
+    xml: bool = False,
+) -> Build:
     """Compiles a world.
 
     Args:
         world: Gravity, lights, physics.
         entries: The models in the world, including the world's own.
+        without: Additions to the descriptions that are omitted.
         xml: Also write the model as MJCF.
 
     Raises:
@@ -72,7 +82,7 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
     """
     entries = list(entries)
     try:
-        return _built(world, entries, xml=xml)
+        return _built(world, entries, without, xml=xml)
     except ValueError as error:
         # Duplicate names raise an error as soon as they are added.
         if not str(error).startswith("Error: "):
@@ -80,9 +90,15 @@ def build(world: WorldDescription, entries: Iterable[ModelEntry], *, xml: bool =
         raise _explain(str(error), entries) from None
 
 
-def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> Build:
+def _built(
+    world: WorldDescription,
+    entries: list[ModelEntry],
+    without: Collection[Addition],
+    *,
+    xml: bool,
+) -> Build:
     spec = _empty(world)
-    bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep)
+    bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep, without)
     for entry in entries:
         _check_chain(entry)
         bodies.add(entry)
@@ -97,8 +113,21 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
     for surface in bodies.surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
     alignments = []
-    for pair in pairs.stated_pairs(bodies.surfaces, joined):
+    added = bodies.added
+    soft = "soft-sliding" not in without
+    softened: dict[str, Added] = {}
+    for pair in pairs.stated_pairs(bodies.surfaces, joined, soft_sliding=soft):
         spec.add_pair(**pair.arguments())
+        if pair.friction_time is not None and pair.friction[0] > 0:
+            sliding = pair.second
+            name = collision_of(sliding.name)
+            softened[name] = Added(
+                addition="soft-sliding",
+                model=sliding.model,
+                element=name.removeprefix(scoped(sliding.model, "")),
+                value=pair.friction_time,
+                origin=sliding.origin,
+            )
         if pair.alignment is not None:
             alignments.append(pair.alignment)
     try:
@@ -121,17 +150,48 @@ def _built(world: WorldDescription, entries: list[ModelEntry], *, xml: bool) -> 
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     _judge_without_rotors(model)
     _divide_floors(model)
-    for index, coefficient in chains.apply(model).items():
-        # Only for the XML text: the compiled model already has the value.
-        made = spec.joint(model.joint(index).name)
-        made.damping = [made.damping[0], made.damping[1], coefficient]
+    added = [*added, *softened.values()]
+    if "chain-drag" not in without:
+        added += _drag(spec, model, entries)
     bounces = (contact.bounce(surface.name, surface.surface) for surface in bodies.surfaces)
     return Build(
         model=model,
         alignments=tuple(alignments),
         bounces=tuple(each for each in bounces if each is not None),
+        added=tuple(added),
         xml=spec.to_xml() if xml else None,
     )
+
+
+def _drag(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, entries: Iterable[ModelEntry]
+) -> Iterator[Added]:
+    """Adds drag to the hinges of chains."""
+    described = {
+        scoped(entry.name, joint.name): (entry, joint)
+        for entry in entries
+        for joint in entry.description.joints
+    }
+    speeds = {
+        name: joint.axis.velocity
+        for name, (_, joint) in described.items()
+        if joint.axis.velocity is not None and joint.axis.velocity > 0
+    }
+    for index, coefficient in chains.apply(model, speeds).items():
+        name = model.joint(index).name
+        # Only for the XML text: the compiled model already has the value.
+        made = spec.joint(name)
+        made.damping = [made.damping[0], made.damping[1], coefficient]
+        # The second axis of a universal joint has a name of its own.
+        found = described.get(name) or described.get(name.rpartition("::")[0])
+        if found is not None:
+            yield Added(
+                addition="chain-drag",
+                model=found[0].name,
+                element=found[1].name,
+                value=coefficient,
+                origin=found[1].origin,
+            )
 
 
 def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:

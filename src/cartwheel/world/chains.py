@@ -11,6 +11,7 @@ the joint. ``docs/physics.md`` shows how small the drag is at speeds that a step
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import mujoco
 import numpy as np
@@ -24,15 +25,17 @@ _BALANCED = 0.05
 """Fraction of the inertia about the axis below which a rotor counts as balanced."""
 
 
-def drag(model: mujoco.MjModel) -> dict[int, float]:
+def drag(model: mujoco.MjModel, speeds: Mapping[str, float] | None = None) -> dict[int, float]:
     """The drag of each hinge in a chain: the coefficient of ω³, by joint index.
 
     Args:
         model: The compiled model; its time step is used.
+        speeds: Stated maximum velocities by joint name, rad/s.
 
     Returns:
         N m s³/rad³ for each hinge that moves other joints or is moved by them. Wheels are excluded:
-        a balanced body does not change any inertia as it turns.
+        a balanced body does not change any inertia as it turns. So are hinges whose stated damping
+        removes more energy than the integration adds; see `_enough`.
     """
     if not model.njnt:
         return {}
@@ -51,13 +54,35 @@ def drag(model: mujoco.MjModel) -> dict[int, float]:
         inertia = float(carried[body, 2])
         away = float(np.linalg.norm(model.jnt_pos[joint] - pivots[body]))
         inertia += 2 * away * float(carried[body, 1]) + away**2 * float(carried[body, 0])
-        found[joint] = 0.5 * model.opt.timestep * inertia
+        speed = (speeds or {}).get(model.joint(joint).name, math.inf)
+        root = int(model.body_rootid[body])
+        damping = float(model.dof_damping[model.jnt_dofadr[joint]])
+        if damping < _enough(model, inertia, speed, float(carried[root, 1])):
+            found[joint] = 0.5 * model.opt.timestep * inertia
     return found
 
 
-def apply(model: mujoco.MjModel) -> dict[int, float]:
+def _enough(model: mujoco.MjModel, inertia: float, speed: float, moment: float) -> float:
+    """The damping in N m s/rad that removes more energy than the integration adds to a hinge.
+
+    The damping d removes more energy than the drag ½ h I ω³ if d > ½ h I ω². The hinge turns at no
+    more than its maximum velocity, or, if it falls, as fast as the energy of the whole fall can
+    turn it. At more than one radian per step, no motion is resolved.
+
+    Args:
+        model: The compiled model.
+        inertia: The largest inertia about the hinge, kg m².
+        speed: Maximum velocity of the hinge, rad/s; infinite if unknown.
+        moment: Sum of mass times largest distance from the root of the chain, kg m.
+    """
+    step, gravity = model.opt.timestep, float(np.linalg.norm(model.opt.gravity))
+    energy = max(0.5 * inertia * speed**2, 2 * gravity * moment)
+    return float(min(step * energy, 0.5 * inertia / step))
+
+
+def apply(model: mujoco.MjModel, speeds: Mapping[str, float] | None = None) -> dict[int, float]:
     """Sets the drag of the model's hinges; returns the same as `drag`."""
-    found = drag(model)
+    found = drag(model, speeds)
     for joint, coefficient in found.items():
         model.dof_dampingpoly[model.jnt_dofadr[joint], 1] = coefficient
     return found

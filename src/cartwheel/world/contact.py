@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.description.model import Surface
+from cartwheel.errors import Origin
 from cartwheel.geometry import Vec3
 from cartwheel.world.tyres import Tread
 
@@ -67,6 +68,7 @@ class BuiltSurface:
     friction: tuple[float, float, float]
     reference: tuple[float, float]
     surface: Surface
+    origin: Origin
     direction: tuple[str, Vec3] | None = None
     """The direction in which mu1 applies, in a body's axes; None if the description states none."""
 

@@ -18,30 +18,51 @@ _POINT = 1e-6
 """Inertia of a point mass divided by its mass, m²: the engine requires a positive value."""
 
 
-def _possible(inertia: Array) -> Array:
+def _possible(inertia: Array) -> tuple[Array, float | None]:
     """An inertia matrix whose largest moment does not exceed the sum of the others.
 
     Thin plates are exactly at this limit, and rounded digits exceed it. Larger violations are
     rejected when the file is read.
+
+    Returns:
+        The matrix; and the smallest moment, kg m², if it was raised.
     """
     moments, axes = np.linalg.eigh(inertia)
+    raised = None
     lowest = max(_THINNEST * float(moments[2]), _LEAST)
     if moments[0] < lowest:
         # An infinitely thin rod or a massless frame: the engine divides by all three moments.
         moments = np.maximum(moments, lowest)
         inertia = (axes * moments) @ axes.T
+        raised = lowest
     excess = moments[2] - (moments[0] + moments[1]) * (1 - 1e-9)
     if excess <= 0:
-        return inertia
-    return np.asarray(inertia - excess * np.outer(axes[:, 2], axes[:, 2]))
+        return inertia, raised
+    return np.asarray(inertia - excess * np.outer(axes[:, 2], axes[:, 2])), raised
 
 
-def set_inertial(body: Any, inertial: Inertial) -> None:
+def set_inertial(body: Any, inertial: Inertial, *, raises: bool) -> float | None:
+    """Sets mass and inertia of a body.
+
+    Args:
+        body: The body of a spec.
+        inertial: The description.
+        raises: Whether to raise moments of inertia that are 0 or almost 0.
+
+    Returns:
+        The smallest moment, kg m², if it was raised.
+    """
     rotation = matrix_from_quat(inertial.pose.orientation)
     inertia = tensor(inertial.diagonal, inertial.products)
-    if not inertia.any():
-        inertia = np.eye(3) * _POINT * inertial.mass
-    turned = rotation @ _possible(inertia) @ rotation.T
+    raised = None
+    if raises:
+        point = not inertia.any()
+        if point:
+            inertia = np.eye(3) * _POINT * inertial.mass
+        inertia, raised = _possible(inertia)
+        if point and raised is None:
+            raised = _POINT * inertial.mass
+    turned = rotation @ inertia @ rotation.T
     body.explicitinertial = True
     body.mass = inertial.mass
     body.ipos = list(inertial.pose.position)
@@ -54,3 +75,4 @@ def set_inertial(body: Any, inertial: Inertial) -> None:
         turned[0, 2],
         turned[1, 2],
     ]
+    return raised

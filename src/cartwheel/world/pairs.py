@@ -74,7 +74,10 @@ class Pair:
 
 
 def stated_pairs(
-    surfaces: Iterable[BuiltSurface], joined: Collection[frozenset[str]] = ()
+    surfaces: Iterable[BuiltSurface],
+    joined: Collection[frozenset[str]] = (),
+    *,
+    soft_sliding: bool = True,
 ) -> Iterator[Pair]:
     """Pairs of moving geoms with geoms of other models that need their own parameters.
 
@@ -91,9 +94,12 @@ def stated_pairs(
     Args:
         surfaces: Surfaces of all models.
         joined: Bodies of different models that are connected by a joint and do not collide.
+        soft_sliding: Whether sliding bodies get pairs with softer friction.
     """
     surfaces = list(surfaces)
     special = any(map(_special, surfaces))
+    if not special and not soft_sliding:
+        return
     treads: dict[str, list[Tread]] = {}
     for each in surfaces:
         if each.tread is not None:
@@ -106,8 +112,11 @@ def stated_pairs(
     count = 0
     for mover in movers:
         for still in standing:
-            trails = _trails(mover, treads.get(mover.model, ()))
-            if (pair := _pair(still, mover, joined, trails)) is not None:
+            time = None
+            if soft_sliding and not mover.rolls:
+                trails = _trails(mover, treads.get(mover.model, ()))
+                time = contact.TRAILING_TIME_CONSTANT if trails else contact.FRICTION_TIME_CONSTANT
+            if (pair := _pair(still, mover, joined, time)) is not None:
                 count += 1
                 yield pair
     for index, first in enumerate(movers if special else ()):
@@ -136,7 +145,7 @@ def _pair(
     first: BuiltSurface,
     second: BuiltSurface,
     joined: Collection[frozenset[str]],
-    trails: bool = False,
+    friction_time: float | None = None,
 ) -> Pair | None:
     if joined and frozenset(each.geom.parent.name for each in (first, second)) in joined:
         return None
@@ -149,17 +158,15 @@ def _pair(
         mu1 = mu2 = min(mu1, mu2)
     torsion = min(1.0 if s.torsional is None else s.torsional for s in (a, b))
     torsion *= _PATCH * max(s.patch_radius or 0.0 for s in (a, b))
-    slides = not first.moves and not second.rolls
-    if mu1 == mu2 and not torsion and not slides:
+    if mu1 == mu2 and not torsion and friction_time is None:
         return None
-    time = contact.TRAILING_TIME_CONSTANT if trails else contact.FRICTION_TIME_CONSTANT
     return Pair(
         first=first,
         second=second,
         friction=(max(mu1, mu2), min(mu1, mu2)),
         torsion=torsion,
         reference=rules.reference,
-        friction_time=time if slides else None,
+        friction_time=friction_time,
         alignment=_alignment(first, second, across=mu2 > mu1) if mu1 != mu2 else None,
     )
 

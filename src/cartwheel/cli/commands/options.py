@@ -26,6 +26,8 @@ class Options:
     paused: bool = False
     seed: int = 0
     strict: bool = False
+    without: tuple[str, ...] = ()
+    """Physics that Cartwheel adds to descriptions, to be omitted."""
     host: str = "127.0.0.1"
     allow_origin: tuple[str, ...] = ()
     port: int = 8080

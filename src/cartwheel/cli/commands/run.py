@@ -105,6 +105,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         plugins=options.plugins,
         allow_path=(*options.allow_path, *run_folders(_files(world, robot))),
         package_path=options.package_path,
+        without=options.without,
     )
     session.simulation.faults.tolerant = not options.strict
     name = None

@@ -116,12 +116,17 @@ def _strength(
     need = needs().get(joint.name, 0.0)
     if limit >= need:
         return limit
-    held, unit = 2 * need, "N" if joint.type == "prismatic" else "N m"
+    raises = owner.part.adds("raised-efforts")
+    held, unit = 2 * need if raises else limit, "N" if joint.type == "prismatic" else "N m"
+    result = (
+        "as in Gazebo, the joint still follows position commands, with up to "
+        if raises
+        else "the joint follows position commands with no more than "
+    )
     owner.warn(
         devices.EFFORT_LIMIT_TOO_LOW,
         f'the effort limit of joint "{joint.name}", {limit:g} {unit}, is below the '
-        f"{need:.3g} {unit} required to hold the joint against gravity; as in Gazebo, the "
-        f"joint still follows position commands, with up to {held:.3g} {unit}",
+        f"{need:.3g} {unit} required to hold the joint against gravity; {result}{held:.3g} {unit}",
         at=interfaces.origin,
         values={"joint": joint.name, "stated": limit, "needed": need, "used": held},
     )

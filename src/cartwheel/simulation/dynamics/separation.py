@@ -25,9 +25,13 @@ class Separation:
 
     The contact forces act within hundredths of a second. At a depth of decimetres, they would throw
     both models across the room.
+
+    Args:
+        slow: Whether to limit the speeds.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, slow: bool = True) -> None:
+        self._slow = slow
         self._roots: set[int] = set()
 
     @property
@@ -61,7 +65,8 @@ class Separation:
             other = two if one in placed else one
             name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, other) or "world"
             found[name] = max(found.get(name, 0.0), depth)
-            self._roots |= {one, two}
+            if self._slow:
+                self._roots |= {one, two}
         return sorted(found.items())
 
     def limit(self, model: Any, data: Any) -> None:

@@ -19,7 +19,8 @@ from cartwheel.simulation.models.resident import Attach, Resident, world_residen
 from cartwheel.simulation.models.unique_names import free_name
 from cartwheel.simulation.observer import Observer
 from cartwheel.simulation.part import Part
-from cartwheel.world import build, unreadable, unused
+from cartwheel.world import build, reports, unreadable, unused
+from cartwheel.world.additions import Added
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
 
@@ -38,7 +39,7 @@ class Population:
         self._forces = forces
         self.attach = attach
         self.watch = Watch(engine)
-        self.separation = Separation()
+        self.separation = Separation(slow="slow-separation" not in engine.without)
         self.house = world_resident(engine)
         """The world's own plugins."""
         self.residents: dict[str, Resident] = {}
@@ -47,6 +48,8 @@ class Population:
         """Tasks that belong to no model and no plugin."""
         self.schedule = Schedule()
         self._version = 0
+        self._added: tuple[Added, ...] = ()
+        """What was added to the descriptions of the compiled models."""
 
     def start(self, attach_world: Attach) -> None:
         """Creates the world's plugins and compiles the world without models.
@@ -153,7 +156,8 @@ class Population:
         engine = self._engine
         residents = self.residents if residents is None else residents
         entries = [resident.entry for resident in residents.values()]
-        built = build(engine.world, [self.house.entry, *entries])
+        built = build(engine.world, [self.house.entry, *entries], without=engine.without)
+        self._added = built.added
         engine.replace(built.model, built.alignments, built.bounces)
         step_ns = to_ns(step_of(engine.world))
         if step_ns != engine.step_ns:
@@ -209,7 +213,8 @@ class Population:
         resident.part.spawned = True
         description = resident.entry.description
         notes = (*description.diagnostics, *resident.part.diagnostics)
-        for diagnostic in (*notes, *unused(description), *unreadable(description)):
+        added = reports(self._added, name)
+        for diagnostic in (*notes, *unused(description), *added, *unreadable(description)):
             self._engine.report(diagnostic)
         self.separate(name, before=before)
 
