@@ -94,7 +94,7 @@ class Losses:
             self._warn(
                 BRIDGE_RECOVERED.diagnostic(
                     f"the bridge process has caught up; {_counted(lost)} were dropped",
-                    values={"dropped": _counted(lost)},
+                    values={"dropped": lost.total(), "topics": tuple(sorted(lost))},
                 )
             )
         else:
