@@ -90,16 +90,16 @@ class World(RunningWorld):
         files = _several(record)
         # A port may be 0, which selects a free port.
         if ros1 or ros2 or foxglove is not False or viewer is not False or files:
-            from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, Plan
+            from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, Plan, port
             from cartwheel.assembly.recording import RecordingOptions
 
             plan = Plan(
                 ros1=NODE if ros1 is True else ros1 or None,
                 ros2=NODE if ros2 is True else ros2 or None,
                 rmw=rmw,
-                foxglove=_port(foxglove, FOXGLOVE_PORT),
+                foxglove=port(foxglove, FOXGLOVE_PORT),
                 viewer=viewer is not False,
-                viewer_port=_port(viewer, None),
+                viewer_port=port(viewer, None),
                 recordings=tuple(Path(file) for file in files),
                 recording=RecordingOptions(
                     topics=tuple(_several(record_topics)), overwrite=overwrite
@@ -391,13 +391,6 @@ class World(RunningWorld):
         """Resets simulation time and all models to their initial state."""
         with self.used(change=True) as simulation:
             simulation.reset()
-
-
-def _port(wanted: bool | int, default: int | None) -> int | None:
-    """The port of a server; None if it is not wanted."""
-    if wanted is False:
-        return None
-    return default if wanted is True else int(wanted)
 
 
 def _several(values: T | Sequence[T]) -> list[T]:

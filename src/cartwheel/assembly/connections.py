@@ -339,3 +339,15 @@ def _title(session: Session) -> str:
     program = Path(sys.argv[0]).name if sys.argv else ""
     world = world_title(session.simulation.world)
     return f"{world} in {program}" if program else world
+
+
+def port(wanted: bool | int, default: int | None) -> int | None:
+    """The port of a server; None if it is not wanted.
+
+    Args:
+        wanted: Whether to start the server, or its port. 0 selects a free port.
+        default: The port for True.
+    """
+    if wanted is False:
+        return None
+    return default if wanted is True else int(wanted)

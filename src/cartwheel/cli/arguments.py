@@ -24,8 +24,8 @@ Sim = Annotated[
         "--sim",
         metavar="PID|WORLD",
         help="Simulation to control, if several are running: its process ID or the name of its "
-        "world. For the second world of a Python program, use PID-2. Default: the environment "
-        f"variable {VARIABLE}.",
+        "world. For the second world of a Python program, append -2 to its process ID. "
+        f"Default: the environment variable {VARIABLE}.",
     ),
 ]
 

@@ -187,8 +187,8 @@ def run(
             "--record-topics",
             metavar="PATTERN",
             help="Record only topics that match a name such as /camera/*, or a regular expression "
-            "after re:. A pattern after ! excludes topics. Can be repeated. Default: all topics, "
-            "including images.",
+            "such as re:/imu/.*. With ! in front, as in !/camera/*, exclude topics. Can be "
+            "repeated. Default: all topics, including images.",
             rich_help_panel=help.RECORDING,
         ),
     ] = None,

@@ -114,8 +114,8 @@ class Pushes:
         effort = number(request.effort, "effort", most=STRONGEST)
         if (model, joint.name) not in self._simulation.scene.joints:
             raise GraphError(
-                f'joint "{joint.name}" of "{model}" cannot be moved by an effort because it is '
-                f"{joint.type} or its model is static",
+                f'joint "{joint.name}" of "{model}" cannot be moved by a force or torque because '
+                f"it is {joint.type} or its model is static",
                 code=ENTITY_FIXED,
                 values={"model": model, "joint": joint.name},
             )

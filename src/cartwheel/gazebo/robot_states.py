@@ -146,8 +146,8 @@ class RobotStates:
                 self._warned.add(name)
                 self._simulation.engine.report(
                     FRAMES_SHARED.diagnostic(
-                        f'"{name}" has frames with the same names as "{other}", such as '
-                        f"{shared[0]}, so its links are not published on /tf",
+                        f'the models "{name}" and "{other}" have frames with the same names, such '
+                        f'as {shared[0]}, so the links of "{name}" are not published on /tf',
                         values={"model": name, "other": other, "frame": shared[0]},
                     )
                 )

@@ -228,7 +228,7 @@ class Inbox:
         else:
             fits = False
         if not fits:
-            raise MalformedError("the value is invalid for the control")
+            raise MalformedError("the value does not fit this control element of the page")
 
     def _control(self, client: int, uuid: str) -> Any:
         """A control that a browser may use: shared ones and its own."""

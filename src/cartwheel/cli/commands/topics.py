@@ -82,8 +82,8 @@ def _tell_dropped(sample: Sample, before: int) -> int:
     if sample.dropped > before:
         print_diagnostic(
             OUTPUT_SLOW.diagnostic(
-                f"{sample.dropped - before} messages were dropped because they arrive faster than "
-                "they can be printed",
+                f"{sample.dropped - before} messages were dropped because they arrived faster than "
+                "they could be printed",
                 values={"topic": sample.topic, "dropped": sample.dropped - before},
             )
         )

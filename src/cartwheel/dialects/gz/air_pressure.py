@@ -28,8 +28,8 @@ class AirPressure(Plugin[AirPressureParameters]):
     """Publishes the air pressure at the height of the sensor, in Pa.
 
     The pressure follows the International Standard Atmosphere. ``<reference_altitude>`` is the
-    height of the world's origin above sea level. The noise that the sensor's ``<pressure><noise>``
-    specifies is added. The sensor corresponds to ``AirPressureSensor`` in gz-sensors.
+    height of the world's origin above sea level. The noise in ``<pressure><noise>`` is added. The
+    sensor corresponds to ``AirPressureSensor`` in gz-sensors.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ()

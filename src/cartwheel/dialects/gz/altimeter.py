@@ -28,8 +28,8 @@ class Altimeter(Plugin[AltimeterParameters]):
     """Publishes a sensor's height above its initial position, and its vertical velocity.
 
     Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the sensor's
-    initial z coordinate in the world. The noise that ``<vertical_position>`` and
-    ``<vertical_velocity>`` specify is added.
+    initial z coordinate in the world. The sensor adds the noise in ``<vertical_position>``
+    and ``<vertical_velocity>``.
 
     The sensor corresponds to ``AltimeterSensor`` in gz-sensors. The message type is the same as in
     ros_gz_bridge.

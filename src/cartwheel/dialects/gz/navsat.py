@@ -27,7 +27,7 @@ class GzNavSat(Plugin[GzNavSatParameters]):
     """Publishes the latitude, longitude and altitude that a ``navsat`` sensor measures.
 
     The world's ``<spherical_coordinates>`` define the geographic position of the world's origin.
-    The noise that the sensor's ``<navsat>`` specifies is added, in m. The sensor corresponds to
+    The sensor adds the noise in ``<navsat>``, in m. The sensor corresponds to
     ``NavSatSensor`` in gz-sensors.
     """
 

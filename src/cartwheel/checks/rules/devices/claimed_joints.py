@@ -39,6 +39,6 @@ def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
                     },
                     origin=claim.value.origin,
                     mark=claim.value.text,
-                    hint="The two controllers cannot run at the same time. The other controller is "
-                    f"defined at {first.value.origin}.",
+                    hint=f'They cannot run at the same time. "{both[0]}" is defined at '
+                    f"{first.value.origin}.",
                 )
