@@ -14,7 +14,6 @@ from cartwheel.corpus import finding
 from cartwheel.description import load, load_text
 from cartwheel.description.elements import numbers, xml
 from cartwheel.description.files import install_rules as installed
-from cartwheel.description.files import missing_packages as missing
 from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import CartwheelError
 from cartwheel.similar_names import meant
@@ -52,8 +51,7 @@ def test_a_comment_without_an_end_is_an_error():
 
 
 def test_comments_of_other_files(tmp_path):
-    for pattern in (finding._COMMENT, missing._COMMENT):
-        assert pattern.sub("", "a<!--" * 100_000) == "a"
+    assert finding._COMMENT.sub("", "a<!--" * 100_000) == "a"
 
 
 @pytest.mark.parametrize(("begin", "left"), [('"\\', ""), ("/*-", "")])

@@ -161,3 +161,18 @@ PARAMETER_UNUSED = Code(
     "CW156", "parameter-unused", "info", "a xacro macro never uses one of its parameters"
 )
 MACRO_UNUSED = Code("CW157", "macro-unused", "info", "a xacro macro is never called")
+INCLUDE_ABSENT = Code(
+    "CW158", "include-absent", "error", "an included xacro file does not exist and is left out"
+)
+MACRO_ABSENT = Code(
+    "CW159",
+    "macro-absent",
+    "error",
+    "a macro call is left out because the file that defines the macro was not found",
+)
+LINK_RECONNECTED = Code(
+    "CW160",
+    "link-reconnected",
+    "warning",
+    "a link is empty or attached elsewhere because a part of the robot is left out",
+)

@@ -1,76 +1,159 @@
-"""A package that is not there: the others that are not there either, and how to get them."""
+"""Includes of absent packages and files, and the macros that they would have defined."""
 
 import pytest
 from tests.coded import raises
 
-from cartwheel.codes.files import FILE_MISSING
+from cartwheel import World
+from cartwheel.codes.files import (
+    FILE_MISSING,
+    INCLUDE_ABSENT,
+    LINK_RECONNECTED,
+    MACRO_ABSENT,
+    XACRO_NAME_UNKNOWN,
+)
 from cartwheel.description import load_robot
 from cartwheel.errors import DescriptionError
 
 XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
 INCLUDE = '<xacro:include filename="{}"/>'
+LASER = "$(find laser_x)/laser.xacro"
+BASE = """<link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>"""
 
 
 @pytest.fixture
-def workspace(tmp_path, monkeypatch):
-    """A package with a robot, and one that it includes from."""
+def load(tmp_path, monkeypatch):
+    """Loads a robot from the contents of its file, which is in a package of a workspace."""
     monkeypatch.delenv("ROS_DISTRO", raising=False)
-    for name in ("mine", "yours"):
-        folder = tmp_path / "src" / name / "urdf"
-        folder.mkdir(parents=True)
-        (folder.parent / "package.xml").write_text(f"<package><name>{name}</name></package>")
-    return tmp_path / "src"
+    folder = tmp_path / "src" / "mine" / "urdf"
+    folder.mkdir(parents=True)
+    (folder.parent / "package.xml").write_text("<package><name>mine</name></package>")
+
+    def loaded(*contents, **others):
+        for name, text in others.items():
+            (folder / f"{name}.xacro").write_text(XACRO.format(text))
+        (folder / "robot.xacro").write_text(XACRO.format("\n".join(contents)))
+        return load_robot(folder / "robot.xacro")
+
+    return loaded
 
 
-def missing(workspace, *includes, more=""):
-    """The error for a robot that first includes a file of the package laser_x."""
-    file = workspace / "mine" / "urdf" / "robot.xacro"
-    file.write_text(XACRO.format("".join(INCLUDE.format(each) for each in includes) + more))
-    with raises(FILE_MISSING, DescriptionError, kind="package", name="laser_x") as caught:
-        load_robot(file)
-    return caught.value
+def reported(robot, code):
+    """The line and the values of each diagnostic with a code."""
+    return [(each.origin.line, each.values) for each in robot.diagnostics if each.code is code]
 
 
-def others(workspace, *includes, more=""):
-    return missing(workspace, *includes, more=more).values.get("others", ())
+def poses(robot):
+    return {link.name: tuple(round(x, 6) for x in link.pose.position) for link in robot.links}
 
 
-def test_all_are_named_at_once(workspace):
-    (workspace / "yours" / "urdf" / "arm.xacro").write_text(
-        XACRO.format('<link name="a"><mesh filename="package://grip_y/m.stl"/></link>')
+def test_the_rest_of_the_robot_is_loaded(load):
+    robot = load(INCLUDE.format(LASER), BASE, '<xacro:laser name="front" parent="base"/>')
+    assert [link.name for link in robot.links] == ["base"]
+    ((line, values),) = reported(robot, INCLUDE_ABSENT)
+    assert line == 1
+    assert values["name"] == values["package"] == "laser_x"
+    assert values["file"] == LASER
+    ((line, values),) = reported(robot, MACRO_ABSENT)
+    assert line == 5
+    assert values["name"] == "xacro:laser"
+    assert values["package"] == "laser_x"
+
+
+def test_the_robot_without_the_part_is_simulated(load):
+    robot = load(INCLUDE.format(LASER), BASE, '<xacro:laser name="front" parent="base"/>')
+    with World() as world:
+        model = world.spawn(robot, z=0.5)
+        world.run(1.0)
+        assert model.pose.z == pytest.approx(0.1, abs=0.01)
+
+
+def test_every_absent_package_is_reported(load):
+    robot = load(
+        INCLUDE.format(LASER),
+        INCLUDE.format("part.xacro"),
+        BASE,
+        '<xacro:laser_x_front parent="base"/><xacro:imu_z parent="base"/>',
+        part=INCLUDE.format("$(find imu_z)/imu.xacro"),
     )
-    (workspace / "mine" / "urdf" / "base.xacro").write_text(
-        XACRO.format(INCLUDE.format("$(find imu_z)/imu.xacro"))
-    )
-    found = others(
-        workspace,
-        "$(find laser_x)/laser.xacro",
-        "$(find yours)/urdf/arm.xacro",
-        "base.xacro",
-    )
-    assert found == ("imu_z", "grip_y")
+    found = [values["package"] for _, values in reported(robot, INCLUDE_ABSENT)]
+    assert found == ["laser_x", "imu_z"]
+    # Each call is explained by the file whose name is most like its own.
+    assert [values["package"] for _, values in reported(robot, MACRO_ABSENT)] == found
 
 
-def test_what_stands_in_a_comment_is_not_named(workspace):
-    comment = "<!-- $(find grip_y) -->"
-    assert others(workspace, "$(find laser_x)/a.xacro", more=comment) == ()
+def test_a_link_that_others_refer_to_is_empty_at_the_place_of_the_part(load):
+    robot = load(
+        INCLUDE.format(LASER),
+        BASE,
+        '<xacro:laser name="front" parent="base"><origin xyz="0.3 0 ${0.1 * 2}"/></xacro:laser>',
+        '<link name="hood"/><joint name="j" type="fixed"><origin xyz="0 0 0.1"/>'
+        '<parent link="front_link"/><child link="hood"/></joint>',
+    )
+    assert poses(robot) == {"base": (0, 0, 0), "front_link": (0.3, 0, 0.2), "hood": (0.3, 0, 0.3)}
+    values = [values for _, values in reported(robot, LINK_RECONNECTED)]
+    assert values == [
+        {"link": "front_link", "parent": ""},
+        {"link": "front_link", "parent": "base"},
+    ]
+    # Other programs read the text that Cartwheel publishes: their robot is one tree, too.
+    assert '<link name="front_link"' in robot.text
+
+
+def test_a_child_link_that_is_left_out_is_empty_at_its_joint(load):
+    robot = load(
+        INCLUDE.format(LASER),
+        BASE,
+        '<xacro:laser name="laser"/><joint name="j" type="fixed"><origin xyz="0 0.2 0"/>'
+        '<parent link="base"/><child link="laser"/></joint>',
+    )
+    assert poses(robot) == {"base": (0, 0, 0), "laser": (0, 0.2, 0)}
+
+
+def test_a_link_whose_joint_is_left_out_is_attached_to_the_rest(load):
+    robot = load(
+        INCLUDE.format(LASER),
+        '<link name="mast"/>',
+        BASE,
+        '<link name="wheel"/><joint name="w" type="continuous"><parent link="base"/>'
+        '<child link="wheel"/></joint>',
+    )
+    assert [joint.parent for joint in robot.joints if joint.child == "mast"] == ["base"]
+
+
+def test_a_complete_robot_is_not_changed(load):
+    with raises(XACRO_NAME_UNKNOWN, name="xacro:laser"):
+        load(BASE, '<xacro:laser name="front" parent="base"/>')
+
+
+def test_an_optional_include_is_not_reported(load):
+    robot = load('<xacro:include filename="a.xacro" optional="true"/>', BASE)
+    assert reported(robot, INCLUDE_ABSENT) == []
+
+
+def test_a_property_of_an_absent_file_is_an_error_that_names_the_file(load):
+    with raises(XACRO_NAME_UNKNOWN, kind="property", name="size", absent=(LASER,)):
+        load(INCLUDE.format(LASER), BASE, '<link name="${size}"/>')
+
+
+def test_nothing_is_left_of_the_robot(load):
+    with raises(FILE_MISSING, DescriptionError, kind="package", name="laser_x"):
+        load(INCLUDE.format(LASER), '<xacro:laser name="front"/>')
+
+
+def test_a_mesh_in_an_absent_package_is_left_out(load):
+    mesh = '<link name="base"><visual><geometry><mesh filename="file://{}"/></geometry></visual></link>'
+    robot = load(mesh.format("$(find shapes_y)/a.stl"))
+    assert reported(robot, FILE_MISSING)[0][1]["name"] == "shapes_y"
 
 
 @pytest.mark.wording
-def test_the_hint_names_them_and_how_to_get_them(workspace, monkeypatch):
-    one = missing(workspace, "$(find laser_x)/a.xacro").hint
-    assert "Install the package with apt" in one
-    assert "Also missing" not in one
-    both = ("$(find laser_x)/a.xacro", "$(find grip_y)/b.xacro")
-    assert "Also missing: grip_y. Install the packages with apt" in missing(workspace, *both).hint
+def test_the_hint_says_how_to_get_the_package(load, monkeypatch):
+    def hint():
+        robot = load(INCLUDE.format(LASER), BASE)
+        return next(each.hint for each in robot.diagnostics if each.code is INCLUDE_ABSENT)
+
+    assert "Install the package with apt" in hint()
     monkeypatch.setenv("ROS_DISTRO", "noetic")
-    command = "sudo apt install ros-noetic-laser-x ros-noetic-grip-y. Or"
-    assert command in missing(workspace, *both).hint
-
-
-def test_files_that_include_each_other_end_the_search(workspace):
-    for one, other in (("a", "b"), ("b", "a")):
-        (workspace / "mine" / "urdf" / f"{one}.xacro").write_text(
-            XACRO.format(INCLUDE.format(f"{other}.xacro"))
-        )
-    assert others(workspace, "$(find laser_x)/l.xacro", "a.xacro") == ()
+    assert "sudo apt install ros-noetic-laser-x. Or" in hint()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.description.elements import numbers
-from cartwheel.description.files.missing_packages import Advice, advice, also_missing
+from cartwheel.description.files.missing_packages import Advice, how_to_install
 from cartwheel.description.files.package_folders import (
     around,
     folders_in,
@@ -157,13 +157,12 @@ class PackageSearch:
         known = {found for root in (*roots, share() / "robots") for found in names_in(root)}
         near = numbers.likely(name, known, 0.85)
         hint = f'Did you mean "{near}"? ' if near else ""
-        others = () if near else also_missing([self.file] if self.file else [], name, self.package)
         text = (
             f"{hint}Searched: {listed([*roots, share() / 'robots'])}. "
             "Source the workspace of the package, or add its folder to the package path."
-            f" {advice(name, others, self.environment)}"
+            f" {how_to_install(name, self.environment)}"
         )
-        return Advice(near or "", text, others)
+        return Advice(near or "", text)
 
     def _advise_on_model(self, name: str) -> Advice:
         folders = self.model_folders()

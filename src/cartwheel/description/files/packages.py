@@ -295,13 +295,12 @@ def _missing(
         origin: The element with the name.
         advice: What to do.
     """
-    more = {"others": advice.others} if advice.others else {}
     return DescriptionError(
         message,
         code=codes.FILE_MISSING,
         origin=origin,
         hint=advice.hint,
-        values={"kind": kind, "name": name, "meant": advice.meant, **more},
+        values={"kind": kind, "name": name, "meant": advice.meant},
     )
 
 

@@ -12,6 +12,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.expressions import Budget
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.xacro.absent import Absences
 from cartwheel.description.xacro.dom import Document, DomBuilder, Element, clone, size_of, to_node
 from cartwheel.description.xacro.errors import Failure, explain
 from cartwheel.description.xacro.module import fresh_xacro
@@ -63,6 +64,7 @@ def expand(
     replace_functions(module, run)
     run.execute(module, content)
     root = to_node(run.document.documentElement)
+    run.absences.connect(root)
     return Expansion(
         root=root,
         diagnostics=(*run.diagnostics, *_unknown_arguments(run, arguments)),
@@ -110,6 +112,10 @@ class Run:
     """Number of macro calls so far."""
     document: Any = None
     budget: Budget = field(default_factory=Budget)
+    absences: Absences = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.absences = Absences(packages=self.packages, diagnostics=self.diagnostics)
 
     def execute(self, module: ModuleType, content: bytes | str) -> None:
         """Parses and expands the file.
@@ -229,18 +235,23 @@ class Run:
 
     def _failure(self, error: Exception) -> DescriptionError:
         call = self.calls[-1] if self.calls else None
-        return explain(
+        failure = explain(
             Failure(
                 error=error,
                 origin=self.origin(),
                 call=call.origin if call is not None else None,
                 call_tag=call.tagName if call is not None else "",
-                macros=tuple(sorted(_names(self.macros))),
+                macros=tuple(self.macro_names()),
                 properties=tuple(sorted(_names(self.symbols))),
                 arguments=tuple(sorted(self.declared)),
                 parameters=self._parameters(call),
             )
         )
+        return self.absences.explain(failure)
+
+    def macro_names(self) -> list[str]:
+        """The macros that are defined at the current element, sorted."""
+        return sorted(_names(self.macros))
 
     def _parameters(self, call: Element | None) -> tuple[str, ...]:
         if call is None or self.macros is None:

@@ -21,6 +21,7 @@ from cartwheel.codes import files as codes
 from cartwheel.description.elements import xml
 from cartwheel.description.expressions import Evaluator, ExpressionError
 from cartwheel.description.files.install_rules import source_of
+from cartwheel.description.xacro.absent import LostCall
 from cartwheel.description.xacro.dom import Document, Element, replace_node
 from cartwheel.description.xacro.errors import ArgumentError
 from cartwheel.description.xacro.symbols import eval_extension_of, read_yaml, symbols_of
@@ -73,6 +74,52 @@ def replace_functions(module: ModuleType, run: Run) -> None:
     def abs_filename_spec(given: str) -> str:
         path = original.abs_filename_spec(given)
         return str(path) if glob.has_magic(path) else str(source_of(Path(path)))
+
+    def process_include(
+        element: Element, macros: object, symbols: object, expand: Callable[..., None]
+    ) -> None:
+        """Leaves out an include whose file is absent, unless it is optional or a pattern."""
+        run.place = element
+        name = str(eval_text(element.getAttribute("filename"), symbols))
+        path = abs_filename_spec(name)
+        if (
+            not name
+            or glob.has_magic(path)
+            or Path(path).exists()
+            or element.getAttribute("optional")
+        ):
+            original.process_include(element, macros, symbols, expand)
+            return
+        run.absences.leave_out_include(name, path, element.origin)
+        replace_node(element, by=None)
+
+    def leave_out_call(node: Element, symbols: object) -> None:
+        """Leaves out the call of a macro that an absent file would have defined."""
+        for name, value in node.attributes.items():
+            node.setAttribute(name, str(eval_text(value, symbols)))
+        placed = [
+            item
+            for each in node.childNodes
+            if isinstance(each, Element) and each.tagName == "origin"
+            for item in each.attributes.items()
+        ]
+        run.absences.leave_out_call(
+            LostCall(
+                tag=node.tagName,
+                attributes=dict(node.attributes.items()),
+                origin=node.origin,
+                pose={name: str(eval_text(value, symbols)) for name, value in placed},
+            ),
+            [PREFIX + name for name in run.macro_names()],
+        )
+        replace_node(node, by=None)
+
+    def is_defined(name: str, macros: object, symbols: object) -> bool:
+        try:
+            space.resolve_macro(name, macros, symbols)
+        except KeyError:
+            return False
+        return True
 
     def matching(pattern: str) -> list[str]:
         fixed = Path(re.split(r"[][*?]", pattern)[0] + "_").parent
@@ -208,6 +255,11 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         run.place, run.macros, run.symbols = node, macros, symbols
         if node.tagName == "xacro:call":
             return original.handle_macro_call(node, macros, symbols)
+        if run.absences.files and not is_defined(
+            node.tagName.removeprefix(PREFIX), macros, symbols
+        ):
+            leave_out_call(node, symbols)
+            return True
         run.calls.append(node)
         result = original.handle_macro_call(node, macros, symbols)
         run.calls.pop()
@@ -246,13 +298,13 @@ def replace_functions(module: ModuleType, run: Run) -> None:
     functions: tuple[Callable[..., object], ...] = (
         parse, eval_extension, eval_text, eval_all, check_attrs, handle_macro_call,
         message, warning, error, print_location, remove_previous_comments, abs_filename_spec,
-        is_valid_name, parse_macro_arg, load_yaml,
+        is_valid_name, parse_macro_arg, load_yaml, process_include,
     )  # fmt: skip
     vars(module).update({function.__name__: function for function in functions})
     vars(module).update(replace_node=replace_node, glob=SimpleNamespace(glob=matching))
     if run.packages.reach is not None and not run.packages.reach.environment:
         substitution.os = SimpleNamespace(environ={}, path=os.path)
-    substitution._eval_find = lambda name: str(run.packages.find(name, run.origin()))
+    substitution._eval_find = lambda name: run.absences.find(name, run.origin())
 
     evaluator = Evaluator(run.budget, namespace=space.NameSpace, dotted=space.YamlDictWrapper)
     symbols = symbols_of(
