@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from tests.coded import raises
 
-from cartwheel.codes.files import FILE_MISSING, NOT_A_DESCRIPTION
+from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, NOT_A_DESCRIPTION
 from cartwheel.description import load, load_robot
 
 ROOT = Path(__file__).parents[2]
@@ -65,10 +65,12 @@ def test_mir_s_friction_is_read_from_its_attributes():
     assert robot.link("left_wheel_link").collisions[0].surface.mu1 == 200
 
 
-def test_a_package_that_is_not_there_is_named_with_the_include():
-    with raises(FILE_MISSING, kind="package", name="fath_pivot_mount_description") as caught:
-        load(CORPUS / "husky/husky_description/urdf/husky.urdf.xacro")
-    assert str(caught.value.origin).endswith("flir_blackfly_mount.urdf.xacro:3")
+def test_a_robot_is_loaded_without_the_parts_of_absent_packages():
+    robot = load(CORPUS / "husky/husky_description/urdf/husky.urdf.xacro")
+    absent = [each for each in robot.diagnostics if each.code is INCLUDE_ABSENT]
+    (mount,) = (each for each in absent if each.values["name"] == "fath_pivot_mount_description")
+    assert str(mount.origin).endswith("flir_blackfly_mount.urdf.xacro:3")
+    assert {"base_link", "front_left_wheel_link"} <= {link.name for link in robot.links}
 
 
 def test_files_of_macros_alone_say_so():

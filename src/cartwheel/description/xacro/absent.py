@@ -13,7 +13,8 @@ from cartwheel.codes import files as codes
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.files.packages import FIND, Packages
 from cartwheel.description.losses import loss
-from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value, suggestion
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
+from cartwheel.similar_names import suggestion
 
 _PARENTS = ("parent", "parent_link", "attach_to", "connected_to", "parent_name")
 """Names of the macro parameter with the link to which a part is attached."""
