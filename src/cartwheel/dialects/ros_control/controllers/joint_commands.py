@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from cartwheel.codes import running
-from cartwheel.devices.elementwise import clamp
-from cartwheel.devices.joints.pid import Pid, PidGains
+from cartwheel.devices.joints.pid import PidGains
+from cartwheel.devices.joints.pid_joint import PidJoint, PidJointConfig
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.gains import GAINS, read_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
@@ -104,51 +104,39 @@ class JointPid(Controller):
     parameters = JointPidParameters
 
     def configure(self, given: JointPidParameters) -> None:
-        self._interface = self.type.partition("_")[0]
-        self._quantity = "position" if self.type.endswith("JointPositionController") else "velocity"
-        self._joint = self.claim(given.joint, self._interface)
-        self._gains = given.gains
-        self._pid = Pid(self._gains)
-        self._command = 0.0
+        interface = self.type.partition("_")[0]
+        by_position = self.type.endswith("JointPositionController")
+        self._loop = PidJoint(
+            self.claim(given.joint, interface),
+            PidJointConfig(
+                gains=given.gains,
+                quantity="position" if by_position else "velocity",
+                commands_effort=interface == "effort",
+            ),
+        )
         self.subscribe("command", _FLOAT, self._on_command)
-        if self._quantity == "position":
+        if by_position:
             self.accept_positions(lambda wanted, _: _publish_target(self, wanted))
         self._publisher = self.advertise("state", "control_msgs/msg/JointControllerState")
         self._count = 0
         self._State = message_class("control_msgs/msg/JointControllerState")
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
-        self._command = self._joint.position if self._quantity == "position" else 0.0
-        self._pid.reset()
+        self._loop.start()
 
     def update(self, time_ns: int, seconds: float) -> None:
-        joint = self._joint
-        if self._quantity == "velocity":
-            error = self._command - joint.velocity
-            command = self._pid.velocity(self._command, joint.velocity, seconds)
-        else:
-            target = self._command
-            if joint.type != "continuous":
-                target = clamp(target, joint.limits.lower, joint.limits.upper)
-            error = joint.error(target)
-            command = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
-        output = command.at(joint.velocity)
-        if self._interface == "effort":
-            joint.set_effort(command)
-        else:
-            joint.command = output
+        error, output = self._loop.update(seconds)
         self._count += 1
         # As in ros_control, every tenth update.
         if self._count % 10 == 1 and self._publisher.wanted:
-            gains = self._gains
+            joint, config = self._loop.joint, self._loop.config
+            gains, by_position = config.gains, config.quantity == "position"
             self._publisher.publish(
                 self._State(
                     header=header(time_ns, ""),
-                    set_point=self._command,
-                    process_value=joint.position
-                    if self._quantity == "position"
-                    else joint.velocity,
-                    process_value_dot=joint.velocity if self._quantity == "position" else 0.0,
+                    set_point=self._loop.target,
+                    process_value=joint.position if by_position else joint.velocity,
+                    process_value_dot=joint.velocity if by_position else 0.0,
                     error=error,
                     time_step=seconds,
                     command=output,
@@ -162,7 +150,7 @@ class JointPid(Controller):
 
     def _on_command(self, message: Any) -> None:
         if math.isfinite(message.data):
-            self._command = float(message.data)
+            self._loop.target = float(message.data)
 
 
 class JointGroup(Controller):
@@ -192,35 +180,28 @@ class JointGroup(Controller):
         if not names:
             raise settings.invalid("joints", names, "a list of at least one joint")
         self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
-        self._pids = self.read_pids(settings, names)
+        self._loops = self.read_loops(settings)
         self._commands: list[float] | None = None
         topic = "commands" if self.robot.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)
-        if interface == "position" or self._pids:
+        if interface == "position" or self._loops:
             self.accept_positions(lambda wanted, _: self._publish_targets(topic, wanted))
 
-    def read_pids(self, settings: Settings, names: Sequence[str]) -> list[Pid]:  # noqa: ARG002
+    def read_loops(self, settings: Settings) -> list[PidJoint]:  # noqa: ARG002
         """Returns a PID controller for each joint; none if commands are forwarded."""
         return []
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
-        self._commands = [joint.position for joint in self._joints] if self._pids else None
-        for pid in self._pids:
-            pid.reset()
+        self._commands = None
+        for loop in self._loops:
+            loop.start()
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        if self._commands is None:
-            return
-        for index, (joint, command) in enumerate(zip(self._joints, self._commands, strict=True)):
-            if not self._pids:
+        for loop in self._loops:
+            loop.update(seconds)
+        if self._commands is not None and not self._loops:
+            for joint, command in zip(self._joints, self._commands, strict=True):
                 joint.command = command
-                continue
-            target = clamp(command, joint.limits.lower, joint.limits.upper)
-            joint.set_effort(
-                self._pids[index].position(
-                    joint.error(target), seconds, target=target, lightness=joint.lightness
-                )
-            )
 
     def _publish_targets(self, topic: str, wanted: Mapping[str, float]) -> None:
         values = np.array([wanted[joint.joint] for joint in self._joints])
@@ -238,6 +219,8 @@ class JointGroup(Controller):
             )
         elif all(math.isfinite(value) for value in values):
             self._commands = values
+            for loop, value in zip(self._loops, values, strict=False):
+                loop.target = value
 
 
 class JointGroupPid(JointGroup):
@@ -249,12 +232,15 @@ class JointGroupPid(JointGroup):
     types = ("effort_controllers/JointGroupPositionController",)
     parameters = JointGroupPidParameters
 
-    def read_pids(self, settings: Settings, names: Sequence[str]) -> list[Pid]:
+    def read_loops(self, settings: Settings) -> list[PidJoint]:
         # ROS 2 files have the gains under the same key as for trajectory controllers.
         path = "gains/{}" if self.robot.ros2 and settings.raw("gains") else "{}/pid"
-        gains = [read_gains(settings.section(path.format(name))) for name in names]
-        settings.ignore("gains", *names)
-        return [Pid(each) for each in gains]
+        sections = [settings.section(path.format(joint.name)) for joint in self._joints]
+        settings.ignore("gains", *(joint.name for joint in self._joints))
+        return [
+            PidJoint(joint, PidJointConfig(gains=read_gains(section), quantity="position"))
+            for joint, section in zip(self._joints, sections, strict=True)
+        ]
 
 
 def _publish_target(controller: Controller, wanted: Mapping[str, float]) -> None:

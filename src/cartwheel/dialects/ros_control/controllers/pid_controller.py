@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import running
-from cartwheel.devices.joints.pid import DampedEffort, Pid
-from cartwheel.dialects.ros_control.chaining import Reference
+from cartwheel.devices.joints.pid_joint import UNKNOWN, PidLoop, PidLoopConfig
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.gains import GAINS, read_ros2_gains
-from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
 from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter
 from cartwheel.messages import header, message_class, zero
@@ -20,7 +18,6 @@ from cartwheel.messages.store import TWIN
 _COMMAND = f"control_msgs{TWIN}/msg/MultiDOFCommand"
 _STATE = f"control_msgs{TWIN}/msg/MultiDOFStateStamped"
 _ONE_STATE = f"control_msgs{TWIN}/msg/SingleDOFState"
-_UNKNOWN = (math.nan, math.nan)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,17 +88,15 @@ class PidController(Controller):
             # Only the state of a joint with a different name is used.
             state = joint if name == state_name else self.robot.hardware.joint(state_name)
             section = settings.section(f"gains/{name}")
-            self._loops.append(
-                _Loop(
-                    joint=joint,
-                    state=state,
-                    references=tuple(self.export(state, kind) for kind in kinds),
-                    damped=interface == "effort" and state is joint and not self._external,
-                    feedforward_gain=section.number("feedforward_gain", 0.0),
-                    wraparound=section.boolean("angle_wraparound", False),
-                    pid=Pid(read_ros2_gains(section)),
-                )
+            config = PidLoopConfig(
+                gains=read_ros2_gains(section),
+                quantity=kinds[0],  # type: ignore[arg-type]
+                damped=interface == "effort" and state is joint and not self._external,
+                feedforward_gain=section.number("feedforward_gain", 0.0),
+                wraparound=section.boolean("angle_wraparound", False),
             )
+            references = tuple(self.export(state, kind) for kind in kinds)
+            self._loops.append(PidLoop(joint, state, references, config))
         self.subscribe("reference", _COMMAND, self._on_reference)
         if self._external:
             self.subscribe("measured_state", _COMMAND, self._on_measured)
@@ -110,24 +105,21 @@ class PidController(Controller):
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         for loop in self._loops:
-            loop.measured = _UNKNOWN
-            loop.pid.reset()
+            loop.start()
             if not self.chained:
                 here = self._starts_at_state and not self._external
-                state = loop.measure() if here else _UNKNOWN
-                for reference, value in zip(loop.references, state, strict=False):
-                    reference.command = value
+                loop.reference = loop.measure() if here else UNKNOWN
 
     def update(self, time_ns: int, seconds: float) -> None:
         for loop in self._loops:
             if not self._external:
                 loop.measured = loop.measure()
-            loop.command(seconds, feedforward=self._feedforward)
+            loop.update(seconds, feedforward=self._feedforward)
         if self._state_publisher.wanted:
             message = zero(_STATE)
             message.header = header(time_ns, "")
             message.dof_states = [
-                loop.state_message(name, seconds)
+                _state_message(name, loop, seconds)
                 for name, loop in zip(self._names, self._loops, strict=True)
             ]
             self._state_publisher.publish(message)
@@ -139,8 +131,7 @@ class PidController(Controller):
             return
         for loop, values in zip(self._loops, self._ordered(message, "reference"), strict=False):
             if math.isfinite(values[0]):
-                for reference, value in zip(loop.references, values, strict=False):
-                    reference.command = value
+                loop.reference = values
 
     def _on_measured(self, message: Any) -> None:
         for loop, state in zip(self._loops, self._ordered(message, "measured state"), strict=False):
@@ -167,92 +158,15 @@ class PidController(Controller):
         return [by_name[name] for name in self._names]
 
 
-@dataclass(kw_only=True, slots=True)
-class _Loop:
-    """A joint with its references and its PID controller."""
-
-    joint: JointHardware
-    """The commanded joint."""
-    state: JointHardware
-    """The measured joint."""
-    references: tuple[Reference, ...]
-    """References of the value and, optionally, of its rate of change."""
-    damped: bool
-    """Whether the derivative gain damps the joint, which the physics integrates implicitly."""
-    feedforward_gain: float
-    """Output per reference, or per rate of change of a reference with a rate."""
-    wraparound: bool
-    """Whether errors take the shorter way around a full turn."""
-    pid: Pid
-    measured: tuple[float, float] = _UNKNOWN
-    """Measured value and its rate of change; NaN if unknown."""
-
-    def measure(self) -> tuple[float, float]:
-        """Returns the joint's own state: a value and its rate of change."""
-        match self.references[0].interface:
-            case "position":
-                return self.state.position, self.state.velocity
-            case "velocity":
-                return self.state.velocity, math.nan
-        return self.state.effort, math.nan
-
-    @property
-    def reference(self) -> tuple[float, float]:
-        """The reference and its rate of change; NaN if not set."""
-        value, *rate = (each.command for each in self.references)
-        return value, rate[0] if rate else math.nan
-
-    @property
-    def error(self) -> float:
-        """Reference minus measured value."""
-        error = self.reference[0] - self.measured[0]
-        return (
-            math.remainder(error, 2 * math.pi)
-            if self.wraparound and math.isfinite(error)
-            else error
-        )
-
-    def command(self, seconds: float, *, feedforward: bool) -> None:
-        """Commands the joint if it has a reference.
-
-        Args:
-            seconds: Time since the last call, s.
-            feedforward: Add the feedforward term.
-        """
-        (reference, rate), (measured, speed), error = self.reference, self.measured, self.error
-        if not math.isfinite(error):
-            return
-        if self.references[0].interface == "position":
-            command = self.pid.position(
-                error,
-                seconds,
-                target=reference,
-                rate=rate if math.isfinite(rate) else None,
-                lightness=self.joint.lightness if self.damped else 0.0,
-            )
-        else:
-            command, speed = self.pid.velocity(reference, measured, seconds), measured
-        speed = speed if math.isfinite(speed) else 0.0
-        command = self.pid.limited(command, speed)
-        input_value = rate if len(self.references) > 1 else reference
-        if feedforward and math.isfinite(input_value):
-            command = DampedEffort(
-                command.effort + self.feedforward_gain * input_value, command.damping
-            )
-        if self.damped:
-            self.joint.set_effort(command)
-        else:
-            self.joint.command = command.at(speed)
-
-    def state_message(self, name: str, seconds: float) -> Any:
-        """Returns the state as a message."""
-        return message_class(_ONE_STATE)(
-            name=name,
-            reference=self.reference[0],
-            feedback=self.measured[0],
-            feedback_dot=self.measured[1],
-            error=self.error,
-            error_dot=self.reference[1] - self.measured[1],
-            time_step=seconds,
-            output=self.joint.command,
-        )
+def _state_message(name: str, loop: PidLoop, seconds: float) -> Any:
+    (reference, rate), (measured, speed) = loop.reference, loop.measured
+    return message_class(_ONE_STATE)(
+        name=name,
+        reference=reference,
+        feedback=measured,
+        feedback_dot=speed,
+        error=loop.error,
+        error_dot=rate - speed,
+        time_step=seconds,
+        output=loop.output,
+    )
