@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from cartwheel.codes import devices
-from cartwheel.devices.periodic import Periodic
+from cartwheel.devices.joints.actuator_states import ActuatorStates, ActuatorStatesConfig
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
 from cartwheel.dialects.ros_control.parameters import ignored, parameter
 from cartwheel.dialects.ros_control.settings import Settings
-from cartwheel.graph import Publisher
-from cartwheel.messages import header, message_class
-from cartwheel.messages.store import TWIN
-
-_DYNAMIC = f"control_msgs{TWIN}/msg/DynamicJointState"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -101,7 +93,6 @@ class JointStateController(Controller):
         robot, settings = self.robot, self.settings
         if given.publish_rate is None and not robot.ros2:
             raise settings.missing("publish_rate")
-        self._rate = given.publish_rate or 0.0
         names = sorted(robot.hardware.names) if not robot.ros2 else robot.hardware.names
         self._sources = {kind: kind for kind in COMMANDS}
         self._chosen: list[str] = []
@@ -109,22 +100,30 @@ class JointStateController(Controller):
         if robot.ros2:
             names = self._choose(given, names)
         self._joints = [robot.hardware.joint(name) for name in names]
-        self._extra: list[tuple[str, float, float, float]] = []
         if robot.ros2:
             extra = settings.texts("extra_joints", [])
-            self._extra = [(name, 0.0, 0.0, 0.0) for name in extra if name not in names]
+            others = {name: (0.0, 0.0, 0.0) for name in extra if name not in names}
         else:
-            self._extra = self._read_extra(settings.raw("extra_joints") or [], names)
+            others = self._read_extra(settings.raw("extra_joints") or [], names)
         space = "" if given.local else f"/{robot.namespace.strip('/')}/"
-        self._publisher = self.advertise(
-            f"{space}joint_states", "sensor_msgs/msg/JointState", rate=self._rate or None
+        self._states = self.add(
+            ActuatorStates(
+                self.scope,
+                ActuatorStatesConfig(
+                    topic=f"{space}joint_states",
+                    dynamic_topic=f"{space}dynamic_joint_states"
+                    if robot.ros2 and given.dynamic
+                    else "",
+                    rate=given.publish_rate or 0.0,
+                    frame=self._frame,
+                    names=tuple(names),
+                    sources=tuple(self._sources[kind] for kind in COMMANDS),
+                    kinds=tuple(tuple(self._kinds(joint)) for joint in self._joints),
+                    others=others,
+                ),
+                self._joints,
+            )
         )
-        self._dynamic: Publisher | None = None
-        if robot.ros2 and given.dynamic:
-            self._dynamic = self.advertise(f"{space}dynamic_joint_states", _DYNAMIC)
-        self._names = [*names, *(each[0] for each in self._extra)]
-        self._periodic = Periodic(self._rate)
-        self._JointState = message_class("sensor_msgs/msg/JointState")
 
     def _choose(self, given: JointStateParameters, names: list[str]) -> list[str]:
         """Reads ROS 2's parameters for the published joints and interfaces; returns the joints."""
@@ -150,24 +149,18 @@ class JointStateController(Controller):
         self._frame = given.frame
         return names
 
-    def _read_extra(self, entries: Any, known: list[str]) -> list[tuple[str, float, float, float]]:
+    def _read_extra(self, entries: Any, known: list[str]) -> dict[str, tuple[float, float, float]]:
         if not isinstance(entries, list):
             raise self.settings.invalid("extra_joints", entries, "a list")
-        extra = []
+        extra = {}
         for index, entry in enumerate(entries):
             each = Settings(
                 entry if isinstance(entry, dict) else {}, f"{self.name}/extra_joints/{index}"
             )
             name = each.text("name")
+            position, velocity, effort = (each.number(kind, 0.0) for kind in COMMANDS)
             if name not in known:
-                extra.append(
-                    (
-                        name,
-                        each.number("position", 0.0),
-                        each.number("velocity", 0.0),
-                        each.number("effort", 0.0),
-                    )
-                )
+                extra[name] = (position, velocity, effort)
         return extra
 
     def state_interfaces(self) -> list[str]:
@@ -178,58 +171,7 @@ class JointStateController(Controller):
         return self._chosen or list(joint.interfaces.states)
 
     def start(self, time_ns: int) -> None:
-        self._periodic.start(time_ns)
+        self._states.start(time_ns)
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        if not self._periodic.due(time_ns):
-            return
-        head = header(time_ns, self._frame)
-        if self._publisher.wanted:
-            position, velocity, effort = (
-                np.array(
-                    [
-                        *(_value(joint, self._sources[kind]) for joint in self._joints),
-                        *(each[number] for each in self._extra),
-                    ]
-                )
-                for number, kind in enumerate(COMMANDS, start=1)
-            )
-            self._publisher.publish(
-                self._JointState(
-                    header=head,
-                    name=self._names,
-                    position=position,
-                    velocity=velocity,
-                    effort=effort,
-                )
-            )
-        if self._dynamic is not None and self._dynamic.wanted:
-            self._dynamic.publish(self._interfaces_as_message(head))
-
-    def _interfaces_as_message(self, head: Any) -> Any:
-        states = [
-            (kinds := self._kinds(joint), [_value(joint, kind) for kind in kinds])
-            for joint in self._joints
-        ]
-        states += [(list(COMMANDS), list(values)) for _, *values in self._extra]
-        InterfaceValue = message_class(f"control_msgs{TWIN}/msg/InterfaceValue")
-        return message_class(_DYNAMIC)(
-            header=head,
-            joint_names=self._names,
-            interface_values=[
-                InterfaceValue(interface_names=kinds, values=np.array(values))
-                for kinds, values in states
-            ],
-        )
-
-
-def _value(joint: JointHardware, kind: str) -> float:
-    """Returns the value of a state interface; NaN if it does not exist."""
-    match kind:
-        case "position":
-            return joint.position
-        case "velocity":
-            return joint.velocity
-        case "effort":
-            return joint.effort
-    return math.nan
+        self._states.update(time_ns)
