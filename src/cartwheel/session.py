@@ -39,8 +39,8 @@ class Session:
         world: The world at startup.
         seed: Seed for all noise.
         strict: Treat every warning about a file as an error.
-        lenient: Skip plugins with invalid topics or missing parts of their model and report a
-            warning, as Gazebo does. Otherwise such a model is rejected.
+        lenient: Skip plugins that cannot be created, for example because a parameter is invalid,
+            and report an error, as in `cartwheel run`. Otherwise the model is rejected.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
         plugins: Python files that define plugins. They are executed.
         allow_path: Folders with files that clients of the session's services may load.

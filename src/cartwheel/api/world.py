@@ -37,8 +37,8 @@ class World(RunningWorld):
         world: ``empty``, the name of another built-in world, a file, or a description.
         seed: Seed for all noise. The same seed and commands give identical results.
         strict: Treat every warning about a file as an error.
-        lenient: Skip plugins with invalid topics or missing parts of their model and report a
-            warning, as in `cartwheel run`. Otherwise `spawn` raises an error.
+        lenient: Skip plugins that cannot be created, for example because a parameter is invalid,
+            and report an error, as in `cartwheel run`. Otherwise the model is rejected.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
         plugins: Python files that define plugins. They are executed.
         ros1: Connect to ROS 1; a text is the node's name.

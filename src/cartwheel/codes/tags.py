@@ -116,6 +116,12 @@ MODEL_EMPTY = Code(
     "error",
     "a robot or model has no links",
 )
+TEXT_AFTER_NUMBER = Code(
+    "CW320",
+    "text-after-number",
+    "warning",
+    "text after a number is ignored, as in Gazebo",
+)
 GAZEBO_IGNORES = Code(
     "CW350", "gazebo-ignores", "warning", "Gazebo ignores a tag that Cartwheel reads"
 )

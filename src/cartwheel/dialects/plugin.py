@@ -14,7 +14,6 @@ from cartwheel.errors import Origin
 from cartwheel.graph import Action, ActionTopics, Goal
 from cartwheel.graph.actionlib import STATUS_RATE
 from cartwheel.simulation import Part
-from cartwheel.simulation.limits import FARTHEST
 
 C = TypeVar("C")
 
@@ -201,17 +200,6 @@ class Plugin(Component, Generic[C]):
                 written = (each for each in tags if self.tag.element.find(each) is not None)
                 tag = next(written, tags[0])
                 raise invalid(tag, float(least), "at least 0", self.place_of(tag))
-
-    def check_lengths(self, **values: float) -> None:
-        """Checks dimensions of a drive in m, given by their tags.
-
-        Raises:
-            PluginError: A value is 0 or negative, or larger than any robot.
-        """
-        self.check_above_zero(**values)
-        for name, value in values.items():
-            if value > FARTHEST:
-                raise invalid(name, value, f"at most {FARTHEST:g} m", self.place_of(name))
 
 
 def _remappings(tag: PluginTag) -> dict[str, str]:

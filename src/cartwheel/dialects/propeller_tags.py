@@ -8,7 +8,7 @@ from typing import Any, Literal
 from cartwheel.codes import devices
 from cartwheel.devices.air.propeller import Propeller, PropellerConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 SLOWDOWN = 10.0
 """Default ratio of the speed of the propeller to the speed of its joint."""
@@ -41,10 +41,18 @@ class PropellerTags:
         doc="Torque on the parent link divided by the thrust.",
     )
     up: float = tag(
-        "timeConstantUp", default=1 / 80, unit="s", doc="Time constant while the speed increases."
+        "timeConstantUp",
+        default=1 / 80,
+        unit="s",
+        least=SMALLEST,
+        doc="Time constant while the speed increases.",
     )
     down: float = tag(
-        "timeConstantDown", default=1 / 40, unit="s", doc="Time constant while the speed decreases."
+        "timeConstantDown",
+        default=1 / 40,
+        unit="s",
+        least=SMALLEST,
+        doc="Time constant while the speed decreases.",
     )
     drag: float = tag(
         "rotorDragCoefficient",
@@ -63,6 +71,7 @@ class PropellerTags:
     slowdown: float = tag(
         "rotorVelocitySlowdownSim",
         default=SLOWDOWN,
+        least=SMALLEST,
         doc="Speed of the propeller divided by the speed of the joint.",
     )
 
@@ -92,13 +101,6 @@ def add_propeller(
         UnknownNameError: The joint or link does not exist.
     """
     config = plugin.config
-    plugin.check_above_zero(
-        timeConstantUp=config.up,
-        timeConstantDown=config.down,
-        rotorVelocitySlowdownSim=config.slowdown,
-        maxRotVelocity=config.fastest,
-    )
-    plugin.check_not_negative("number")
     counterclockwise = config.direction == "ccw"
     driven = config.kind == "velocity"
     device = PropellerConfig(

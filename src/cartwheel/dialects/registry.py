@@ -20,7 +20,7 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
-from cartwheel.errors import CartwheelError, GraphError, StaticModelError, UnknownNameError
+from cartwheel.errors import CartwheelError, StaticModelError
 from cartwheel.similar_names import meant_one
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
@@ -34,19 +34,18 @@ _HARMLESS: _Faults = (StaticModelError,)
 def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behaviour]:
     """Creates the plugins of a model and reports unsupported ones.
 
-    If a plugin cannot be created, the model is not loaded. These plugins are skipped with a report
-    instead: gz-sim systems in a model that is part of a world, as in Gazebo; plugins for sensors
-    without a ``<plugin>``; plugins that would drive a joint of a static model; and plugins that
-    raise an unexpected exception.
+    If a plugin cannot be created and `lenient` is False, the model is not loaded. These plugins
+    are always skipped with a report: gz-sim systems in a model that is part of a world, as in
+    Gazebo; plugins for sensors without a ``<plugin>``; plugins that would drive a joint of a static
+    model; and plugins that raise an unexpected exception.
 
     Args:
         part: The model's part of the simulation.
         shared: Objects that all components of the simulation share.
-        lenient: Also skip plugins that refer to an element that the model does not have, or whose
-            topics or services have invalid or mismatched names.
+        lenient: Skip every plugin that cannot be created, with a report.
 
     Raises:
-        CartwheelError: A plugin's parameters are invalid. Plugins created before it are closed.
+        CartwheelError: A plugin cannot be created. Plugins created before it are closed.
     """
     plugins: list[Plugin[object]] = []
     sensors = [sensor for link in part.description.links for sensor in link.sensors]
@@ -54,7 +53,6 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     pairs += [(tag, sensor) for sensor in sensors for tag in sensor.plugins]
     systems = {short_name(tag.filename) for tag in (*part.world.plugins, *part.description.plugins)}
     in_world = any(model is part.description for model in part.world.models)
-    unknown: _Faults = (UnknownNameError, GraphError) if lenient else ()
     more = shared.get(PluginFiles).classes
     try:
         for tag, sensor in pairs:
@@ -75,7 +73,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
                     )
                 )
             else:
-                forgiven = _ANY if own_system else (*_HARMLESS, *unknown)
+                forgiven = _ANY if lenient or own_system else _HARMLESS
                 plugins += _create(part, shared, plugin, tag, sensor, forgiven=forgiven)
         alone = [
             one

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import math
 import typing
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar, get_args, get_origin
 
 from cartwheel.codes import devices
+from cartwheel.description.elements import numbers
 from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element
 from cartwheel.dialects.tag_roles import JOINT_ROLES, Role, TagRole
@@ -32,6 +33,7 @@ def tag(
     *names: str,
     default: Any = dataclasses.MISSING,
     unit: str = "",
+    least: float | None = None,
     most: float | None = None,
     optional: bool = False,
     nested: bool = False,
@@ -47,7 +49,9 @@ def tag(
             a nested tag.
         default: Value if none of the tags exists. Without a default, the tag is required.
         unit: SI unit of the value.
-        most: Largest magnitude. Defaults to `LARGEST`, and for integers to 2**31 - 1.
+        least: Smallest value, also of each component of a vector. `SMALLEST` for positive values,
+            None for ``-most``.
+        most: Largest value. Defaults to `LARGEST`, and for integers to 2**31 - 1.
         optional: Whether the plugin works without the joint that the default names.
         nested: Whether the tag contains other tags, which the plugin reads itself.
         role: Meaning of the tag, for the rules of ``cartwheel check``. A value in Hz is a rate.
@@ -60,6 +64,7 @@ def tag(
     metadata = {
         "tags": names,
         "unit": unit,
+        "least": least,
         "most": most,
         "optional": optional,
         "nested": nested,
@@ -157,17 +162,16 @@ def read(
         stated = next((child for name in names if (child := element.find(name)) is not None), None)
         if stated is not None:
             kind = hints[item.name]
-            if kind in (float, float | None) and len(stated.text.split()) > 1:
-                stated, diagnostic = _first(stated)
-                diagnostics.append(diagnostic)
             if get_origin(kind) is tuple and Ellipsis in get_args(kind):
+                each = get_args(kind)[0]
                 values[item.name] = tuple(
-                    _value(get_args(kind)[0], child, item.metadata["most"])
+                    _value(each, _cut(each, child, diagnostics), item.metadata)
                     for name in names
                     for child in element.find_all(name)
                 )
             else:
-                values[item.name] = _value(kind, stated, item.metadata["most"])
+                stated = _cut(kind, stated, diagnostics)
+                values[item.name] = _value(kind, stated, item.metadata)
         elif item.default is dataclasses.MISSING:
             raise missing(element.tag, names[0], element.origin, hint=item.metadata["doc"])
     diagnostics += [_unknown(child, known) for child in element.children if child.tag not in known]
@@ -185,15 +189,36 @@ def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
     )
 
 
-def _first(element: Element) -> tuple[Element, Diagnostic]:
-    """Reduces an element to its first word, which Gazebo reads if it expects a single number."""
-    word = element.text.split()[0]
-    return dataclasses.replace(element, text=word), devices.PLUGIN_PARAMETER_NOT_SINGLE.diagnostic(
-        f"<{element.tag}> must be one number, but contains several, so {word} is used",
-        origin=element.origin,
-        values={"parameter": element.tag, "value": word},
-        mark=f"<{element.tag}",
-    )
+def _cut(kind: Any, element: Element, diagnostics: list[Diagnostic]) -> Element:
+    """Reduces an element to the numbers that Gazebo reads, and reports the rest of its text."""
+    kinds = {each for each in get_args(kind) or (kind,) if each is not type(None)}
+    if not kinds or not kinds <= {int, float}:
+        return element
+    size = len(get_args(kind)) if get_origin(kind) is tuple else 1
+    text = element.text.strip()
+    found = numbers.leading(text, size)
+    if found is None:
+        return element
+    used, rest = found
+    if kinds == {int} and size == 1 and not rest:
+        value = float(used)
+        if math.isfinite(value) and value != int(value):
+            used, rest = str(int(value)), text
+    if not rest:
+        return element
+    words = text.split()
+    if len(words) > size == 1 and all(numbers.leading(each) == (each, "") for each in words):
+        diagnostics.append(
+            devices.PLUGIN_PARAMETER_NOT_SINGLE.diagnostic(
+                f"<{element.tag}> must be one number, but contains several, so {used} is used",
+                origin=element.origin,
+                values={"parameter": element.tag, "value": used},
+                mark=f"<{element.tag}",
+            )
+        )
+    else:
+        diagnostics.append(numbers.text_after(element.tag, text, used, element.origin))
+    return dataclasses.replace(element, text=used)
 
 
 def invalid(name: str, value: Value, wanted: str, origin: Origin | None) -> PluginError:
@@ -253,10 +278,11 @@ def vector(element: Element, size: int) -> tuple[float, ...]:
     Raises:
         PluginError: There are more or fewer than `size` numbers, or one is invalid; see `number`.
     """
-    return _vector(element, size, LARGEST)
+    return _vector(element, size, None, LARGEST)
 
 
-def _value(kind: Any, element: Element, most: float | None) -> Any:
+def _value(kind: Any, element: Element, metadata: Mapping[str, Any]) -> Any:
+    least, most = metadata["least"], metadata["most"]
     text = element.text.strip()
     options = get_args(kind)
     if type(None) in options:
@@ -272,28 +298,26 @@ def _value(kind: Any, element: Element, most: float | None) -> Any:
             return text.lower() in _TRUE
         raise invalid(element.tag, text, "true or false", element.origin)
     if kind is float:
-        most = LARGEST if most is None else most
-        return _number(element, text, -most, most)
+        return _number(element, text, least, LARGEST if most is None else most)
     if kind is int:
-        most = _MOST_COUNT if most is None else most
-        number = _number(element, text, -most, most)
+        number = _number(element, text, least, _MOST_COUNT if most is None else most)
         if number != int(number):
             raise invalid(element.tag, text, "a whole number", element.origin)
         return int(number)
     if get_origin(kind) is tuple:
-        return _vector(element, len(options), LARGEST if most is None else most)
+        return _vector(element, len(options), least, LARGEST if most is None else most)
     return text
 
 
-def _vector(element: Element, size: int, most: float) -> tuple[float, ...]:
+def _vector(element: Element, size: int, least: float | None, most: float) -> tuple[float, ...]:
     words = element.text.split()
     if len(words) != size:
         raise invalid(element.tag, element.text.strip(), f"{size} numbers", element.origin)
-    return tuple(_number(element, word, -most, most) for word in words)
+    return tuple(_number(element, word, least, most) for word in words)
 
 
 def _number(
-    element: Element, text: str, least: float, most: float, *, endless: bool = False
+    element: Element, text: str, least: float | None, most: float, *, endless: bool = False
 ) -> float:
     try:
         number = float(text)
@@ -301,10 +325,21 @@ def _number(
         raise invalid(element.tag, text, "a number", element.origin) from None
     if endless and abs(number) > LARGEST:
         return math.copysign(math.inf, number)
-    if not least <= number <= most:
-        wanted = f"a number between {least:g} and {most:g}"
+    if least is not None and number < least:
+        raise invalid(element.tag, number, _wanted(number, least, most), element.origin)
+    if not (-most if least is None else least) <= number <= most:
+        wanted = f"a number between {-most if least is None else least:g} and {most:g}"
         raise invalid(element.tag, text, wanted, element.origin)
     return number
+
+
+def _wanted(number: float, least: float, most: float) -> str:
+    """The allowed values of a number that is too small."""
+    if least == SMALLEST:
+        return "positive" if number <= 0 else f"at least {least:g}"
+    if most in (LARGEST, _MOST_COUNT):
+        return f"at least {least:g}"
+    return f"between {least:g} and {most:g}"
 
 
 def shown(text: str) -> str:

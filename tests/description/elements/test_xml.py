@@ -5,6 +5,7 @@ from tests.coded import named, placed, raises
 
 from cartwheel.codes import files, tags
 from cartwheel.description.elements import numbers, xml
+from cartwheel.description.elements.unread import unread
 from cartwheel.description.model import Element
 from cartwheel.errors import DescriptionError, Origin
 from cartwheel.geometry import Pose
@@ -133,11 +134,46 @@ def test_what_is_no_truth_value():
     assert named(caught.value) == "value-invalid"
 
 
-def test_whole_numbers():
-    assert numbers.integer("10.0", "width", HERE) == 10
-    with pytest.raises(DescriptionError) as caught:
-        numbers.integer("10.5", "width", HERE)
-    assert named(caught.value) == "value-invalid"
+@pytest.mark.parametrize(
+    ("text", "size", "found"),
+    [
+        ("1", 1, ("1", "")),
+        (" +.5e-3 ", 1, ("+.5e-3", "")),
+        ("0.2*0.8", 1, ("0.2", "*0.8")),
+        ("50deg", 1, ("50", "deg")),
+        ("1,5", 1, ("1", ",5")),
+        ("1.2.3", 1, ("1.2", ".3")),
+        ("2x", 1, ("2", "x")),
+        ("1 2 3 4", 3, ("1 2 3", "4")),
+        ("1 2 3m", 3, ("1 2 3", "m")),
+        ("1-2 3", 3, ("1 -2 3", "")),
+        ("1m 2 3", 3, None),
+        ("1 2", 3, None),
+        ("2e", 1, None),
+        ("2em", 1, None),
+        ("0x10", 1, None),
+        ("wide", 1, None),
+        ("inf", 1, None),
+        ("", 1, None),
+    ],
+)
+def test_leading_numbers_as_c_plus_plus_streams_read_them(text, size, found):
+    assert numbers.leading(text, size) == found
+
+
+def test_text_after_a_number_in_an_element_is_a_warning():
+    root = xml.parse("<a><w>10.5</w><d>2,5</d><v>1 2 3 4</v><h n='1m'/></a>")
+    assert root.integer_at("w", 0) == 10
+    assert root.number_at("d", 0) == 2
+    assert root.vec3_at("v", (0, 0, 0)) == (1, 2, 3)
+    warnings = [each for each in unread(root) if each.code is tags.TEXT_AFTER_NUMBER]
+    assert [(each.values["tag"], each.values["used"]) for each in warnings] == [
+        ("w", "10"), ("d", "2"), ("v", "1 2 3"),
+    ]  # fmt: skip
+    assert [each.values["stated"] for each in warnings] == ["10.5", "2,5", "1 2 3 4"]
+    # urdfdom, which reads attributes, rejects such text.
+    with pytest.raises(DescriptionError):
+        root.require_child("h").number_of("n")
 
 
 def test_attributes_and_descendants():

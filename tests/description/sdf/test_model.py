@@ -662,11 +662,6 @@ ENDS = "<parent>a</parent><child>b</child>"
          "</visual></link>", "value-invalid"),
         ('<link name="a"><visual name="v"><geometry><mesh/></geometry></visual></link>',
          "tag-missing"),
-        ('<link name="a"><sensor name="s"/></link>', "tag-missing"),
-        ('<link name="a"><sensor name="s" type="camera"><camera><horizontal_fov>60'
-         "</horizontal_fov></camera></sensor></link>", "value-invalid"),
-        ('<link name="a"><sensor name="s" type="camera"><camera><clip><near>2</near><far>1</far>'
-         "</clip></camera></sensor></link>", "value-invalid"),
         ('<link name="a"><sensor name="s" type="imu"/><sensor name="s" type="imu"/></link>',
          "name-taken"),
         ('<link name="a"/><plugin name="p"/>', "tag-missing"),
@@ -678,6 +673,30 @@ def test_errors(inside, code):
     assert named(caught.value) == code
     assert caught.value.origin is not None
     assert caught.value.origin.line >= 2
+
+
+@pytest.mark.parametrize(
+    ("sensor", "code"),
+    [
+        ('<sensor name="s"/>', "tag-missing"),
+        ('<sensor name="s" type="camera"><camera><horizontal_fov>60</horizontal_fov></camera>'
+         "</sensor>", "value-invalid"),
+        ('<sensor name="s" type="camera"><camera><clip><near>2</near><far>1</far></clip></camera>'
+         "</sensor>", "value-invalid"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("holder", ["link", "joint"])
+def test_an_invalid_sensor_is_left_out(holder, sensor, code):
+    good = '<sensor name="good" type="imu"/>'
+    joint = f'<joint name="j" type="fixed">{ENDS}{sensor * (holder == "joint")}</joint>'
+    first = f'<link name="a">{good}{sensor * (holder == "link")}</link>'
+    found = robot(f'{first}<link name="b"/>{joint}')
+    assert [each.name for each in found.links[0].sensors] == ["good"]
+    assert not found.links[1].sensors
+    (error,) = [each for each in found.diagnostics if each.severity == "error"]
+    assert named(error) == code
+    assert error.values["left_out"] == "sensor"
+    assert error.origin is not None
 
 
 @pytest.mark.parametrize(

@@ -309,7 +309,6 @@ def test_a_tag_for_nothing_is_left_out_and_told():
     [
         (on("base", "<mu1>x</mu1>"), "value-invalid"),
         (on("base", "<selfCollide>perhaps</selfCollide>"), "value-invalid"),
-        (on("base", '<sensor name="a"/>'), "tag-missing"),
         ('<gazebo><plugin name="a"/></gazebo>', "tag-missing"),
     ],
 )
@@ -318,6 +317,17 @@ def test_errors(tags, code):
         load(tags)
     assert str(caught.value.origin) == "robot.urdf:2"
     assert named(caught.value) == code
+
+
+@pytest.mark.parametrize("place", ["base", "hinge"])
+def test_an_invalid_sensor_is_left_out(place):
+    (error,) = [
+        each
+        for each in load(on(place, '<sensor name="a"/>')).diagnostics
+        if each.severity == "error"
+    ]
+    assert placed(error) == "robot.urdf:2 error tag-missing"
+    assert error.values["left_out"] == "sensor"
 
 
 def test_a_fudge_factor_is_no_loss():

@@ -10,7 +10,6 @@ from tests.devices.position.bodies import spherical
 
 from cartwheel.codes import devices, running
 from cartwheel.description import load_text
-from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
 
 FIELD = (2e-5, 1e-6, -4e-5)
@@ -150,10 +149,12 @@ def test_an_image_without_noise_by_its_type_has_none(make):
 
 
 @pytest.mark.parametrize("inside", [noise("pink"), noise(stddev=-0.1)])
-def test_an_images_noise_without_sense_is_refused(make, inside):
-    with pytest.raises(CartwheelError) as error:
-        make.sdf(sensor(inside=inside))
-    assert error.value.origin is not None
+def test_a_camera_with_invalid_noise_is_left_out(make, inside):
+    model = make.sdf(sensor(inside=inside))
+    assert not [each for link in model.links for each in link.sensors]
+    (error,) = [each for each in model.diagnostics if each.severity == "error"]
+    assert error.values["left_out"] == "sensor"
+    assert error.origin is not None
 
 
 def test_an_unknown_format_is_colours_and_told(make):

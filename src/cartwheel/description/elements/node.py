@@ -206,19 +206,27 @@ class Node:
     # The element's own text.
 
     def number(self, *, infinite: bool = False) -> float:
-        """The text as a number."""
+        """The text as a number; text after it is ignored with a warning, as in Gazebo."""
+        self.cut(1)
         return numbers.number(self.text, self.tag, self.origin, infinite=infinite)
 
     def integer(self) -> int:
-        """The text as an integer."""
-        return numbers.integer(self.text, self.tag, self.origin)
+        """The text as an integer; decimals or text after it are ignored with a warning."""
+        self.cut(1)
+        value = numbers.number(self.text, self.tag, self.origin)
+        if value != int(value):
+            self._shorten(str(int(value)))
+        return int(value)
 
     def boolean(self) -> bool:
         """The text as true, false, 1 or 0."""
         return numbers.boolean(self.text, self.tag, self.origin)
 
     def vector(self, size: int) -> tuple[float, ...]:
-        """The text as `size` numbers separated by white space."""
+        """The text as `size` numbers separated by white space; the rest is ignored with a warning,
+        as in Gazebo.
+        """
+        self.cut(size)
         return numbers.vector(self.text, size, self.tag, self.origin)
 
     def vec3(self) -> Vec3:
@@ -233,6 +241,16 @@ class Node:
         values = self.vector(6)
         place = numbers.position(values[:3], self.tag, self.origin)
         return Pose.from_xyz_rpy(place, values[3:])
+
+    def cut(self, size: int) -> None:
+        """Removes and reports what follows the first `size` numbers of the text."""
+        found = numbers.leading(self.text, size)
+        if found is not None and found[1]:
+            self._shorten(found[0])
+
+    def _shorten(self, used: str) -> None:
+        self.notes = (*self.notes, numbers.text_after(self.tag, self.text, used, self.origin))
+        self.text = used
 
     # The text of a descendant, by its path.
 

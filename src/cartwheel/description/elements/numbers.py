@@ -8,11 +8,12 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
-from cartwheel.codes.tags import VALUE_INVALID
-from cartwheel.errors import DescriptionError, Origin
+from cartwheel.codes.tags import TEXT_AFTER_NUMBER, VALUE_INVALID
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Vec3
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
+_LEADING = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?\Z", re.IGNORECASE)
 LARGEST = 1e15
 """Maximum of positions, sizes and directions; the square of a larger value overflows."""
@@ -75,12 +76,37 @@ def number(text: str, label: str, origin: Origin, *, infinite: bool = False) -> 
     )
 
 
-def integer(text: str, label: str, origin: Origin) -> int:
-    """An integer; ``10.0`` is accepted."""
-    value = number(text, label, origin)
-    if value != int(value):
-        raise _InvalidError(label, f"{_quoted(text.strip())} is not an integer", text, origin)
-    return int(value)
+def leading(text: str, size: int = 1) -> tuple[str, str] | None:
+    """Splits a text after its first `size` numbers, which Gazebo reads with C++ streams.
+
+    Returns:
+        The numbers, separated by spaces, and the rest of the text. None if Gazebo cannot read that
+        many numbers either, for example from ``2e`` or ``wide``.
+    """
+    words: list[str] = []
+    end = 0
+    while len(words) < size:
+        match = _LEADING.match(text, end)
+        if match is None:
+            return None
+        end = match.end()
+        follows = text[end : end + 1].lower()
+        if follows == "e" or (follows == "x" and match[1] in ("0", "+0", "-0")):
+            return None
+        words.append(match[1])
+    return " ".join(words), text[end:].strip()
+
+
+def text_after(tag: str, stated: str, used: str, origin: Origin) -> Diagnostic:
+    """The warning for an element of which only the first number or numbers are used."""
+    return TEXT_AFTER_NUMBER.diagnostic(
+        f"<{tag}> contains text after {'the number' if ' ' not in used else 'the numbers'} "
+        f"(got {_quoted(stated)}), so {used} is used",
+        origin=origin,
+        hint=_number_hint(stated) or "",
+        values={"tag": tag, "stated": stated[:_LONGEST_NAME], "used": used},
+        mark=f"<{tag}",
+    )
 
 
 def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...]:

@@ -118,7 +118,7 @@ def _build(
                 joint = replace(joint, preserve_fixed=joint.type == "fixed")
                 new_joints.append((node, joint))
                 all_joints.append(joint)
-                sensors += read_joint_sensors(node, joint, frames)
+                sensors += read_joint_sensors(node, joint, frames, ctx)
     names = [joint.name for joint in all_joints]
     for node, joint in new_joints:
         with _blaming(node):

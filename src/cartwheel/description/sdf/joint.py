@@ -11,7 +11,7 @@ from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
-from cartwheel.description.sdf.sensors import read_sensor
+from cartwheel.description.sdf.sensors import read_sensor, read_sensors
 from cartwheel.errors import DescriptionError, Value
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 from cartwheel.similar_names import meant, suggestion
@@ -223,10 +223,10 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     )
 
 
-def read_joint_sensors(node: Node, joint: Joint, frames: Frames) -> list[Sensor]:
+def read_joint_sensors(node: Node, joint: Joint, frames: Frames, ctx: Context) -> list[Sensor]:
     """The sensors of a joint: placed in its frame, attached to its child link."""
-    found: list[Sensor] = []
-    for each in node.all("sensor"):
+
+    def read(each: Node) -> Sensor:
         stated = each.child("pose")
         relative_to = reference_of(stated)
         own = read_pose(stated)
@@ -235,8 +235,9 @@ def read_joint_sensors(node: Node, joint: Joint, frames: Frames) -> list[Sensor]
             pose = frames.pose(joint.child, each.origin).inverse() @ in_model
         else:
             pose = joint.pose @ own
-        found.append(replace(read_sensor(each, joint.child, pose), joint=joint.name))
-    return found
+        return replace(read_sensor(each, joint.child, pose), joint=joint.name)
+
+    return read_sensors(node.all("sensor"), read, ctx.report)
 
 
 def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:

@@ -120,7 +120,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
             joint = read_joint(each, ctx, frames, frame)
             if joint is not None:
                 joints.append(joint)
-                sensors += read_joint_sensors(each, joint, frames)
+                sensors += read_joint_sensors(each, joint, frames, ctx)
     gears = [(each, frame) for each, frame in joint_nodes if each.get("type") == GEARBOX]
     joints = mesh_gears(gears, joints, ctx, frames)
     stated = included.pose if included is not None and included.pose else node.child("pose")

@@ -105,6 +105,13 @@ _SENSOR = _tags(
     ),
 )
 """The children of each element; None for any."""
+_NUMBERS = frozenset({
+    "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
+    "dynamic_bias_correlation_time", "precision", "samples", "resolution", "min_angle", "max_angle",
+    "near", "far", "min", "max", "horizontal_fov", "width", "height", "k1", "k2", "k3", "p1", "p2",
+    "aspect_ratio", "reference_altitude",
+})  # fmt: skip
+"""Elements that contain one number."""
 _MANY = ("camera", "collision", "plugin")
 """Elements that may be repeated."""
 _ATTRIBUTES = (
@@ -134,3 +141,5 @@ def _mark(node: Node, known: dict[str, Any]) -> None:
                 each.mark()
             else:
                 _mark(each, below)
+            if tag in _NUMBERS:
+                each.cut(1)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 
 from cartwheel.codes.tags import TYPE_UNKNOWN
 from cartwheel.description.elements.numbers import LARGEST, within
 from cartwheel.description.elements.xml import Node, copied, to_element
+from cartwheel.description.losses import loss
 from cartwheel.description.model import CameraIntrinsics, PluginTag, Sensor
 from cartwheel.description.sdf.context import read_pose
 from cartwheel.description.sdf.sensor_tags import mark_known
+from cartwheel.errors import DescriptionError, Diagnostic
 from cartwheel.geometry import Pose
 
 MOST_PIXELS = 7680 * 4320
@@ -76,6 +79,26 @@ def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "")
         element=copied(node),
         origin=node.origin,
     )
+
+
+def read_sensors(
+    nodes: Iterable[Node], read: Callable[[Node], Sensor], report: Callable[[Diagnostic], None]
+) -> list[Sensor]:
+    """The sensors that can be read; the others are reported as errors and ignored.
+
+    Args:
+        nodes: The elements.
+        read: Reads one of them.
+        report: Receives the errors.
+    """
+    sensors: list[Sensor] = []
+    for node in nodes:
+        try:
+            sensors.append(read(node))
+        except DescriptionError as error:
+            node.mark()
+            report(loss(error, "the sensor is ignored", of="sensor", origin=error.origin))
+    return sensors
 
 
 def read_camera(node: Node) -> CameraIntrinsics:

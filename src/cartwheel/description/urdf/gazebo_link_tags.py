@@ -15,7 +15,7 @@ from cartwheel.description.sdf.context import Context, not_simulated, read_pose
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.surface import not_negative, read_surface
-from cartwheel.description.sdf.sensors import read_sensor
+from cartwheel.description.sdf.sensors import read_sensor, read_sensors
 from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
@@ -154,14 +154,13 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
         collision.get("name")
         _read_collision(collision, tags, sdf)
     seen = {sensor.name for sensor in tags.sensors}
-    for sensor in node.all("sensor"):
-        read = read_sensor(sensor, link)
+    for read in read_sensors(node.all("sensor"), lambda each: read_sensor(each, link), ctx.report):
         if read.name in seen:
             ctx.report(
                 codes.SENSOR_TWICE.diagnostic(
                     f'link "{link}" has two sensors named "{read.name}", which may publish on the '
                     "same topic",
-                    origin=sensor.origin,
+                    origin=read.origin,
                     values={"link": link, "name": read.name},
                 )
             )

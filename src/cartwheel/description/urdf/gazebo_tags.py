@@ -14,7 +14,7 @@ from cartwheel.codes import tags as codes
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Joint, Link, PluginTag
 from cartwheel.description.sdf.inserting import INSERTED
-from cartwheel.description.sdf.sensors import read_plugin, read_sensor
+from cartwheel.description.sdf.sensors import read_plugin, read_sensor, read_sensors
 from cartwheel.description.urdf.context import UrdfContext
 from cartwheel.description.urdf.gazebo_link_tags import (
     LINK_TAGS,
@@ -232,8 +232,11 @@ def _read_joint_tags(
             )
         )
     child_tags = tags.links.setdefault(joint.child, LinkTags())
-    for sensor in node.all("sensor"):
-        read = replace(read_sensor(sensor, joint.child), joint=joint.name)
+    for read in read_sensors(
+        node.all("sensor"),
+        lambda each: replace(read_sensor(each, joint.child), joint=joint.name),
+        ctx.report,
+    ):
         if not of_both or read.type == _OF_JOINTS:
             child_tags.sensors.append(read)
     if joint.type != "fixed" and fields.get("preserve_fixed"):

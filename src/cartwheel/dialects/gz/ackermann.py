@@ -14,7 +14,8 @@ from cartwheel.dialects.gz.drive_tags import (
     separate_limits,
 )
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
+from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,6 +50,8 @@ class GzAckermannParameters(GzLimitedParameters):
         unit="m",
         role="wheel_separation",
         wheels=("left_joint", "right_joint"),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Distance between the left and right wheels.",
     )
     kingpin_width: float = tag(
@@ -57,6 +60,8 @@ class GzAckermannParameters(GzLimitedParameters):
         unit="m",
         role="wheel_separation",
         wheels=("steer_left", "steer_right"),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Distance between the steering axes.",
     )
     wheel_base: float = tag(
@@ -65,10 +70,17 @@ class GzAckermannParameters(GzLimitedParameters):
         unit="m",
         role="wheel_base",
         wheels=("steer_left", "left_joint"),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Distance between the front and rear axles.",
     )
     steering_limit: float = tag(
-        "steering_limit", default=0.5, unit="rad", doc="Maximum steering angle."
+        "steering_limit",
+        default=0.5,
+        unit="rad",
+        least=SMALLEST,
+        most=FARTHEST,
+        doc="Maximum steering angle.",
     )
     wheel_radius: float = tag(
         "wheel_radius",
@@ -76,6 +88,8 @@ class GzAckermannParameters(GzLimitedParameters):
         unit="m",
         role="wheel_radius",
         wheels=("left_joint",),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Radius of all wheels.",
     )
     steer_gain: float = tag(
@@ -108,13 +122,6 @@ class GzAckermannDrive(Plugin[GzAckermannParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_lengths(
-            wheel_base=config.wheel_base,
-            wheel_separation=config.wheel_separation,
-            kingpin_width=config.kingpin_width,
-            wheel_radius=config.wheel_radius,
-            steering_limit=config.steering_limit,
-        )
         for flag, what in (
             (config.steering_only, "steering_only"),
             (config.actuators, "use_actuator_msg"),

@@ -9,13 +9,13 @@ from cartwheel.codes import devices
 from cartwheel.devices.power.battery import Battery, BatteryConfig
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BatteryParameters:
     name: str = tag("battery_name", doc="Name of the battery.")
-    voltage: float = tag("voltage", unit="V", doc="Initial voltage.")
+    voltage: float = tag("voltage", unit="V", least=SMALLEST, doc="Initial voltage.")
     constant: float | None = tag(
         "open_circuit_voltage_constant_coef",
         default=None,
@@ -29,7 +29,7 @@ class BatteryParameters:
         doc="Open-circuit voltage of the empty battery minus that of the full battery. Normally "
         "negative.",
     )
-    capacity: float = tag("capacity", unit="A h", doc="Charge of the full battery.")
+    capacity: float = tag("capacity", unit="A h", least=SMALLEST, doc="Charge of the full battery.")
     charge: float | None = tag(
         "initial_charge", default=None, unit="A h", doc="Initial charge. Default: `<capacity>`."
     )
@@ -38,6 +38,7 @@ class BatteryParameters:
         "smooth_current_tau",
         default=1.0,
         unit="s",
+        least=SMALLEST,
         doc="Time constant of the low-pass filter for the current.",
     )
     power: float = tag(
@@ -118,9 +119,6 @@ class BatteryPlugin(Plugin[BatteryParameters]):
         config = self.config
         full = config.capacity
         charge = full if config.charge is None else config.charge
-        self.check_above_zero(
-            capacity=full, voltage=config.voltage, smooth_current_tau=config.smoothing
-        )
         if not 0 <= charge <= full:
             self.warn(
                 devices.PLUGIN_PARAMETER_INVALID,

@@ -48,6 +48,7 @@ class GzDriveParameters:
         "odom_publish_frequency",
         default=50.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate of the odometry. If 0, it is published at every simulation step.",
     )
 
@@ -227,7 +228,6 @@ def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> OdometryConfi
     Raises:
         PluginError: The rate is negative.
     """
-    plugin.check_not_negative("rate")
     name = plugin.part.name
     return OdometryConfig(
         topic=gz_name(plugin, config.odom_topic, "odometry"),

@@ -11,7 +11,7 @@ from cartwheel.devices.cameras.logical_camera import LogicalCamera as LogicalCam
 from cartwheel.devices.cameras.logical_camera import LogicalCameraConfig
 from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.errors import PluginError
 
 
@@ -40,7 +40,10 @@ class LogicalCameraParameters:
         "logical_camera/horizontal_fov", default=1.0, unit="rad", doc="Horizontal field of view."
     )
     aspect: float = tag(
-        "logical_camera/aspect_ratio", default=1.0, doc="Width of the view divided by its height."
+        "logical_camera/aspect_ratio",
+        default=1.0,
+        least=SMALLEST,
+        doc="Width of the view divided by its height.",
     )
 
 
@@ -69,7 +72,6 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
                 origin=sensor.origin,
                 values={"near": config.near, "far": config.far, "view": config.view},
             )
-        self.check_above_zero(aspect_ratio=config.aspect)
         device = LogicalCameraConfig(
             link=sensor.link,
             pose=sensor.pose,

@@ -17,7 +17,8 @@ from cartwheel.dialects.gz.drive_tags import (
     report_limits,
 )
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
+from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +53,8 @@ class MecanumParameters(GzCommonLimits):
         unit="m",
         role="wheel_base",
         wheels=("front_left", "back_left"),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Distance between the front and back axles.",
     )
     wheel_separation: float = tag(
@@ -60,6 +63,8 @@ class MecanumParameters(GzCommonLimits):
         unit="m",
         role="wheel_separation",
         wheels=("front_left", "front_right"),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Distance between the left and right wheels.",
     )
     wheel_radius: float = tag(
@@ -68,6 +73,8 @@ class MecanumParameters(GzCommonLimits):
         unit="m",
         role="wheel_radius",
         wheels=("front_left",),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Radius of all wheels.",
     )
 
@@ -89,11 +96,6 @@ class GzMecanumDrive(Plugin[MecanumParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_lengths(
-            wheelbase=config.wheel_base,
-            wheel_separation=config.wheel_separation,
-            wheel_radius=config.wheel_radius,
-        )
         report_limits(self, config)
         limits = common_limits(config)
         self.add(

@@ -9,7 +9,7 @@ from cartwheel.devices.air.propeller import GZ_ACTUATORS
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -17,6 +17,7 @@ class GzMotorParameters(PropellerTags):
     number: int = tag(
         "actuator_number",
         "motorNumber",
+        least=0,
         doc="Zero-based index of the motor in the command message.",
     )
     topic: str = tag(
@@ -26,7 +27,11 @@ class GzMotorParameters(PropellerTags):
         "`<robotNamespace>`, or else the model's name.",
     )
     fastest: float = tag(
-        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+        "maxRotVelocity",
+        default=838.0,
+        unit="rad/s",
+        least=SMALLEST,
+        doc="Maximum speed of the propeller.",
     )
 
 

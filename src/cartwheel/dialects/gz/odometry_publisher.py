@@ -30,6 +30,7 @@ class OdometryPublisherParameters:
         "odom_publish_frequency",
         default=50.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate of all topics. If 0, messages are published at every simulation step.",
     )
     topic: str = tag(
@@ -70,6 +71,7 @@ class OdometryPublisherParameters:
         "gaussian_noise",
         default=0.0,
         unit="m/s and rad/s",
+        least=0.0,
         doc="Standard deviation of the noise on the twist.",
     )
 
@@ -85,7 +87,6 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        self.check_not_negative("rate", "noise")
         offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
         frame = config.frame or f"{part.name}/odom"
         base = config.base_frame or f"{part.name}/base_footprint"

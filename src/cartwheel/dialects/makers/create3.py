@@ -22,7 +22,7 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.errors import PluginError
 
 
@@ -175,7 +175,7 @@ class Create3Imu(Plugin[Create3ImuParameters]):
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3MouseParameters:
     link: str = tag("link_name", role="link", doc="Link whose travel is measured.")
-    rate: float = tag("update_rate", default=62.0, unit="Hz", doc="Publish rate.")
+    rate: float = tag("update_rate", default=62.0, unit="Hz", least=SMALLEST, doc="Publish rate.")
 
 
 class Create3Mouse(Plugin[Create3MouseParameters]):
@@ -189,7 +189,6 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(update_rate=config.rate)
         device = MouseConfig(link=config.link, topic=out_topic(self), rate=config.rate)
         self.add(Mouse(self.scope, device))
 
@@ -201,6 +200,7 @@ class Create3WheelDropParameters:
         "detection_threshold",
         default=0.7,
         unit="m",
+        least=SMALLEST,
         doc="Joint position of a fully dropped wheel. The plugin reports a wheel drop from the "
         "time when the position reaches 95 % of this value until it falls below 75 %.",
     )
@@ -209,6 +209,7 @@ class Create3WheelDropParameters:
         "update_rate",
         default=62.0,
         unit="Hz",
+        least=SMALLEST,
         doc="Rate at which the joint is checked and messages are published.",
     )
 
@@ -225,7 +226,6 @@ class Create3WheelDrop(Plugin[Create3WheelDropParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(update_rate=config.rate, detection_threshold=config.threshold)
         device = WheelDropSensorConfig(
             joint=config.joint,
             threshold=config.threshold,

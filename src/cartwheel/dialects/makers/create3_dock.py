@@ -14,7 +14,7 @@ from cartwheel.devices.bases.dock import (
 )
 from cartwheel.dialects.makers.create3 import out_topic
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,6 +39,7 @@ class Create3OpcodeParameters(_Dock):
         "update_rate",
         default=31.0,
         unit="Hz",
+        least=SMALLEST,
         doc="Rate at which the plugin checks which codes the receivers detect, and publishes them.",
     )
     omni_opening: float = tag(
@@ -69,7 +70,6 @@ class Create3Opcode(Plugin[Create3OpcodeParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(update_rate=config.rate)
         device = IrReceiversConfig(
             dock=_dock(config),
             receivers=(
@@ -88,6 +88,7 @@ class Create3DockStatusParameters(_Dock):
         "update_rate",
         default=1.0,
         unit="Hz",
+        least=SMALLEST,
         doc="Publish rate. A change of the status is also published immediately.",
     )
 
@@ -105,7 +106,6 @@ class Create3DockStatus(Plugin[Create3DockStatusParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(update_rate=config.rate)
         device = DockStatusConfig(
             dock=_dock(config),
             topic=out_topic(self),

@@ -47,18 +47,21 @@ class ForceBasedMoveParameters:
         "x_velocity_p_gain",
         default=10000.0,
         unit="N s/m",
+        least=0.0,
         doc="Force divided by the error of the linear velocity.",
     )
     y_gain: float = tag(
         "y_velocity_p_gain",
         default=10000.0,
         unit="N s/m",
+        least=0.0,
         doc="Must be equal to `<x_velocity_p_gain>`, because one gain applies to both directions.",
     )
     yaw_gain: float = tag(
         "yaw_velocity_p_gain",
         default=100.0,
         unit="N m s/rad",
+        least=0.0,
         doc="Torque divided by the error of the angular velocity.",
     )
 
@@ -82,7 +85,6 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative("x_gain", "y_gain", "yaw_gain")
         if config.y_gain != config.x_gain:
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,

@@ -10,7 +10,7 @@ from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.devices.grips.grasp import Grasp, GraspConfig, HandConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import invalid, missing, tag
+from cartwheel.dialects.tags import SMALLEST, missing, tag
 
 _EVENTS = "/gazebo_grasp_plugin_event_republisher/grasp_events"
 
@@ -28,11 +28,17 @@ class GraspFixParameters:
         "forces_angle_tolerance",
         default=120.0,
         unit="degrees",
+        least=90.0,
+        most=180.0,
         doc="Two fingers grip an object if the angle between their forces exceeds this "
         "value, which must be between 90 and 180.",
     )
     rate: float = tag(
-        "update_rate", default=5.0, unit="Hz", doc="Rate at which contacts are checked."
+        "update_rate",
+        default=5.0,
+        unit="Hz",
+        least=SMALLEST,
+        doc="Rate at which contacts are checked.",
     )
     most: int = tag("max_grip_count", default=10, doc="Maximum value of the grip counters.")
     threshold: int | None = tag(
@@ -45,6 +51,7 @@ class GraspFixParameters:
         "release_tolerance",
         default=0.005,
         unit="m",
+        least=0.0,
         doc="An object can be released when its distance to a finger has changed by more than "
         "this value.",
     )
@@ -84,11 +91,6 @@ class GraspFix(Plugin[GraspFixParameters]):
 
     def configure(self) -> None:
         config = self.config
-        if config.angle < 90 or config.angle > 180:
-            place = self.place_of("forces_angle_tolerance")
-            raise invalid("forces_angle_tolerance", config.angle, "between 90 and 180", place)
-        self.check_above_zero(update_rate=config.rate)
-        self.check_not_negative("tolerance")
         hands = tuple(_hand(element) for element in self.tag.element.find_all("arm"))
         if not hands:
             self.warn(devices.PLUGIN_IDLE, "the plugin has no <arm>, so it grasps nothing")

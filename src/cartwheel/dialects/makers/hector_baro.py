@@ -36,6 +36,7 @@ class HectorBaroParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     elevation: float = tag(
@@ -43,15 +44,18 @@ class HectorBaroParameters:
     )
     qnh: float = tag("qnh", default=1013.25, unit="hPa", doc="Pressure at sea level.")
     offset: float = tag("offset", default=0.0, unit="m", doc="Constant error of the z position.")
-    drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of the drift.")
+    drift: float = tag(
+        "drift", default=0.0, unit="m", least=0.0, doc="Standard deviation of the drift."
+    )
     frequency: float = tag(
         "driftFrequency",
         default=1 / 3600.0,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the drift's time constant.",
     )
     noise: float = tag(
-        "gaussianNoise", default=0.0, unit="m", doc="Standard deviation of the noise."
+        "gaussianNoise", default=0.0, unit="m", least=0.0, doc="Standard deviation of the noise."
     )
     scale: float = tag("scaleError", default=1.0, doc="Scale factor on the z position.")
 
@@ -70,7 +74,6 @@ class HectorBaro(Plugin[HectorBaroParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative("update_rate", "drift", "frequency", "noise")
         link = config.body or self.part.description.canonical_link
         self.add(
             BarometricAltimeter(

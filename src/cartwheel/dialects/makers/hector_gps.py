@@ -35,6 +35,7 @@ class HectorGpsParameters:
         "updateRate",
         default=4.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     use_world: bool = tag(
@@ -78,16 +79,25 @@ class HectorGpsParameters:
         "offset", default=_NONE, unit="m", doc="Constant error of the position."
     )
     drift: tuple[float, float, float] = tag(
-        "drift", default=_NONE, unit="m", doc="Standard deviation of the position's drift."
+        "drift",
+        default=_NONE,
+        unit="m",
+        least=0.0,
+        doc="Standard deviation of the position's drift.",
     )
     frequency: tuple[float, float, float] = tag(
         "driftFrequency",
         default=_HOUR,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the time constant of the position's drift.",
     )
     noise: tuple[float, float, float] = tag(
-        "gaussianNoise", default=_NONE, unit="m", doc="Standard deviation of the position's noise."
+        "gaussianNoise",
+        default=_NONE,
+        unit="m",
+        least=0.0,
+        doc="Standard deviation of the position's noise.",
     )
     scale: tuple[float, float, float] = tag(
         "scaleError", default=(1.0,) * 3, doc="Scale factor of the position."
@@ -99,18 +109,21 @@ class HectorGpsParameters:
         "velocityDrift",
         default=_NONE,
         unit="m/s",
+        least=0.0,
         doc="Standard deviation of the velocity's drift.",
     )
     velocity_frequency: tuple[float, float, float] = tag(
         "velocityDriftFrequency",
         default=_HOUR,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the time constant of the velocity's drift.",
     )
     velocity_noise: tuple[float, float, float] = tag(
         "velocityGaussianNoise",
         default=_NONE,
         unit="m/s",
+        least=0.0,
         doc="Standard deviation of the velocity's noise.",
     )
     velocity_scale: tuple[float, float, float] = tag(
@@ -133,10 +146,6 @@ class HectorGps(Plugin[HectorGpsParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative(
-            "update_rate", "drift", "frequency", "noise",
-            "velocity_drift", "velocity_frequency", "velocity_noise",
-        )  # fmt: skip
         self.add(
             Gps(
                 self.scope,

@@ -45,6 +45,7 @@ class HectorImuParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     xyz_offset: tuple[float, float, float] = tag(
@@ -64,6 +65,7 @@ class HectorImuParameters:
     noise: float = tag(
         "gaussianNoise",
         default=0.0,
+        least=0.0,
         doc="Standard deviation of the noise on angular velocity and acceleration. If positive, "
         "it overrides `<accelGaussianNoise>` and `<rateGaussianNoise>`.",
     )
@@ -74,18 +76,21 @@ class HectorImuParameters:
         "accelDrift",
         default=_NONE,
         unit="m/s²",
+        least=0.0,
         doc="Standard deviation of the acceleration's drift.",
     )
     accel_frequency: tuple[float, float, float] = tag(
         "accelDriftFrequency",
         default=(_HOUR,) * 3,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the time constant of the acceleration's drift.",
     )
     accel_noise: tuple[float, float, float] = tag(
         "accelGaussianNoise",
         default=_NONE,
         unit="m/s²",
+        least=0.0,
         doc="Standard deviation of the acceleration's noise.",
     )
     accel_scale: tuple[float, float, float] = tag(
@@ -98,18 +103,21 @@ class HectorImuParameters:
         "rateDrift",
         default=_NONE,
         unit="rad/s",
+        least=0.0,
         doc="Standard deviation of the angular velocity's drift.",
     )
     rate_frequency: tuple[float, float, float] = tag(
         "rateDriftFrequency",
         default=(_HOUR,) * 3,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the time constant of the angular velocity's drift.",
     )
     rate_noise: tuple[float, float, float] = tag(
         "rateGaussianNoise",
         default=_NONE,
         unit="rad/s",
+        least=0.0,
         doc="Standard deviation of the angular velocity's noise.",
     )
     rate_scale: tuple[float, float, float] = tag(
@@ -123,6 +131,7 @@ class HectorImuParameters:
         "headingDrift",
         default=0.0,
         unit="rad",
+        least=0.0,
         doc="Standard deviation of the yaw's drift.",
     )
     yaw_frequency: float = tag(
@@ -130,6 +139,7 @@ class HectorImuParameters:
         "headingDriftFrequency",
         default=_HOUR,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the time constant of the yaw's drift.",
     )
     yaw_noise: float = tag(
@@ -137,6 +147,7 @@ class HectorImuParameters:
         "headingGaussianNoise",
         default=0.0,
         unit="rad",
+        least=0.0,
         doc="Standard deviation of the yaw's noise.",
     )
     yaw_scale: float = tag(
@@ -169,12 +180,6 @@ class HectorImu(Plugin[HectorImuParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative(
-            "update_rate", "noise",
-            "accel_drift", "accel_frequency", "accel_noise",
-            "rate_drift", "rate_frequency", "rate_noise",
-            "yaw_drift", "yaw_frequency", "yaw_noise",
-        )  # fmt: skip
         link = config.body or self.part.description.canonical_link
         mount = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
         topic = config.topic

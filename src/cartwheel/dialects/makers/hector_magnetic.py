@@ -43,6 +43,7 @@ class HectorMagneticParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
     magnitude: float = tag(
@@ -84,16 +85,17 @@ class HectorMagneticParameters:
         "offset", default=_NONE, doc="Constant error of the measured field."
     )
     drift: tuple[float, float, float] = tag(
-        "drift", default=_NONE, doc="Standard deviation of the drift."
+        "drift", default=_NONE, least=0.0, doc="Standard deviation of the drift."
     )
     frequency: tuple[float, float, float] = tag(
         "driftFrequency",
         default=(1 / 3600.0,) * 3,
         unit="1/s",
+        least=0.0,
         doc="Inverse of the drift's time constant.",
     )
     noise: tuple[float, float, float] = tag(
-        "gaussianNoise", default=_NONE, doc="Standard deviation of the noise."
+        "gaussianNoise", default=_NONE, least=0.0, doc="Standard deviation of the noise."
     )
     scale: tuple[float, float, float] = tag(
         "scaleError", default=(1.0,) * 3, doc="Scale factor on the measured field."
@@ -113,7 +115,6 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative("update_rate", "drift", "frequency", "noise")
         link = config.body or self.part.description.canonical_link
         self.add(
             Magnetometer(

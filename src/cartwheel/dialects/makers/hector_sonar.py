@@ -26,17 +26,25 @@ class SonarParameters:
         "gaussianNoise",
         default=None,
         unit="m",
+        least=0.0,
         doc="Standard deviation of the noise. Default: the sensor's `<noise>`.",
     )
     offset: float = tag("offset", default=0.0, unit="m", doc="Offset added to each range.")
-    drift: float = tag("drift", default=0.0, unit="m", doc="Standard deviation of a slow drift.")
+    drift: float = tag(
+        "drift", default=0.0, unit="m", least=0.0, doc="Standard deviation of a slow drift."
+    )
     drift_frequency: float = tag(
-        "driftFrequency", default=0.0, unit="1/s", doc="Inverse of the drift's time constant."
+        "driftFrequency",
+        default=0.0,
+        unit="1/s",
+        least=0.0,
+        doc="Inverse of the drift's time constant.",
     )
     update_rate: float = tag(
         "updateRate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
         "applies.",
     )
@@ -57,7 +65,6 @@ class HectorSonar(Plugin[SonarParameters]):
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
         assert sensor is not None
-        self.check_not_negative("noise", "update_rate", "drift", "drift_frequency")
         scanner = read_scanner(sensor, self.part.report)
         device = RangeFinderConfig(
             scanner=scanner,

@@ -82,6 +82,7 @@ class KobukiParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate of all topics. If 0, messages are published at every simulation step.",
     )
 
@@ -103,7 +104,6 @@ class Kobuki(Plugin[KobukiParameters]):
         config = self.config
         joints = config.left_joint, config.right_joint
         pairs = wheel_pairs(self, [joints], [config.separation], [config.diameter])
-        self.check_not_negative("rate")
         sensors = self.add(KobukiSensors(self.scope, self._sensors_config(config)))
         self.subscribe(_BASE + "commands/motor_power", "kobuki_msgs/msg/MotorPower", self._on_power)
         self.subscribe(

@@ -61,6 +61,7 @@ class MultiWheelParameters:
         "updateRate",
         default=100.0,
         unit="Hz",
+        least=0.0,
         doc="Rate at which commands are applied and messages are published. If 0, both happen "
         "at every simulation step.",
     )
@@ -101,7 +102,6 @@ class MultiWheelDrive(Plugin[MultiWheelParameters]):
             for one, other in itertools.zip_longest(left, right)
         ]
         pairs = wheel_pairs(self, joints, [config.separation], [config.diameter])
-        self.check_not_negative("rate")
         self.add(
             DifferentialDrive(
                 self.scope,

@@ -9,13 +9,16 @@ from cartwheel.devices.air.propeller import ACTUATORS
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Px4MotorParameters(PropellerTags):
     number: int = tag(
-        "motorNumber", default=0, doc="Zero-based index of the motor in the command message."
+        "motorNumber",
+        default=0,
+        least=0,
+        doc="Zero-based index of the motor in the command message.",
     )
     topic: str = tag(
         "commandSubTopic",
@@ -23,12 +26,17 @@ class Px4MotorParameters(PropellerTags):
         doc="Topic of the Actuators commands, with speeds in rad/s. The model's name is prepended.",
     )
     fastest: float = tag(
-        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+        "maxRotVelocity",
+        default=838.0,
+        unit="rad/s",
+        least=SMALLEST,
+        doc="Maximum speed of the propeller.",
     )
     airspeed: float = tag(
         "maxRelativeAirspeed",
         default=25.0,
         unit="m/s",
+        least=SMALLEST,
         doc="Axial airspeed at which the thrust becomes 0.",
     )
     reversible: bool = tag("reversible", default=False, doc="Whether the thrust can be negative.")
@@ -46,7 +54,6 @@ class Px4MotorModel(Plugin[Px4MotorParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(maxRelativeAirspeed=config.airspeed)
         add_propeller(
             self,
             topic=gz_name(self, f"{self.part.name}/{config.topic.strip('/')}", ""),

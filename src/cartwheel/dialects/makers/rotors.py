@@ -13,7 +13,7 @@ from cartwheel.devices.air.propeller_states import (
 )
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import SLOWDOWN
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 _ROTOR = "rotor_"
 
@@ -77,6 +77,7 @@ class RotorsBaseParameters:
     slowdown: float = tag(
         "rotorVelocitySlowdownSim",
         default=SLOWDOWN,
+        least=SMALLEST,
         doc="Speed of the propellers divided by the speed of their joints.",
     )
 
@@ -94,7 +95,6 @@ class RotorsBase(Plugin[RotorsBaseParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        self.check_above_zero(rotorVelocitySlowdownSim=config.slowdown)
         part.link(config.link, origin=self.origin)
         joints = {}
         for joint in part.description.joints:

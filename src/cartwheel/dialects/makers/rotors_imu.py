@@ -12,7 +12,7 @@ from cartwheel.devices.inertial.imu import Imu, ImuConfig
 from cartwheel.devices.inertial.unit import InertialUnitConfig
 from cartwheel.devices.noise import DriftingErrorConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.geometry import Pose
 
 
@@ -26,6 +26,7 @@ class RotorsImuParameters:
         "gyroscopeNoiseDensity",
         default=math.radians(70 / 3600),
         unit="rad/s/√Hz",
+        least=0.0,
         doc="Noise density of the angular velocity.",
     )
     rate_walk: float = tag(
@@ -33,42 +34,49 @@ class RotorsImuParameters:
         "gyroscopeRandomWalk",
         default=math.radians(8 / 3600),
         unit="rad/s²/√Hz",
+        least=0.0,
         doc="Random walk of the gyroscope bias.",
     )
     rate_time: float = tag(
         "gyroscopeBiasCorrelationTime",
         default=1000.0,
         unit="s",
+        least=SMALLEST,
         doc="Correlation time of the gyroscope bias.",
     )
     rate_bias: float = tag(
         "gyroscopeTurnOnBiasSigma",
         default=math.radians(0.5),
         unit="rad/s",
+        least=0.0,
         doc="Standard deviation of the gyroscope's turn-on bias, which stays constant.",
     )
     accel_noise: float = tag(
         "accelerometerNoiseDensity",
         default=4e-3,
         unit="m/s²/√Hz",
+        least=0.0,
         doc="Noise density of the acceleration.",
     )
     accel_walk: float = tag(
         "accelerometerRandomWalk",
         default=6e-3,
         unit="m/s³/√Hz",
+        least=0.0,
         doc="Random walk of the accelerometer bias.",
     )
     accel_time: float = tag(
         "accelerometerBiasCorrelationTime",
         default=300.0,
         unit="s",
+        least=SMALLEST,
         doc="Correlation time of the accelerometer bias.",
     )
     accel_bias: float = tag(
         "accelerometerTurnOnBiasSigma",
         default=0.196,
         unit="m/s²",
+        least=0.0,
         doc="Standard deviation of the accelerometer's turn-on bias, which stays constant.",
     )
 
@@ -88,13 +96,6 @@ class RotorsImu(Plugin[RotorsImuParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(
-            gyroscopeBiasCorrelationTime=config.rate_time,
-            accelerometerBiasCorrelationTime=config.accel_time,
-        )
-        self.check_not_negative(
-            "rate_noise", "rate_walk", "rate_bias", "accel_noise", "accel_walk", "accel_bias"
-        )
         self.add(
             Imu(
                 self.scope,

@@ -10,13 +10,16 @@ from cartwheel.devices.air.propeller_states import PropellerJointState, Propelle
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RotorsMotorParameters(PropellerTags):
     number: int = tag(
-        "motorNumber", default=0, doc="Zero-based index of the motor in the command message."
+        "motorNumber",
+        default=0,
+        least=0,
+        doc="Zero-based index of the motor in the command message.",
     )
     topic: str = tag(
         "commandSubTopic",
@@ -35,7 +38,11 @@ class RotorsMotorParameters(PropellerTags):
         doc="Topic of the joint's angle in rad. Not published if empty.",
     )
     fastest: float = tag(
-        "maxRotVelocity", default=838.0, unit="rad/s", doc="Maximum speed of the propeller."
+        "maxRotVelocity",
+        default=838.0,
+        unit="rad/s",
+        least=SMALLEST,
+        doc="Maximum speed of the propeller.",
     )
 
 

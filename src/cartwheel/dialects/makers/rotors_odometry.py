@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.codes import devices
 from cartwheel.devices.air.pose_sensor import PoseSensor, PoseSensorConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.errors import PluginError
 
 _NONE = (0.0, 0.0, 0.0)
@@ -39,7 +39,10 @@ class RotorsOdometryParameters:
         "childFrameId", default="odometry_sensor", doc="Child frame ID of the messages."
     )
     divisor: int = tag(
-        "measurementDivisor", default=1, doc="Number of simulation steps per message."
+        "measurementDivisor",
+        default=1,
+        least=SMALLEST,
+        doc="Number of simulation steps per message.",
     )
     delay: int = tag(
         "measurementDelay", default=0, doc="No effect: measurements are published immediately."
@@ -51,48 +54,56 @@ class RotorsOdometryParameters:
         "noiseNormalPosition",
         default=_NONE,
         unit="m",
+        least=0.0,
         doc="Standard deviation of Gaussian noise on the position.",
     )
     normal_turn: tuple[float, float, float] = tag(
         "noiseNormalQuaternion",
         default=_NONE,
         unit="rad",
+        least=0.0,
         doc="Standard deviation of Gaussian noise on the orientation.",
     )
     normal_linear: tuple[float, float, float] = tag(
         "noiseNormalLinearVelocity",
         default=_NONE,
         unit="m/s",
+        least=0.0,
         doc="Standard deviation of Gaussian noise on the linear velocity.",
     )
     normal_angular: tuple[float, float, float] = tag(
         "noiseNormalAngularVelocity",
         default=_NONE,
         unit="rad/s",
+        least=0.0,
         doc="Standard deviation of Gaussian noise on the angular velocity.",
     )
     uniform_position: tuple[float, float, float] = tag(
         "noiseUniformPosition",
         default=_NONE,
         unit="m",
+        least=0.0,
         doc="Maximum absolute value of uniform noise on the position.",
     )
     uniform_turn: tuple[float, float, float] = tag(
         "noiseUniformQuaternion",
         default=_NONE,
         unit="rad",
+        least=0.0,
         doc="Maximum absolute value of uniform noise on the orientation.",
     )
     uniform_linear: tuple[float, float, float] = tag(
         "noiseUniformLinearVelocity",
         default=_NONE,
         unit="m/s",
+        least=0.0,
         doc="Maximum absolute value of uniform noise on the linear velocity.",
     )
     uniform_angular: tuple[float, float, float] = tag(
         "noiseUniformAngularVelocity",
         default=_NONE,
         unit="rad/s",
+        least=0.0,
         doc="Maximum absolute value of uniform noise on the angular velocity.",
     )
 
@@ -116,15 +127,10 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
                 origin=self.place_of("parentFrameId"),
                 values={"parameter": "parentFrameId", "value": config.parent},
             )
-        self.check_above_zero(measurementDivisor=config.divisor)
         normal = [config.normal_position, config.normal_turn, config.normal_linear,
                   config.normal_angular]  # fmt: skip
         uniform = [config.uniform_position, config.uniform_turn, config.uniform_linear,
                    config.uniform_angular]  # fmt: skip
-        self.check_not_negative(
-            "normal_position", "normal_turn", "normal_linear", "normal_angular",
-            "uniform_position", "uniform_turn", "uniform_linear", "uniform_angular",
-        )  # fmt: skip
         if config.delay:
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,

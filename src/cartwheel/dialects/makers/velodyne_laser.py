@@ -64,6 +64,7 @@ class VelodyneParameters:
         "gaussian_noise",
         default=0.0,
         unit="m",
+        least=0.0,
         doc="Standard deviation of the noise on ranges. It is added to the sensor's own noise.",
     )
     update_rate: float = tag(
@@ -96,7 +97,6 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
         assert sensor is not None
-        self.check_not_negative("noise")
         scanner = read_scanner(sensor, self.part.report)
         nearest = max(config.min_range, scanner.pattern.minimum)
         furthest = min(config.max_range, scanner.pattern.maximum)

@@ -15,9 +15,12 @@ class WarthogSuspensionParameters:
     stiffness: float = tag(
         "suspension_k",
         unit="N m/rad",
+        least=0.0,
         doc="Stiffness of the spring at each joint. The spring exerts no torque at position 0.",
     )
-    damping: float = tag("suspension_b", unit="N m s/rad", doc="Damping coefficient of each joint.")
+    damping: float = tag(
+        "suspension_b", unit="N m s/rad", least=0.0, doc="Damping coefficient of each joint."
+    )
     left: str = tag(
         "left_joint",
         default="left_diff_unit_joint",
@@ -44,7 +47,6 @@ class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative("stiffness", "damping")
         device = SuspensionConfig(
             joints=(config.left, config.right),
             stiffness=config.stiffness,

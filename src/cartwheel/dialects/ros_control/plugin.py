@@ -43,6 +43,7 @@ class RosControlParameters:
         "controlPeriod",
         default=0.0,
         unit="s",
+        least=0.0,
         doc="Time between two updates of the controllers. If 0, they are updated at every "
         "simulation step.",
     )
@@ -74,7 +75,6 @@ class RosControl(ControlPlugin):
     def configure(self) -> None:
         config: RosControlParameters = self.config
         part = self.part
-        self.check_not_negative("period")
         plain = config.sim_type.rpartition("::")[2] in _PLAIN
         if not plain:
             self.warn(

@@ -50,6 +50,7 @@ def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
     if written:
         near = ""
     element = next((e for e in _all(tag.element) if e.origin is diagnostic.origin), None)
+    unknown = diagnostic.code is devices_codes.PLUGIN_PARAMETER_UNKNOWN
     instead, place = f"<{near}>" if near else "", False
     if near and element is not None and not element.children:
         instead = nodes.written(near, dict(element.attributes), element.text.strip())
@@ -57,7 +58,7 @@ def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
     return replace(
         diagnostic,
         # Gazebo's plugin may support a tag that ours ignores; a misspelt tag is an error.
-        severity=diagnostic.severity if near or diagnostic.severity == "error" else "info",
+        severity="info" if unknown and not near else diagnostic.severity,
         hint="" if near or written else diagnostic.hint,
         instead=instead,
         place="element" if place else "",

@@ -15,7 +15,6 @@ from cartwheel.description.model import (
     Inertial,
     Light,
     Link,
-    Sensor,
     Surface,
     Visual,
 )
@@ -33,7 +32,7 @@ from cartwheel.description.sdf.links.inertia import WATER, inertial_of, weighing
 from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.shapes import read_shape
 from cartwheel.description.sdf.links.surface import read_surface
-from cartwheel.description.sdf.sensors import read_sensor
+from cartwheel.description.sdf.sensors import read_sensor, read_sensors
 from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, rotate
 
@@ -83,7 +82,9 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         fields["fdir1"] = rotate(there.orientation, fields["fdir1"])
 
     collisions = [_collision(each, ctx, place, directed) for each in node.all("collision")]
-    sensors = [_sensor(each, name, place) for each in node.all("sensor")]
+    sensors = read_sensors(
+        node.all("sensor"), lambda each: read_sensor(each, name, place(each)), ctx.report
+    )
     lights = named_apart("light", [_light(each, place) for each in node.all("light")], ctx)
     visuals = named_apart("visual", visuals, ctx)
     collisions = named_apart("collision", collisions, ctx)
@@ -260,10 +261,6 @@ def _collision(
     return Collision(
         name=name, pose=pose, shape=shape, surface=surface, laser_retro=retro, origin=node.origin
     )
-
-
-def _sensor(node: Node, link: str, place: Place) -> Sensor:
-    return read_sensor(node, link, place(node))
 
 
 def _light(node: Node, place: Place) -> Light:

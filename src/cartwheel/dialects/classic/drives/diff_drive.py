@@ -15,7 +15,7 @@ from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
 from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 from cartwheel.errors import PluginError
 
@@ -66,6 +66,7 @@ class DiffDriveParameters:
         unit="N m",
         role="wheel_torque",
         obsolete=("torque",),
+        least=SMALLEST,
         doc="Maximum motor torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
     )
     wheel_acceleration: float = tag(
@@ -73,6 +74,7 @@ class DiffDriveParameters:
         "max_wheel_acceleration",
         default=0.0,
         unit="m/s²",
+        least=0.0,
         doc="Maximum acceleration of the wheel rims; it limits how fast the commanded wheel "
         "speeds change. If 0, there is no limit.",
     )
@@ -102,6 +104,7 @@ class DiffDriveParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
+        least=0.0,
         doc="Rate at which commands are applied and messages are published. If 0, both happen "
         "at every simulation step.",
     )
@@ -184,7 +187,6 @@ class DiffDrive(Plugin[DiffDriveParameters]):
     def configure(self) -> None:
         config = self.config
         element = self.tag.element
-        self.check_above_zero(wheelTorque=config.wheel_torque)
         if element.find("torque") and not element.find("wheelTorque"):
             self.warn(
                 devices.PLUGIN_PARAMETER_OBSOLETE,
@@ -193,7 +195,6 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                 values={"parameter": "torque"},
             )
         pairs = self._wheel_pairs()
-        self.check_not_negative("update_rate", "wheel_acceleration")
         # The ROS 2 plugin of the same name publishes only on request, without the model's name.
         ros2 = any(element.find(name) for name in ("left_joint", "right_joint", "ros"))
         if not ros2:

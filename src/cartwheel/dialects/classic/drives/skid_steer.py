@@ -9,7 +9,7 @@ from cartwheel.devices.drives.differential import DifferentialDrive, Differentia
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
 
 
@@ -59,6 +59,7 @@ class SkidSteerParameters:
         default=5.0,
         unit="N m",
         role="wheel_torque",
+        least=SMALLEST,
         doc="Maximum torque of each motor.",
     )
     command_topic: str = tag(
@@ -79,6 +80,7 @@ class SkidSteerParameters:
         "updateRate",
         default=100.0,
         unit="Hz",
+        least=0.0,
         doc="Rate at which commands are applied and messages are published. If 0, both happen "
         "at every simulation step.",
     )
@@ -112,10 +114,8 @@ class SkidSteerDrive(Plugin[SkidSteerParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(torque=config.torque)
         joints = [(config.left_front, config.right_front), (config.left_rear, config.right_rear)]
         pairs = wheel_pairs(self, joints, [config.wheel_separation], [config.wheel_diameter])
-        self.check_not_negative("update_rate")
         self.add(
             DifferentialDrive(
                 self.scope,

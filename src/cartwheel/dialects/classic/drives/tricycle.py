@@ -10,7 +10,8 @@ from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.devices.drives.tricycle import TricycleDrive, TricycleDriveConfig
 from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag, tags_of
+from cartwheel.dialects.tags import SMALLEST, tag, tags_of
+from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,6 +51,8 @@ class TricycleParameters:
         unit="m",
         role="wheel_diameter",
         wheels=("wheel_joint",),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Diameter of the driven wheel.",
     )
     encoder_diameter: float = tag(
@@ -59,6 +62,8 @@ class TricycleParameters:
         unit="m",
         role="wheel_diameter",
         wheels=("left_joint",),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Diameter of the passive wheels.",
     )
     encoder_separation: float = tag(
@@ -68,6 +73,8 @@ class TricycleParameters:
         unit="m",
         role="wheel_separation",
         wheels=("left_joint", "right_joint"),
+        least=SMALLEST,
+        most=FARTHEST,
         doc="Distance between the passive wheels.",
     )
     wheel_torque: float | None = tag(
@@ -75,6 +82,7 @@ class TricycleParameters:
         "max_wheel_torque",
         default=None,
         unit="N m",
+        least=SMALLEST,
         doc="Maximum torque of each motor. Default: 5, or 0.15 if the `<plugin>` is written for "
         "ROS 2.",
     )
@@ -199,12 +207,6 @@ class ClassicTricycleDrive(Plugin[TricycleParameters]):
         torque = config.wheel_torque
         if torque is None:
             torque = 0.15 if ros2 else 5.0
-        self.check_above_zero(wheelTorque=torque)
-        self.check_lengths(
-            actuatedWheelDiameter=config.wheel_diameter,
-            encoderWheelDiameter=config.encoder_diameter,
-            encoderWheelSeparation=config.encoder_separation,
-        )
         names = (config.steering_joint, config.wheel_joint, config.left_joint, config.right_joint)
         rate, acceleration = config.update_rate, config.wheel_acceleration
         # Without a limit on the acceleration, a limit on the deceleration has no effect.

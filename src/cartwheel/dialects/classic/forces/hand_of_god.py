@@ -22,11 +22,14 @@ class HandOfGodParameters:
         doc="Prefix of the frames `<frameId>_desired` (target) and `<frameId>_actual` (current "
         "pose). If the `<plugin>` contains `<ros>`, the default is `world`.",
     )
-    stiffness: float = tag("kl", default=200.0, unit="N/m", doc="Stiffness of the linear spring.")
+    stiffness: float = tag(
+        "kl", default=200.0, unit="N/m", least=0.0, doc="Stiffness of the linear spring."
+    )
     turning: float = tag(
         "ka",
         default=200.0,
         unit="N m/rad",
+        least=0.0,
         doc="Stiffness of the rotational spring. As in Gazebo, the actual stiffness is half of "
         "this value.",
     )
@@ -46,7 +49,6 @@ class HandOfGod(Plugin[HandOfGodParameters]):
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
-        self.check_not_negative("stiffness", "turning")
         name = config.frame
         if element.find("ros") is not None and element.find("frame_id") is None:
             name = "world"

@@ -40,6 +40,7 @@ class WheelSlipParameters:
         "publisher_update_rate",
         default=100.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate of `wheel_slip`. If 0, messages are published at every simulation step.",
     )
 
@@ -70,7 +71,6 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
-        self.check_not_negative("rate")
         wheels = tuple(self._wheel(each) for each in element.find_all("wheel"))
         if not wheels:
             self.warn(devices.PLUGIN_IDLE, "the plugin has no <wheel>, so it has no effect")

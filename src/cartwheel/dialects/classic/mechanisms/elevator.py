@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from cartwheel.codes import devices, running
 from cartwheel.devices.mechanisms.elevator import Elevator, ElevatorConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import shown, tag
+from cartwheel.dialects.tags import SMALLEST, shown, tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -23,10 +23,15 @@ class ElevatorParameters:
         "floor_height",
         default=3.0,
         unit="m",
+        least=SMALLEST,
         doc="Vertical distance between two consecutive floors.",
     )
     door_wait_time: float = tag(
-        "door_wait_time", default=5.0, unit="s", doc="Time for which the door stays open."
+        "door_wait_time",
+        default=5.0,
+        unit="s",
+        least=0.0,
+        doc="Time for which the door stays open.",
     )
     topic: str = tag(
         "topic",
@@ -56,8 +61,6 @@ class ElevatorPlugin(Plugin[ElevatorParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_above_zero(floor_height=config.floor_height)
-        self.check_not_negative("door_wait_time")
         if self.tag.element.find("floor_height") is None:
             self.warn(
                 devices.PLUGIN_PARAMETER_MISSING,

@@ -29,6 +29,7 @@ class JointPoseTrajectoryParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Rate at which joint positions are set. If 0, they are set at every simulation step.",
     )
 
@@ -54,7 +55,6 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative("update_rate")
         self.add(
             PoseTrajectory(
                 self.scope,

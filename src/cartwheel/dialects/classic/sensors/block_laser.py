@@ -32,6 +32,7 @@ class BlockLaserParameters:
         "gaussianNoise",
         default=0.0,
         unit="m",
+        least=0.0,
         doc="Standard deviation of the noise on each coordinate.",
     )
     least_intensity: float = tag(
@@ -62,7 +63,6 @@ class BlockLaser(Plugin[BlockLaserParameters]):
 
     def configure(self) -> None:
         assert self.sensor is not None
-        self.check_not_negative("noise")
         config = LidarConfig(
             scanner=read_scanner(self.sensor, self.part.report),
             frame=self.config.frame or self.sensor.link,

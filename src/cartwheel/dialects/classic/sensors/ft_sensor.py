@@ -47,6 +47,7 @@ class FtSensorParameters:
         "gaussian_noise",
         default=0.0,
         unit="N and N m",
+        least=0.0,
         doc="Standard deviation of the noise.",
     )
     update_rate: float = tag(
@@ -54,6 +55,7 @@ class FtSensorParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, the `<update_rate>` of the sensor that contains the plugin "
         "applies. If no sensor contains the plugin, messages are then published at every "
         "simulation step.",
@@ -74,7 +76,6 @@ class FtSensor(Plugin[FtSensorParameters]):
 
     def configure(self) -> None:
         config, sensor = self.config, self.sensor
-        self.check_not_negative("noise", "update_rate")
         rate = config.update_rate or (sensor.update_rate if sensor is not None else 0.0)
         load, frame = self._load()
         device = WrenchSensorConfig(

@@ -33,6 +33,7 @@ class ImuParameters:
         "gaussianNoise",
         default=0.0,
         unit="rad/s and m/s²",
+        least=0.0,
         doc="Standard deviation of the noise on angular velocity and acceleration.",
     )
     rpy_offset: tuple[float, float, float] = tag(
@@ -54,6 +55,7 @@ class ImuParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
@@ -72,7 +74,6 @@ class Imu(Plugin[ImuParameters]):
 
     def configure(self) -> None:
         config = self.config
-        self.check_not_negative("update_rate", "noise")
         mount = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
         self.add(
             inertial.Imu(

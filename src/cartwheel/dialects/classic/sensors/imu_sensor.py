@@ -32,6 +32,7 @@ class ImuSensorParameters:
         "gaussianNoise",
         default=0.0,
         unit="rad/s and m/s²",
+        least=0.0,
         doc="Standard deviation of the noise on angular velocity and acceleration.",
     )
     rpy_offset: tuple[float, float, float] = tag(
@@ -53,6 +54,7 @@ class ImuSensorParameters:
         "updateRate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
         "applies.",
     )
@@ -89,7 +91,6 @@ class ImuSensor(Plugin[ImuSensorParameters]):
         sensor, config = self.sensor, self.config
         assert sensor is not None
         self.under_model()
-        self.check_not_negative("update_rate", "noise")
         offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
         unit = read_inertial_unit(
             self.part,

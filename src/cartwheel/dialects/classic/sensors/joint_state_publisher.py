@@ -46,6 +46,7 @@ class JointStatePublisherParameters:
         "update_rate",
         default=100.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
@@ -66,7 +67,6 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
-        self.check_not_negative("update_rate")
         ros2 = any(element.find(name) for name in ("ros", "joint_name", "update_rate"))
         if not ros2:
             self.under_model()
@@ -102,6 +102,7 @@ class GzJointStatePublisherParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
@@ -117,7 +118,6 @@ class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        self.check_not_negative("update_rate")
         topic = config.topic or f"/world/{part.world.name}/model/{part.name}/joint_state"
         states = self.add(
             JointStates(

@@ -53,6 +53,7 @@ class P3DParameters:
         "gaussian_noise",
         default=0.0,
         unit="m/s and rad/s",
+        least=0.0,
         doc="Standard deviation of the noise on the twist.",
     )
     update_rate: float = tag(
@@ -60,6 +61,7 @@ class P3DParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate. If 0, messages are published at every simulation step.",
     )
 
@@ -81,7 +83,6 @@ class P3D(Plugin[P3DParameters]):
 
     def configure(self) -> None:
         config, part = self.config, self.part
-        self.check_not_negative("update_rate", "noise")
         body = config.body or config.frame
         known = part.description.link(config.frame) is not None
         in_world = self.in_world or config.frame in _WORLD

@@ -41,6 +41,7 @@ class RangeParameters:
         "gaussianNoise",
         default=None,
         unit="m",
+        least=0.0,
         doc="Standard deviation of the noise. Default: the sensor's `<noise>`.",
     )
     update_rate: float = tag(
@@ -48,6 +49,7 @@ class RangeParameters:
         "update_rate",
         default=0.0,
         unit="Hz",
+        least=0.0,
         doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
         "applies.",
     )
@@ -68,7 +70,6 @@ class Range(Plugin[RangeParameters]):
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
         assert sensor is not None
-        self.check_not_negative("noise", "update_rate")
         device = RangeFinderConfig(
             scanner=read_scanner(sensor, self.part.report),
             topic=config.topic,
