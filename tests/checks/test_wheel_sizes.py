@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
@@ -151,6 +153,48 @@ def test_a_size_that_is_not_the_cars_is_told_with_its_own(told, take, line_of, n
     assert finding.origin.line == line_of(wrong, f"<{tag}>")
     assert finding.instead == f"<{tag}>{DRIVES[name][tag]:g}</{tag}>"
     assert told(take(wrong, finding)) == []
+
+
+def turned(text):
+    """The same car, facing along y: its joints are turned about the base."""
+
+    def turn(match):
+        x, y = float(match[2]), float(match[3])
+        return f'{match[1]}<origin xyz="{-y} {x} 0" rpy="0 0 1.5707963267948966"/>'
+
+    pattern = r'(<parent link="base_link"/><child link="\w+"/>)<origin xyz="(\S+) (\S+) 0"/>'
+    return re.sub(pattern, turn, text)
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_a_car_that_faces_along_y_is_measured_along_its_axles(told, bench, name):
+    text = turned(car(plugin(name, **DRIVES[name])))
+    assert told(text) == []
+    for code in ("wheels-swapped", "wheel-axis-misaligned"):
+        assert not bench.find(text, code)
+
+
+@pytest.mark.parametrize(("name", "tag"), STATED)
+def test_a_wrong_size_of_a_car_that_faces_along_y_is_corrected(told, take, name, tag):
+    wrong = turned(car(plugin(name, **{**DRIVES[name], tag: 0.8 * DRIVES[name][tag]})))
+    (finding,) = told(wrong)
+    assert finding.code.name == SIZES[tag]
+    assert finding.values["measured"] == pytest.approx(DRIVES[name][tag])
+    assert told(take(wrong, finding)) == []
+
+
+def test_the_axes_define_the_sides_of_a_car_that_faces_along_y(bench):
+    drive = plugin("libgazebo_ros_diff_drive.so", **PAIRS)
+    swapped = turned(car(drive.replace("rear_left", "x").replace("rear_right", "rear_left")
+                         .replace("<left_joint>x", "<left_joint>rear_right")))  # fmt: skip
+    (finding,) = bench.find(swapped, "wheels-swapped")
+    assert finding.values == {"left": "rear_right_joint", "right": "rear_left_joint"}
+    assert not bench.find(swapped, "wheel-axis-misaligned")
+    place = turned(car(drive)).index('<joint name="rear_right_joint"')
+    text = turned(car(drive))
+    reversed_ = text[:place] + text[place:].replace('xyz="0 1 0"', 'xyz="0 -1 0"', 1)
+    (finding,) = bench.find(reversed_, "wheel-axis-misaligned")
+    assert finding.values["joint"] == "rear_right_joint"
 
 
 @pytest.mark.parametrize(

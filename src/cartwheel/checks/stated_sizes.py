@@ -6,14 +6,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from cartwheel.checks import controller_claims as claimed
 from cartwheel.checks import nodes, plugin_tags
 from cartwheel.checks.controller_files import Controller, Value
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST
-from cartwheel.checks.wheels import wheel_middle, wheel_place
+from cartwheel.checks.wheels import axle_of, wheel_middle, wheel_place
 from cartwheel.description.model import PluginTag
+from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.parameters import SIZES
 from cartwheel.dialects.tag_roles import TagRole
 from cartwheel.errors import Code, Diagnostic, Origin, Place
@@ -25,7 +28,7 @@ LEAST = 0.001
 
 
 Measure = Literal["apart", "base", "reach", "radius", "diameter"]
-"""``apart`` is across the robot, ``base`` is along it, and ``reach`` is half their sum."""
+"""``apart`` is along the axles, ``base`` is at right angles, and ``reach`` is half of their sum."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -204,16 +207,24 @@ def differs(value: float, real: float, least: float) -> bool:
     return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
 
 
-def mean_between(one: Stated, axis: int, *, middles: bool = False) -> float:
-    """Distance between the means of two sets of joints or wheels along a robot axis, m."""
-    first, second = (_mean(one.robot, names, axis, middles) for names in (one.first, one.second))
-    return 0.0 if first is None or second is None else abs(first - second)
+def mean_between(one: Stated, *, beside: bool, middles: bool = False) -> float:
+    """Distance between the means of two sets of joints or wheels, m.
+
+    Args:
+        one: The stated size.
+        beside: Measure along the axles, not at right angles to them.
+        middles: Measure from the middle of each wheel's width, not from its joint.
+    """
+    axle = axle_of(one.robot, one.first, one.second, beside=beside)
+    direction = axle if beside else np.array([axle[1], -axle[0], 0.0])
+    first, second = (_mean(one.robot, names, middles) for names in (one.first, one.second))
+    return 0.0 if first is None or second is None else float(abs((first - second) @ direction))
 
 
-def _mean(robot: Robot, names: tuple[str, ...], axis: int, middles: bool) -> float | None:
+def _mean(robot: Robot, names: tuple[str, ...], middles: bool) -> Floats | None:
     places = [
-        (wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position)[axis]
+        wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position
         for name in names
         if (joint := robot.joints[name]).child in robot.placed
     ]
-    return sum(places) / len(places) if places else None
+    return np.mean(places, axis=0) if places else None

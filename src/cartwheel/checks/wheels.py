@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -13,6 +13,11 @@ from cartwheel.description.solids import Floats, Solid, bounds
 from cartwheel.geometry import Pose, rotate
 
 _DIRECTIONS = 32
+_LEVEL = np.array([1.0, 1.0, 0.0])
+_ALONG = 0.9
+"""Minimum cosine between two directions that count as parallel."""
+_TURNED = 0.1
+"""Maximum ratio of y to x between two wheels that are beside each other along x."""
 CAMBER = 0.5
 """Minimum cosine between a wheel axis and the axle."""
 
@@ -73,9 +78,89 @@ def _across(axis: Floats) -> Floats:
 
 
 def is_across(robot: Robot, joint: Joint) -> bool:
-    """Whether a wheel's axis points sideways."""
-    along = rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
-    return abs(along[1]) >= CAMBER
+    """Whether a wheel's axis points sideways: along y, or toward another wheel."""
+    axis = wheel_axis(robot, joint)
+    if abs(axis[1]) >= CAMBER:
+        return True
+    here = np.array(wheel_place(robot, joint).position)
+    gaps = [
+        np.array(wheel_place(robot, each).position) - here
+        for each in _rolling(robot)
+        if each is not joint
+    ]
+    return any(abs(gap @ axis) > _ALONG * np.linalg.norm(gap) > 0 for gap in gaps)
+
+
+def _rolling(robot: Robot) -> list[Joint]:
+    """All joints that turn without limits."""
+    joints = robot.joints.values()
+    return [each for each in joints if each.type == "continuous" and each.child in robot.placed]
+
+
+def wheel_axis(robot: Robot, joint: Joint) -> Floats:
+    """Axis of a wheel in the model frame, a unit vector of shape (3,)."""
+    axis = np.array(rotate(wheel_place(robot, joint).orientation, joint.axis.xyz))
+    return np.asarray(axis / (np.linalg.norm(axis) or 1.0))
+
+
+def axle_of(robot: Robot, first: Sequence[str], second: Sequence[str], *, beside: bool) -> Floats:
+    """Direction of a vehicle's axles in the model frame, a unit vector of shape (3,).
+
+    A vehicle that faces along x has axles along y. For other vehicles, this is the mean direction
+    of the wheels' axes, provided that the wheels are placed accordingly.
+
+    Args:
+        robot: The vehicle.
+        first: Joints of the wheels on one side, or at the front.
+        second: Joints of the wheels on the other side, or at the back.
+        beside: Whether the two groups are beside each other, not one behind the other.
+    """
+    usual = np.array([0.0, 1.0, 0.0])
+    groups = [
+        [each for name in names if (each := robot.joints[name]).child in robot.placed]
+        for names in (first, second)
+    ]
+    axes: list[Floats] = []
+    # The axes of steering joints are vertical, so those of the wheels are used.
+    for joints in ([*groups[0], *groups[1]], _rolling(robot)):
+        level = [wheel_axis(robot, joint) * _LEVEL for joint in joints]
+        axes = axes or [axis for axis in level if np.linalg.norm(axis) >= CAMBER]
+    if not axes or not all(groups):
+        return usual
+    mean = np.sum([axis if axis @ axes[0] >= 0 else -axis for axis in axes], axis=0)
+    mean /= np.linalg.norm(mean)
+    centres = [
+        np.mean([wheel_place(robot, each).position for each in group], axis=0) for group in groups
+    ]
+    gap = (centres[0] - centres[1]) * _LEVEL
+    along = float(abs(gap @ mean) / (np.linalg.norm(gap) or 1.0))
+    fits = along > _ALONG if beside else along < 1 - _ALONG
+    return mean if fits and abs(mean @ usual) < _ALONG else usual
+
+
+def axle_toward_left(robot: Robot, left: Joint, right: Joint) -> Floats | None:
+    """Direction of an axle toward the robot's left, a unit vector of shape (3,).
+
+    In a robot that faces along x, left is toward positive y. In a robot that faces along y, it is
+    toward the left wheel. None if the wheels are not beside each other.
+    """
+    gap = gap_between(robot, left, right)
+    wide = float(np.linalg.norm(gap))
+    if wide < 1e-6 or abs(gap[2]) > 0.2 * wide:
+        return None
+    sign = 1 if gap[1] >= 0 or faces_sideways(gap) else -1
+    return np.asarray(gap / wide * sign)
+
+
+def gap_between(robot: Robot, left: Joint, right: Joint) -> Floats:
+    """Vector from the right wheel to the left wheel in the model frame, shape (3,), m."""
+    places = [np.array(wheel_place(robot, joint).position) for joint in (left, right)]
+    return np.asarray(places[0] - places[1])
+
+
+def faces_sideways(gap: Floats) -> bool:
+    """Whether a robot faces along y, from the vector between its left and right wheel."""
+    return bool(abs(gap[1]) < _TURNED * abs(gap[0]))
 
 
 def axis_senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
@@ -83,16 +168,20 @@ def axis_senses(robot: Robot, left: Joint, right: Joint) -> list[float]:
 
     Empty if the sides cannot be determined.
     """
-    poses = [wheel_place(robot, joint) for joint in (left, right)]
-    across = np.array(poses[0].position) - np.array(poses[1].position)
-    wide = float(np.linalg.norm(across))
-    if wide < 1e-6 or abs(across[2]) > 0.2 * wide:
+    unit = axle_toward_left(robot, left, right)
+    if unit is None:
         return []
-    unit = across / wide * (1 if across[1] >= 0 else -1)
-    return [
-        float(np.dot(rotate(pose.orientation, joint.axis.xyz), unit))
-        for joint, pose in zip((left, right), poses, strict=True)
-    ]
+    return [float(wheel_axis(robot, joint) @ unit) for joint in (left, right)]
+
+
+def faces_backwards(robot: Robot, left: Joint, right: Joint) -> bool:
+    """Whether reversed axes only mean that a robot faces backwards, or along negative y.
+
+    The left wheel is then on the right of a robot that faces forward, or the wheels are beside each
+    other along x, so that the names of the wheels may be swapped instead.
+    """
+    gap = gap_between(robot, left, right)
+    return bool(gap[1] < 0) or faces_sideways(gap)
 
 
 def wheel_links(robot: Robot, joint: Joint) -> list[str]:

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
 from cartwheel.devices.drives.differential import WheelPair
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST
 from cartwheel.errors import PluginError
+from cartwheel.geometry import rotate
 from cartwheel.simulation.limits import FARTHEST
 
 
@@ -60,14 +63,26 @@ def wheel_pairs(
 
 
 def report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> None:
-    """Reports a left wheel on the right side, because the robot then turns the wrong way."""
+    """Reports a left wheel on the right side, because the robot then turns the wrong way.
+
+    If the wheels are beside each other along x, their axes define the sides.
+    """
     description = plugin.part.description
     poses = link_poses(description, {})
     front = poses[description.canonical_link].inverse()
     for pair in pairs:
         joints = [description.joint(name) for name in (pair.left, pair.right)]
-        left, right = ((front @ poses[joint.child]).y for joint in joints if joint is not None)
-        if left < right:
+        wheels = [each for each in joints if each is not None]
+        if len(wheels) < 2:
+            continue
+        places = [front @ poses[each.child] @ each.pose for each in wheels]
+        gap = np.subtract(places[0].position, places[1].position)
+        axes = [
+            rotate(at.orientation, each.axis.xyz) for at, each in zip(places, wheels, strict=True)
+        ]
+        backwards = all(float(np.dot(axis, gap)) < 0 for axis in axes)
+        sideways = abs(gap[1]) < 0.1 * abs(gap[0])
+        if backwards if sideways else gap[1] < 0 and not backwards:
             plugin.warn(
                 robot.WHEELS_SWAPPED,
                 f'the left wheel ("{pair.left}") is to the right of the right wheel '

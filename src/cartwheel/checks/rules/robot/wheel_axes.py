@@ -4,40 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import CAMBER, axis_senses, wheel_pairs, wheel_place
+from cartwheel.checks.wheels import (
+    CAMBER,
+    axis_senses,
+    axle_toward_left,
+    faces_backwards,
+    wheel_pairs,
+    wheel_place,
+)
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic
-from cartwheel.geometry import Pose, matrix_from_quat
+from cartwheel.geometry import matrix_from_quat
 
 
 @rule(robot_codes.WHEEL_AXIS_MISALIGNED)
 def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
     for robot, _, left, right in wheel_pairs(subject):
-        poses = [wheel_place(robot, joint) for joint in (left, right)]
         senses = axis_senses(robot, left, right)
-        if not senses or (poses[0].y < poses[1].y and all(each < -CAMBER for each in senses)):
+        toward_left = axle_toward_left(robot, left, right)
+        if toward_left is None:
             continue
-        across = np.array(poses[0].position) - np.array(poses[1].position)
-        wide = float(np.linalg.norm(across))
-        for joint, pose, sense in zip((left, right), poses, senses, strict=True):
+        both = all(each < -CAMBER for each in senses)
+        if both and faces_backwards(robot, left, right):
+            continue
+        for joint, sense in zip((left, right), senses, strict=True):
             if sense > -CAMBER:
                 axis = nodes.child(robot.joint_node(joint.name), "axis")
                 stated = nodes.numbers(nodes.text_of(axis, "xyz"), 3)
                 turns = joint.type != "fixed" and (stated is None or any(stated))
                 if sense < CAMBER and turns:
-                    yield _not_across(robot, joint, pose, across / wide)
+                    yield _not_across(robot, joint, toward_left)
                 continue
             node = nodes.child(robot.joint_node(joint.name), "axis")
             xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
-            both = all(each < -CAMBER for each in senses)
             yield robot_codes.WHEEL_AXIS_MISALIGNED.diagnostic(
                 message=f'the wheel of joint "{joint.name}" turns backwards because its axis '
                 "points to the right of the "
@@ -50,12 +55,11 @@ def wheel_axes(subject: Subject) -> Iterator[Diagnostic]:
             )
 
 
-def _not_across(robot: Robot, joint: Joint, pose: Pose, across: Floats) -> Diagnostic:
+def _not_across(robot: Robot, joint: Joint, toward_left: Floats) -> Diagnostic:
     """The diagnostic for a wheel whose axis is not parallel to the axle; the default axis is x."""
     written = robot.joint_node(joint.name)
     node = nodes.child(written, "axis")
-    left = across if across[1] >= 0 else -across
-    own = matrix_from_quat(pose.orientation).T @ left
+    own = matrix_from_quat(wheel_place(robot, joint).orientation).T @ toward_left
     xyz = " ".join(nodes.short(round(float(value), 3) + 0.0) for value in own)
     stated = "" if node is not None or written is None else " (the default)"
     text = f'xyz="{xyz}"'

@@ -15,7 +15,7 @@ from cartwheel.errors import Diagnostic
 def wheel_base(subject: Subject) -> Iterator[Diagnostic]:
     for one in stated_sizes(subject):
         if one.measure == "base":
-            apart = mean_between(one, 0)
+            apart = mean_between(one, beside=False)
             if differs(one.value, apart, LEAST):
                 more = "more" if one.value > apart else "less"
                 yield size_mismatch(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from cartwheel.checks.rule import rule
 from cartwheel.checks.stated_sizes import (
     LEAST,
@@ -14,7 +16,7 @@ from cartwheel.checks.stated_sizes import (
     stated_sizes,
 )
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import wheel_place
+from cartwheel.checks.wheels import axle_of, wheel_place
 from cartwheel.codes import robot as robot_codes
 from cartwheel.errors import Diagnostic
 
@@ -31,9 +33,13 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
     for one in stated_sizes(subject):
         if one.measure not in ("apart", "reach"):
             continue
-        apart, joints = (mean_between(one, 1, middles=middles) for middles in (True, False))
+        apart, joints = (
+            mean_between(one, beside=True, middles=middles) for middles in (True, False)
+        )
         if one.measure == "reach":
-            apart, joints = ((each + mean_between(one, 0)) / 2 for each in (apart, joints))
+            apart, joints = (
+                (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)
+            )
         if one.skids and min(apart, joints) <= one.value <= _widest(one, apart):
             continue
         # A wheel may be offset from its joint; either distance is accepted.
@@ -61,8 +67,9 @@ def _widest(one: Stated, track: float) -> float:
     vanishes where t/2 (t/2 - u) + b/2 b/2 = 0, so that 2 u = t (1 + (b/t)²). This is 2 t for a
     square robot. The limit for longer robots grows by the same ratio beyond `WIDEST_SKID`.
     """
+    axle = axle_of(one.robot, one.first, one.second, beside=True)
     along = [
-        wheel_place(one.robot, joint).position[0]
+        float(np.cross(axle, wheel_place(one.robot, joint).position)[2])
         for name in one.first + one.second
         if (joint := one.robot.joints[name]).child in one.robot.placed
     ]

@@ -7,7 +7,14 @@ from collections.abc import Iterator
 from cartwheel.checks import nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import CAMBER, axis_senses, wheel_pairs, wheel_place
+from cartwheel.checks.wheels import (
+    CAMBER,
+    axis_senses,
+    faces_sideways,
+    gap_between,
+    wheel_pairs,
+    wheel_place,
+)
 from cartwheel.codes import robot as robot_codes
 from cartwheel.errors import Diagnostic
 
@@ -17,15 +24,24 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in wheel_pairs(subject):
         poses = [wheel_place(robot, joint) for joint in (left, right)]
         element = drive.left_tag
-        across = poses[0].y - poses[1].y
-        # Left and right are known only if the wheels are beside each other, with x forward.
-        if element is None or abs(poses[0].x - poses[1].x) > 0.1 * abs(across) or across >= 0:
+        gap = gap_between(robot, left, right)
+        if element is None:
             continue
-        if all(sense < -CAMBER for sense in axis_senses(robot, left, right)):
-            continue  # the robot faces backwards, but is otherwise correct
+        senses = axis_senses(robot, left, right)
+        reversed_ = bool(senses) and all(sense < -CAMBER for sense in senses)
+        if faces_sideways(gap):
+            # Without a known direction of travel, the axes of the wheels define left and right.
+            if not reversed_:
+                continue
+            why = "as seen in the direction in which the wheels roll"
+        elif abs(gap[0]) > 0.1 * abs(gap[1]) or gap[1] >= 0 or reversed_:
+            # The wheels are not beside each other, the sides are correct, or the robot faces
+            # backwards, but is otherwise correct.
+            continue
+        else:
+            why = f"at y = {poses[0].y:.3g} m and y = {poses[1].y:.3g} m"
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
-            message=f'the left wheel joint "{left.name}" is at y = {poses[0].y:.3g} m, to the '
-            f'right of "{right.name}" at y = {poses[1].y:.3g} m',
+            message=f'the left wheel joint "{left.name}" is to the right of "{right.name}", {why}',
             values={"left": left.name, "right": right.name},
             origin=element.origin,
             instead=nodes.written(element.tag, {}, right.name),
