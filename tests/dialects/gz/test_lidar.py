@@ -167,3 +167,11 @@ def test_it_leaves_with_its_model(make):
     world = make.world(make.sdf(lidar()))
     world.session.simulation.delete("robot")
     assert "/scan" not in topics(world)
+
+
+@pytest.mark.parametrize("filename", ["gz-sim-pose-publisher-system", "gz_ros2_control-system"])
+def test_sensors_of_a_model_for_gz_publish_on_gazebos_default_topic(make, filename):
+    plugin = f'<plugin name="p" filename="{filename}"/>'
+    world = make.world(make.sdf(lidar(kind="ray", tags="", plugin=plugin)))
+    assert "/world/test/model/robot/link/head/sensor/lidar/scan" in topics(world)
+    assert not coded(world, devices.SENSOR_WITHOUT_PLUGIN)

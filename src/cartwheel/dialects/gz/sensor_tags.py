@@ -40,6 +40,7 @@ SYSTEMS = {
 serve the types themselves.
 """
 
+_CONTROL = ("gz_ros2_control-system", "ign_ros2_control-system")
 _NEW_TYPES = {
     "rgbd_camera",
     "thermal_camera",
@@ -68,16 +69,24 @@ def frame_tag(doc: str = "Frame ID of the messages. Default: the sensor's link."
 def publishes(sensor: Sensor, systems: Iterable[str]) -> bool:
     """Whether a sensor without a plugin publishes.
 
-    It publishes if its system is loaded, or if it is written for gz-sim. Gazebo Classic's sensors
-    publish nothing to ROS without a plugin.
+    It publishes if its system is loaded, or if the sensor or its model is written for gz-sim, whose
+    world then loads the systems of sensors. Gazebo Classic's sensors publish nothing to ROS without
+    a plugin.
 
     Args:
         sensor: A sensor without a plugin.
-        systems: Short names of the systems in the world and in the model.
+        systems: Short names of the plugins in the world and in the model.
     """
     if any(sensor.type in SYSTEMS.get(system, ()) for system in systems):
         return True
+    if any(_is_of_gz(system) for system in systems):
+        return any(sensor.type in types for types in SYSTEMS.values())
     return sensor.type in _NEW_TYPES or any(sensor.element.find(tag) for tag in _NEW_TAGS)
+
+
+def _is_of_gz(plugin: str) -> bool:
+    """Whether only gz-sim has a plugin with this short name."""
+    return plugin.startswith("gz-sim-") or plugin in _CONTROL
 
 
 def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
