@@ -8,6 +8,7 @@ from pathlib import Path
 from cartwheel.checks.controller_files import ControlFile
 from cartwheel.checks.robot import Robot
 from cartwheel.codes import devices as devices_codes
+from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Element
 from cartwheel.dialects.ros_control.suggestion import files_for
@@ -89,4 +90,4 @@ def _belongs(path: Path, robot: Path) -> bool:
 
 
 def _package(file: Path) -> Path | None:
-    return next((each for each in file.parents if (each / "package.xml").is_file()), None)
+    return next((each for each in file.parents if package_name(each) is not None), None)

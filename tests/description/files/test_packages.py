@@ -86,10 +86,51 @@ def test_explicit_path_wins(tmp_path):
 
 def test_folder_without_manifest_is_the_second_choice(tmp_path):
     bare = tmp_path / "ws" / "my_robot"
-    file = robot(bare)
+    bare.mkdir(parents=True)
+    file = robot(package(tmp_path / "ws" / "other"))
     assert packages(file).find("my_robot") == bare
     true = package(tmp_path / "ws" / "src" / "my_robot")
     assert packages(file).find("my_robot") == true
+
+
+def test_a_file_in_a_folder_without_manifest_means_its_own_folder(tmp_path):
+    bare = tmp_path / "repositories" / "mine" / "my_robot"
+    file = robot(bare)
+    theirs = package(tmp_path / "repositories" / "theirs" / "my_robot")
+    assert packages(file).find("my_robot") == bare
+    assert packages(file, package_path=[theirs]).find("my_robot") == theirs
+    inside = package(bare / "src" / "my_robot")
+    assert packages(file).find("my_robot") == inside
+
+
+def test_a_workspace_with_a_packages_name_is_not_the_package(tmp_path):
+    file = robot(package(tmp_path / "fetch" / "other"))
+    true = package(tmp_path / "elsewhere" / "fetch")
+    environment = {"ROS_PACKAGE_PATH": str(true.parent)}
+    assert packages(file, environment).find("fetch") == true
+
+
+@pytest.mark.parametrize("place", ["src/arm", "arm", "src/meta/arm"])
+def test_packages_of_rosbuild_have_the_name_of_their_folder(tmp_path, place):
+    file = robot(package(tmp_path / "ws" / "src" / "a"))
+    folder = tmp_path / "ws" / place
+    folder.mkdir(parents=True)
+    (folder / "manifest.xml").write_text("<package><description>arm</description></package>")
+    assert packages(file).find("arm") == folder
+    own = robot(folder)
+    assert packages(own).find("arm") == folder
+    (folder / "manifest.xml").write_text("<gazebo><model>arm</model></gazebo>")
+    (folder / "package.xml").write_text("<package><name>other</name></package>")
+    assert packages(own).find("other") == folder
+
+
+def test_a_manifest_of_another_program_is_not_a_package(tmp_path):
+    file = robot(package(tmp_path / "ws" / "src" / "a"))
+    folder = tmp_path / "ws" / "src" / "x" / "y" / "z" / "arm"
+    folder.mkdir(parents=True)
+    (folder / "manifest.xml").write_text("<assembly><package_name>arm</package_name></assembly>")
+    with pytest.raises(DescriptionError):
+        packages(file).find("arm")
 
 
 def test_missing_package_says_which_may_be_meant(tmp_path):

@@ -1,4 +1,8 @@
-"""The folders on the disk that contain packages, by the name in package.xml."""
+"""The folders on the disk that contain packages, by the name in package.xml.
+
+A package of rosbuild, the build system before catkin, contains only a manifest.xml and has the name
+of its folder. Exporters of CAD programs still write this file.
+"""
 
 from __future__ import annotations
 
@@ -21,6 +25,7 @@ IGNORE_MARKERS = frozenset({"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE"})
 """Files that exclude a folder from the search for packages."""
 _SKIPPED = frozenset({"build", "devel", "log", "node_modules", "__pycache__", "proc", "sys", "dev"})
 _NAME = re.compile(rb"<name>\s*([^<>\s]+)\s*</name>")
+_PACKAGE = re.compile(rb"<package[\s/>]")
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 
 
@@ -39,7 +44,7 @@ def around(folder: Path) -> list[Path]:
     parents = [folder, *folder.parents]
     levels = MAX_LEVELS_UP
     for index, parent in enumerate(parents):
-        if (parent / "package.xml").is_file():
+        if package_name(parent) is not None:
             levels = max(levels, index + MAX_LEVELS_UP)
     chosen = []
     for parent in parents[:levels]:
@@ -54,7 +59,7 @@ def around(folder: Path) -> list[Path]:
 def package_above(folder: Path) -> Path | None:
     """The package that contains a folder."""
     near = [folder, *folder.parents][:MAX_LEVELS_UP]
-    return next((each for each in near if is_file(each / "package.xml")), None)
+    return next((each for each in near if package_name(each) is not None), None)
 
 
 def package_in(root: Path, name: str) -> Path | None:
@@ -117,18 +122,23 @@ def belongs_to(path: Path, home: Path) -> bool:
     real, home = path.resolve(), home.resolve()
     if real.is_relative_to(home):
         return True
-    source = next((each for each in real.parents if is_file(each / "package.xml")), None)
+    source = next((each for each in real.parents if package_name(each) is not None), None)
     return source is not None and package_name(source) == package_name(home)
 
 
 def package_name(folder: Path) -> str | None:
-    """The name in the folder's package.xml; None if there is no package.xml."""
-    manifest = folder / "package.xml"
-    try:
-        changed = manifest.stat().st_mtime_ns
-    except (OSError, ValueError):
-        return None
-    return _declared_name(manifest, changed)
+    """The name in the folder's package.xml, or the folder's name if it contains only a manifest.xml
+    of a package; otherwise None.
+    """
+    for manifest in (folder / "package.xml", folder / "manifest.xml"):
+        try:
+            changed = manifest.stat().st_mtime_ns
+        except (OSError, ValueError):
+            continue
+        found = _declared_name(manifest, changed)
+        if found is not None:
+            return found
+    return None
 
 
 @lru_cache(maxsize=4096)
@@ -137,9 +147,13 @@ def _declared_name(manifest: Path, _changed: int) -> str | None:
         return None
     try:
         with manifest.open("rb") as file:
-            match = _NAME.search(_COMMENT.sub(b"", file.read(16384)))
+            text = _COMMENT.sub(b"", file.read(16384))
     except OSError:
         return None
+    if manifest.name == "manifest.xml":
+        # Files of other programs have the same name.
+        return manifest.parent.name if _PACKAGE.search(text) else None
+    match = _NAME.search(text)
     return match[1].decode("utf-8", "replace") if match else manifest.parent.name
 
 

@@ -15,6 +15,7 @@ from cartwheel.description.files.package_folders import (
     names_in,
     package_below,
     package_in,
+    package_name,
     packages_in,
     share,
 )
@@ -120,7 +121,9 @@ class PackageSearch:
             self.environment_roots,
             lambda: iter((share() / "robots", share() / "models")),
         )
-        for roots in searches:
+        for index, roots in enumerate(searches):
+            if index == 1 and (own := self._own_folder(name)) is not None:
+                return own
             for root in roots():
                 found = package_in(root, name)
                 if found is not None:
@@ -136,6 +139,17 @@ class PackageSearch:
                 for bare in (root, root / name):
                     if bare.name == name and is_dir(bare):
                         return bare
+        return None
+
+    def _own_folder(self, name: str) -> Path | None:
+        """The folder with this name that contains the file but no manifest, if the file is in no
+        package: it is meant rather than a package with the same name in another repository.
+        """
+        for folder in self._ancestors() if self.file is not None else ():
+            if package_name(folder) is not None:
+                return None
+            if folder.name == name:
+                return package_below(folder, name) or folder
         return None
 
     def _crawled(self) -> Iterator[Path]:

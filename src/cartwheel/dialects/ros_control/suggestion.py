@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
 from cartwheel.dialects.ros_control.files import (
@@ -98,14 +99,14 @@ def _entries(content: Mapping[str, Any], source: str, *, ros2: bool) -> list[Con
 
 def _candidates(robot: Path) -> Iterator[Path]:
     package = next(
-        (each for each in robot.resolve().parents[:_LEVELS] if (each / "package.xml").is_file()),
+        (each for each in robot.resolve().parents[:_LEVELS] if package_name(each) is not None),
         None,
     )
     if package is None:
         return
     seen = 0
     for folder in sorted(package.parent.iterdir()):
-        if not (folder / "package.xml").is_file():
+        if package_name(folder) is None:
             continue
         for path in sorted(folder.glob("**/config/**/*.y*ml")):
             seen += 1
