@@ -153,17 +153,23 @@ class Requests:
         return handle
 
     def velocity_motor(
-        self, joint: str, *, max_effort: float | None, origin: Origin | None = None
+        self,
+        joint: str,
+        *,
+        max_effort: float | None,
+        beyond: bool = False,
+        origin: Origin | None = None,
     ) -> MotorHandle:
         """A motor that holds a joint's velocity with at most `max_effort` N m or N.
 
-        Several requests for the same joint share the first motor. If a servo already drives the
-        joint, the motor is shared; see `ServoHandle`.
+        With `beyond`, `max_effort` may exceed the joint's effort limit. Several requests for the
+        same joint share the first motor. If a servo already drives the joint, the motor is shared;
+        see `ServoHandle`.
         """
         self.joint(joint, origin=origin)
         motor = self._entry.motors.get(joint)
         if motor is None:
-            motor = Motor(joint=joint, mode="velocity", max_effort=max_effort)
+            motor = Motor(joint=joint, mode="velocity", max_effort=max_effort, beyond=beyond)
             self._entry.motors[joint] = motor
         elif motor.mode == "servo":
             motor = self._share(motor, max_effort, origin)

@@ -71,7 +71,9 @@ class JointActuator:
         self._motor: MotorHandle | None = None
         self._servo: ServoHandle | None = None
         if config.commands == ("velocity",) and not self.pids:
-            self._motor = part.velocity_motor(name, max_effort=config.strength, origin=origin)
+            self._motor = part.velocity_motor(
+                name, max_effort=config.strength, beyond=config.exceeds_limit, origin=origin
+            )
         elif config.commands:
             self._servo = part.servo(
                 name, max_effort=config.strength, beyond=config.exceeds_limit, origin=origin

@@ -17,7 +17,7 @@ from cartwheel.dialects.ros_control.interfaces import JointInterfaces
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import PluginError, UnknownNameError
 
-_STRONGEST = 1e5
+STRONGEST = 1e5
 """Effort in N m or N of a joint without an effort limit."""
 
 
@@ -62,8 +62,8 @@ class JointHardware(JointActuator):
                 joint=interfaces.name,
                 commands=interfaces.commands,
                 limits=joint_limits,
-                strength=min(strength, _STRONGEST),
-                exceeds_limit=min(strength, _STRONGEST) > joint_limits.effort,
+                strength=min(strength, STRONGEST),
+                exceeds_limit=min(strength, STRONGEST) > joint_limits.effort,
                 pid=gains,
                 led=joint.mimic is not None or interfaces.mimic is not None,
                 origin=interfaces.origin,

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import ROS_CONTROL, short_name
+from cartwheel.dialects.ros_control import steer_bot
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
@@ -36,8 +37,9 @@ class RosControlParameters:
         "robotSimType",
         "robot_sim_type",
         default="",
-        doc="Name of the hardware plugin. Only the default, `DefaultRobotHWSim`, is simulated. "
-        "With any other name, joints are driven as with the default, with a warning.",
+        doc="Name of the hardware plugin. `DefaultRobotHWSim`, the default, and "
+        "`SteerBotHardwareGazebo` are simulated. With any other name, joints are driven as with "
+        "the default, with a warning.",
     )
     period: float = tag(
         "controlPeriod",
@@ -76,7 +78,8 @@ class RosControl(ControlPlugin):
         config: RosControlParameters = self.config
         part = self.part
         plain = config.sim_type.rpartition("::")[2] in _PLAIN
-        if not plain:
+        steered = config.sim_type == steer_bot.SIM_TYPE
+        if not plain and not steered:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
                 f'<robotSimType> "{config.sim_type}" is not simulated, so joints are driven as '
@@ -96,18 +99,10 @@ class RosControl(ControlPlugin):
             for path in self.shared.get(ControllerFiles).take()
         ]
         entries = [entry for path, content in contents for entry in self._load(path, content)]
-        joints, notes = transmissions(part.description, several=not plain)
-        for note in notes:
-            part.report(note)
-        if not joints:
-            self.warn(
-                devices.CONTROL_WITHOUT_JOINTS,
-                "no <transmission> drives a joint, so controllers have no joint to command",
-            )
         rate = 0.0 if config.period == 0 else 1.0 / config.period
-        stated = self.graph.parameters.get(f"/{self.namespace}/joint_limits")
-        limits = Settings(stated if isinstance(stated, Mapping) else {}, "joint_limits")
-        hardware = Hardware(self, joints, self._gains(joints), limits)
+        hardware = self._steer_bot() if steered else None
+        if hardware is None:
+            hardware = self._default_hardware(several=not plain)
         self._hardware = hardware
         manager = self._run(
             ControlledRobot(
@@ -124,6 +119,40 @@ class RosControl(ControlPlugin):
             self.subscribe(config.stop_topic, "std_msgs/msg/Bool", self._on_stop)
         ManagerServices(self, manager)
         self._start([replace(entry, values=self._parameters_of(entry)) for entry in entries])
+
+    def _settings(self, name: str) -> Settings | None:
+        """Returns the parameters of a namespace in the robot's namespace; None if it is empty."""
+        values = self.graph.parameters.get(f"/{self.namespace}/{name}")
+        if not isinstance(values, Mapping):
+            return None
+        return Settings(values, name, f"/{self.namespace}")
+
+    def _steer_bot(self) -> Hardware | None:
+        """Returns the hardware SteerBotHardwareGazebo; None, with a report, without parameters."""
+        name = steer_bot.PARAMETERS
+        settings = self._settings(name)
+        if settings is not None:
+            return steer_bot.SteerBotHardware(self, settings, self.tag.origin)
+        self.warn(
+            devices.HARDWARE_NOT_SIMULATED,
+            f'<robotSimType> "{steer_bot.SIM_TYPE}" has no parameters in '
+            f'"/{self.namespace}/{name}", so joints are driven as with DefaultRobotHWSim',
+            hint=f'Pass the YAML file that contains "{name}", with --controllers.',
+            values={"hardware": steer_bot.SIM_TYPE, "parameters": name},
+        )
+        return None
+
+    def _default_hardware(self, *, several: bool) -> Hardware:
+        joints, notes = transmissions(self.part.description, several=several)
+        for note in notes:
+            self.part.report(note)
+        if not joints:
+            self.warn(
+                devices.CONTROL_WITHOUT_JOINTS,
+                "no <transmission> drives a joint, so controllers have no joint to command",
+            )
+        limits = self._settings("joint_limits") or Settings({}, "joint_limits")
+        return Hardware(self, joints, self._gains(joints), limits)
 
     def _parameters_of(self, entry: ControllerEntry) -> Mapping[str, Any]:
         values: Mapping[str, Any] = self.graph.parameters.get(
@@ -151,7 +180,7 @@ class RosControl(ControlPlugin):
                 hint="Pass the file that the launch file loads with rosparam.",
             )
         entries = ros1_entries(content, path)
-        if not entries:
+        if not entries and steer_bot.PARAMETERS not in content:
             self.warn(
                 devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
                 "no parameter specifies a controller type, so no controller starts",

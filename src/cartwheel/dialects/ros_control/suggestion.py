@@ -17,6 +17,7 @@ from cartwheel.dialects.ros_control.files import (
     ros1_entries,
     ros2_file,
 )
+from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
 from cartwheel.dialects.tags import roles_of
 from cartwheel.errors import CartwheelError
 
@@ -70,7 +71,10 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
         if is_ros2(content) != ros2:
             continue
         entries = _entries(content, str(path), ros2=ros2)
-        words = {word for entry in entries for word in _words(entry.values)}
+        values = [entry.values for entry in entries]
+        if not ros2:
+            values.append(content.get(PARAMETERS, {}))
+        words = {word for each in values for word in _words(each)}
         named = any(joint in word for joint in joints for word in words)
         broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
         if named or broadcasts:

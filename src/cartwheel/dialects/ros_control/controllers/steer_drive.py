@@ -87,12 +87,16 @@ class SteerDriveController(WheelController):
     parameters = SteerDriveParameters
 
     def configure(self, given: SteerDriveParameters) -> None:
-        wheel, steer = given.wheel, given.steer
-        driven = self.claim(wheel, "velocity")
-        steering = self.claim(steer, "position")
-        check_axis(self, wheel, LEFT)
-        check_axis(self, steer, UP)
+        driven = self.claim(given.wheel, "velocity")
+        steering = self.claim(given.steer, "position")
+        # With SteerBotHardwareGazebo, other joints move instead of the claimed ones.
+        check_axis(self, driven.joint, LEFT)
+        check_axis(self, steering.joint, UP)
         description = self.part.description
+        wheel, steer = (
+            claimed if description.joint(claimed) is not None else moved.joint
+            for claimed, moved in ((given.wheel, driven), (given.steer, steering))
+        )
         base = given.base
         if base is None:
             base = abs(joint_place(description, steer)[0] - joint_place(description, wheel)[0])
