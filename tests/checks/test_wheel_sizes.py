@@ -8,6 +8,9 @@ import re
 
 import pytest
 
+from cartwheel.checks.rules.robot.skid_steering import turn_ratio
+from cartwheel.codes.robot import SKID_STEERING
+
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
 """m: between the axles, between the wheels, between the steered joints, of the wheels."""
 CORNERS = {
@@ -375,3 +378,31 @@ def test_controllers_sizes_are_those_of_the_car(told, take, tmp_path, case):
         assert finding.origin.line == text.splitlines().index(line) + 1
         path.write_text(take(wrong, finding))
         assert told(car(), controller_files=[path]) == []
+
+
+def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven(told):
+    tags = {**ACKERMANN}
+    text = plugin("gz-sim-ackermann-steering-system", **tags)
+    more = "<left_joint>front_left_joint</left_joint><right_joint>front_right_joint</right_joint>"
+    assert told(car(text.replace("</plugin>", f"{more}</plugin>"))) == []
+
+
+def test_the_turn_rate_of_a_skid_steered_robot_is_that_at_which_friction_torques_balance(bench):
+    """For four wheels with track t and wheelbase b it is t²/(t² + b²) of the commanded rate."""
+    report = bench.report(car(plugin("libgazebo_ros_skid_steer_drive.so", **SKID)))
+    (finding,) = [each for each in report.findings if each.code is SKID_STEERING]
+    assert finding.values["ratio"] == pytest.approx(TRACK**2 / (TRACK**2 + BASE**2), rel=1e-6)
+    # A separation that compensates for it is no finding.
+    wide = {**SKID, "wheelSeparation": TRACK * (1 + (BASE / TRACK) ** 2)}
+    report = bench.report(car(plugin("libgazebo_ros_skid_steer_drive.so", **wide)))
+    assert not [each for each in report.findings if each.code is SKID_STEERING]
+
+
+@pytest.mark.parametrize("places", [[0.0, 0.0], [-0.1, 0.0, 0.1]])
+def test_wheels_of_one_axle_do_not_slide_and_more_axles_turn_more_slowly(places):
+    ratio = turn_ratio(0.4, [*places, *places])
+    if len(places) == 2:
+        assert ratio == pytest.approx(1.0)
+    else:
+        # The middle axle helps: faster than two axles at ±0.1 m, slower than one.
+        assert turn_ratio(0.4, [-0.1, -0.1, 0.1, 0.1]) < ratio < 1.0

@@ -21,17 +21,23 @@ def test_a_folder_gives_a_line_for_each_robot(program, tmp_path):
     assert good.split()[1:5] == ["yes", "3", "kg", "yes"]
     assert good.endswith("missing unheard_of")
     text = "\n".join(rest)
-    assert "bad.urdf: error:" in text
+    assert "bad.urdf: fault in the robot's files\n  load: " in text
     assert "missing plugin unheard_of: 1 robot\n" in text
-    assert text.endswith("1 of 2 robots pass all tests")
+    assert "1 of 2 robots pass all tests; 1 have faults in their files" in text
+    assert text.endswith(
+        "1 load, 1 stand, and 0 of the 0 robots that should move do so as commanded"
+    )
 
 
 def test_json_has_the_same(program, tmp_path):
     (tmp_path / "box.urdf").write_text(BOX)
     found = json.loads(program("corpus", tmp_path, "--for", "1", "--json").stdout)
-    (box,) = found
-    assert box["schema"] == 1
-    assert box["good"]
+    assert found["schema"] == 2
+    assert found["summary"]["robots"] == found["summary"]["good"] == found["summary"]["stand"] == 1
+    (box,) = found["robots"]
+    assert box["verdict"] == "good"
+    assert box["faults"] == []
+    assert not box["should_move"]
     assert box["mass"] == 3
     assert box["missing_plugins"] == ["unheard_of"]
     assert box["stands"]["state"] == "yes"

@@ -82,6 +82,9 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
     if not all(groups):
         return
     first, second = groups if len(groups) == 2 else (groups[0], ())
+    if measure == "base":
+        # Some drives also drive the wheels of the steered axle.
+        second = tuple(name for name in second if not _is_steered(robot, name, first)) or second
     name = next((name for name in size.tags if tag.element.find(name) is not None), "")
     written = list(tag.element.find_all(name)) if name else []
     for index, element in enumerate(written):
@@ -120,6 +123,18 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
             write=lambda number: nodes.written(name, {}, number),
             place="inside",
         )
+
+
+def _is_steered(robot: Robot, wheel: str, steering: Sequence[str]) -> bool:
+    """Whether a wheel's joint is one of the steering joints, or is mounted on one."""
+    seen: set[str] = set()
+    joint = robot.joints.get(wheel)
+    while joint is not None and joint.name not in seen:
+        if joint.name in steering:
+            return True
+        seen.add(joint.name)
+        joint = robot.inbound.get(joint.parent)
+    return False
 
 
 def _is_new(tag: PluginTag) -> bool:

@@ -246,3 +246,9 @@ PLUGIN_FILE_INVALID = Code(
     "error",
     "a Python file with plugins is missing, fails or defines no plugin",
 )
+CONTROLLERS_NOT_FOUND = Code(
+    "CW481",
+    "controllers-not-found",
+    "warning",
+    "no file contains controllers for a robot with a controller manager",
+)

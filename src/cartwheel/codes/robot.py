@@ -162,3 +162,15 @@ ANGLE_IN_DEGREES = Code(
 POSITION_IN_MILLIMETRES = Code(
     "CW241", "position-in-millimetres", "warning", "a position is probably in millimetres"
 )
+SKID_STEERING = Code(
+    "CW242",
+    "skid-steering",
+    "info",
+    "the wheels slide in turns, so the robot does not turn as fast as commanded",
+)
+UNBALANCED = Code(
+    "CW243",
+    "unbalanced",
+    "info",
+    "the centre of mass is not above the points where the robot touches the ground",
+)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from cartwheel.api import Model, World
+from cartwheel.checks.robot import Robot
+from cartwheel.corpus.heading import heading
+from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.verdict import Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.geometry import Pose, rotate
@@ -17,7 +20,13 @@ from cartwheel.simulation.clock import NANOSECONDS
 VELOCITY, TURN = 0.2, 0.4
 """m/s and rad/s commanded to a base: slow enough for the smallest robots."""
 _SPEED_UP = 4.0
-"""Maximum time for a base to reach the commanded speed, s."""
+"""Time for a base to reach the commanded speed, s, unless its acceleration is limited."""
+_LONGEST = 20.0
+_RADIUS = 4.0
+"""Radius of the arc of a steered base, relative to the longest edge of its bounding box: the
+steering angle is at most atan(1/4) = 14°."""
+_SMALLEST = 0.1
+"""m; for bases without geometry."""
 _MEASURED = 2.0
 _RATE = 20.0
 """Rate of commands, Hz."""
@@ -59,25 +68,48 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
     )
 
 
-def drives(world: World, model: Model) -> Iterator[Drive]:
-    """Drives on each topic with velocity commands, forward and turning, each after a reset."""
+def drives(
+    world: World, model: Model, robot: Robot, limits: StatedLimits, *, steered: bool
+) -> Iterator[Drive]:
+    """Drives on each topic with velocity commands, forward and turning, each after a reset.
+
+    Args:
+        world: The world.
+        model: The robot in the world.
+        robot: Its description.
+        limits: The robot's own limits. The commands stay below them.
+        steered: The base cannot turn in place, so it turns while it drives forward.
+    """
+    forward = min(VELOCITY, limits.forward)
+    turn = min(TURN, limits.turn)
+    if steered:
+        turn = min(turn, forward / (_RADIUS * max(robot.size, _SMALLEST)))
+    speed_up = max(
+        _SPEED_UP,
+        min(_LONGEST, 2.0 * max(forward / limits.acceleration, turn / limits.turn_acceleration)),
+    )
     for info in world.graph.topics():
         if not info.drives:
             continue
-        ahead, _ = _driven(world, model, info, (VELOCITY, 0.0))
-        _, turn = _driven(world, model, info, (0.0, TURN))
+        ahead, _ = _driven(world, model, robot, info, (forward, 0.0, speed_up))
+        both = (forward if steered else 0.0, turn, speed_up)
+        _, turned = _driven(world, model, robot, info, both)
         yield Drive(
             topic=info.name,
-            commanded=VELOCITY,
+            commanded=forward,
             measured=ahead,
-            commanded_turn=TURN,
-            measured_turn=turn,
+            commanded_turn=turn,
+            measured_turn=turned,
+            turning="arc" if steered else "in place",
+            limited=forward < VELOCITY or (turn < TURN and not steered),
         )
     world.reset()
 
 
 def reaches(world: World, model: Model, description: RobotDescription) -> list[Reach]:
     """Commands all position-controlled joints at once and measures where they end."""
+    if not world.graph.joint_inputs.all():
+        return []
     world.reset()
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
@@ -101,22 +133,44 @@ def reaches(world: World, model: Model, description: RobotDescription) -> list[R
 
 
 def _driven(
-    world: World, model: Model, topic: TopicInfo, command: tuple[float, float]
+    world: World,
+    model: Model,
+    robot: Robot,
+    topic: TopicInfo,
+    command: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Forward speed in m/s and turn rate in rad/s, to the left, after a constant command."""
+    """Forward speed in m/s and turn rate in rad/s, to the left, after a constant command.
+
+    `command` contains both velocities and the time to reach them in s.
+    """
     world.reset()
     world.run(0.5)
-    _drive_on(world, topic, command, _SPEED_UP)
-    before = model.pose
-    _drive_on(world, topic, command, _MEASURED)
+    *velocity, speed_up = command
+    _drive_on(world, topic, velocity, speed_up)
+    before, joints = model.pose, positions(world, model)
+    _drive_on(world, topic, velocity, _MEASURED)
     after = model.pose
-    yaw = _yaw(before)
+    speeds = {
+        name: (end - joints[name]) / _MEASURED for name, end in positions(world, model).items()
+    }
+    # The pose is that of the root link, whose frame may be turned in the model's frame.
+    ahead = rotate(
+        robot.description.canonical_pose.inverse().orientation, (*heading(robot, speeds), 0)
+    )
+    x, y, _ = rotate(before.orientation, ahead)
+    length = math.hypot(x, y) or 1.0
     dx, dy = after.x - before.x, after.y - before.y
-    turned = math.remainder(_yaw(after) - yaw, 2 * math.pi)
-    return (math.cos(yaw) * dx + math.sin(yaw) * dy) / _MEASURED, turned / _MEASURED
+    turned = math.remainder(_yaw(after) - _yaw(before), 2 * math.pi)
+    return (x * dx + y * dy) / length / _MEASURED, turned / _MEASURED
 
 
-def _drive_on(world: World, topic: TopicInfo, command: tuple[float, float], seconds: float) -> None:
+def positions(world: World, model: Model) -> dict[str, float]:
+    """Positions of the joints with one degree of freedom, rad or m, by name."""
+    joints = world.session.simulation.scene.joints
+    return {name: model.joint(name) for owner, name in joints if owner == model.name}
+
+
+def _drive_on(world: World, topic: TopicInfo, command: Sequence[float], seconds: float) -> None:
     twist = {"linear": {"x": command[0]}, "angular": {"z": command[1]}}
     for _ in range(round(seconds * _RATE)):
         said: dict[str, Any] = twist

@@ -4,23 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from cartwheel.api import Model, World
 from cartwheel.checks.checking import check
-from cartwheel.checks.rules import RULES
-from cartwheel.corpus import motion
+from cartwheel.checks.robot import Robot
+from cartwheel.corpus import commands, motion
+from cartwheel.corpus.diagnosis import faults
+from cartwheel.corpus.faults import Fault
+from cartwheel.corpus.limits import stated_limits
+from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles, for_robot, read_parameters
 from cartwheel.dialects.ros_control.suggestion import suggested
 from cartwheel.dialects.world_plugins import BUILT_IN
-from cartwheel.errors import CartwheelError, PluginError
+from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 
 STANDING = 10.0
@@ -30,10 +36,6 @@ _LISTENING = 1.0
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
-_OF_WHEELS = frozenset(
-    each.code for each in RULES if each.code.name.startswith(("drive", "wheel", "caster"))
-)
-"""Rules of `check` that explain why a base does not follow its commands."""
 
 
 def try_robot(
@@ -60,9 +62,15 @@ def try_robot(
     verdict = Verdict(file=file)
     try:
         robot = load_robot(file, arguments=arguments or {}, package_path=package_path)
-        verdict = _described(verdict, robot)
-        if controllers is None:
-            controllers = [each for each in suggested(robot) if _is_complete(each, robot)]
+    except CartwheelError as error:
+        reason = error.diagnostic()
+        return replace(
+            verdict, error=str(error), failure=reason, faults=(Fault(test="load", reason=reason),)
+        )
+    verdict = _described(verdict, robot)
+    if controllers is None:
+        controllers = [each for each in suggested(robot) if _is_complete(each, robot)]
+    try:
         with World(lenient=True) as world:
             pose = _place(robot)
             # A ground_plane already exists.
@@ -74,24 +82,45 @@ def try_robot(
             verdict = replace(
                 verdict,
                 loaded=True,
-                controllers=tuple(
-                    each.name for each in world.session.shared.get(ControllerFiles).started
-                ),
+                controllers=tuple(each.name for each in _controllers(world).started),
                 controller_files=tuple(controllers),
             )
             for found in _moved(verdict, world, model, robot, standing):
                 verdict = replace(found, diagnostics=world.diagnostics)
-        if not all(each.follows and each.turns for each in verdict.drives):
-            report = check(
-                file,
-                arguments=arguments or {},
-                package_path=package_path,
-            )
-            said = [each for each in report.findings if each.code in _OF_WHEELS]
-            verdict = replace(verdict, reasons=tuple(str(each) for each in said))
     except CartwheelError as error:
-        return replace(verdict, error=str(error))
-    return verdict
+        verdict = replace(verdict, error=str(error), failure=error.diagnostic())
+    findings = _Findings(file, arguments or {}, package_path, controllers)
+    verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
+    return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
+
+
+class _Findings:
+    """The findings of `cartwheel check`, which is run when they are first needed."""
+
+    def __init__(
+        self,
+        file: Path,
+        arguments: Mapping[str, str],
+        package_path: Sequence[Path],
+        controllers: Sequence[Path],
+    ) -> None:
+        self._check = partial(
+            check,
+            file,
+            arguments=arguments,
+            package_path=package_path,
+            controller_files=controllers,
+        )
+        self._found: tuple[Diagnostic, ...] | None = None
+
+    def __call__(self) -> tuple[Diagnostic, ...]:
+        if self._found is None:
+            try:
+                self._found = self._check().findings
+            except CartwheelError:
+                # The description was loaded, so the reason is in a part that `check` reads only.
+                self._found = ()
+        return self._found
 
 
 def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
@@ -158,10 +187,28 @@ def _moved(
     topics, silent = _listened(world)
     verdict = replace(verdict, topics=topics, silent=silent)
     yield verdict
+    started = _controllers(world).started
     if not stood.fixed:
-        verdict = replace(verdict, drives=tuple(motion.drives(world, model)))
+        bases = motion.drives(
+            world,
+            model,
+            Robot(robot, None),
+            stated_limits(robot, started),
+            steered=_steered(robot, started),
+        )
+        verdict = replace(verdict, drives=tuple(bases))
         yield verdict
-    yield replace(verdict, reaches=tuple(motion.reaches(world, model, robot)))
+        verdict = replace(verdict, flights=tuple(commands.flights(world, model, robot)))
+        yield verdict
+    verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot)))
+    yield verdict
+    yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started)))
+
+
+def _steered(robot: RobotDescription, started: Sequence[Controller]) -> bool:
+    """Whether one of the drives cannot turn in place."""
+    names = [short_name(tag.filename) for tag in robot.plugins]
+    return any(STEERED.search(name) for name in (*names, *(each.type for each in started)))
 
 
 def _controllers(world: World) -> ControllerFiles:

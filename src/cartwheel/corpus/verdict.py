@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
+from cartwheel.corpus.faults import MOTION, Fault
 from cartwheel.errors import Diagnostic
 
 TOLERANCE = 0.05
@@ -14,6 +16,8 @@ SUNK = 0.02
 """m; maximum settling of a standing robot, for springs and soft tyres."""
 TILTED = 0.1
 """rad; maximum tilt."""
+RISEN = 0.2
+"""m; minimum increase in height of an aircraft that takes off."""
 CREEPING = 0.01
 """m/s and rad/s; maximum motion of a standing robot."""
 ANGLE, LENGTH = 0.1, 0.01
@@ -64,6 +68,10 @@ class Drive:
     commanded_turn: float
     """Separately commanded turn rate about the vertical, rad/s."""
     measured_turn: float
+    turning: Literal["in place", "arc"] = "in place"
+    """How it was commanded to turn: steered bases turn on an arc, while they drive forward."""
+    limited: bool = False
+    """Whether limits in the robot's files are below the usual commands, which were reduced."""
 
     @property
     def error(self) -> float:
@@ -72,7 +80,7 @@ class Drive:
 
     @property
     def error_turn(self) -> float:
-        """Relative error of the turn rate; -1 for a base that cannot turn in place."""
+        """Relative error of the turn rate."""
         return self.measured_turn / self.commanded_turn - 1.0
 
     @property
@@ -82,7 +90,7 @@ class Drive:
 
     @property
     def turns(self) -> bool:
-        """Whether it turned in place as commanded, which not every base can do."""
+        """Whether it turned as commanded."""
         return abs(self.error_turn) <= TOLERANCE
 
 
@@ -108,6 +116,53 @@ class Reach:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Spin:
+    """How a joint followed a velocity or effort command of a controller or plugin."""
+
+    topic: str
+    joint: str
+    """The joint that moved most; empty if none moved."""
+    commanded: float
+    """rad/s or m/s; the effort in N m or N for effort controllers."""
+    measured: float
+    """Velocity of the joint, rad/s or m/s."""
+    effort: bool
+    """Whether the command is an effort, so that any motion is a success."""
+
+    @property
+    def follows(self) -> bool:
+        """Whether the joint moved as commanded."""
+        if self.effort:
+            return self.measured * self.commanded > 0
+        return abs(self.measured / self.commanded - 1.0) <= TOLERANCE
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Flight:
+    """How an aircraft followed the commands to its propellers."""
+
+    topic: str
+    motors: int
+    command: float
+    """Speed of the propellers at which it rose, rad/s; otherwise the highest speed that was
+    tried."""
+    rose: float
+    """Increase in height, m."""
+
+    @property
+    def flies(self) -> bool:
+        """Whether it took off."""
+        return self.rose >= RISEN
+
+
+Outcome = Literal["good", "file", "unknown"]
+"""- ``good``: the robot loads, stands, and moves as commanded.
+- ``file``: every fault is explained by a mistake in the robot's files.
+- ``unknown``: the cause of a fault is unknown, or Cartwheel does not support something.
+"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Verdict:
     """The results for one description."""
 
@@ -115,6 +170,8 @@ class Verdict:
     name: str = ""
     error: str = ""
     """Why loading or the simulation failed; empty for success."""
+    failure: Diagnostic | None = None
+    """The error as a diagnostic."""
     loaded: bool = False
     mass: float = math.nan
     """Mass, kg."""
@@ -134,9 +191,13 @@ class Verdict:
     silent: tuple[str, ...] = ()
     """Those topics without messages."""
     drives: tuple[Drive, ...] = ()
-    reasons: tuple[str, ...] = ()
-    """Wrong statements about the wheels that explain why the robot does not follow its commands."""
     reaches: tuple[Reach, ...] = ()
+    spins: tuple[Spin, ...] = ()
+    flights: tuple[Flight, ...] = ()
+    movers: tuple[str, ...] = ()
+    """Plugins and controllers, supported or not, that should move the robot or its joints."""
+    faults: tuple[Fault, ...] = ()
+    """What failed, with reasons."""
     diagnostics: tuple[Diagnostic, ...] = ()
 
     @property
@@ -145,14 +206,30 @@ class Verdict:
         return self.stand.simulated / self.stand.wall if self.stand is not None else math.nan
 
     @property
-    def good(self) -> bool:
-        """Whether it loads and works; missing plugins are ignored."""
-        return (
-            self.loaded
-            and not self.error
-            and self.stand is not None
-            and self.stand.state in ("fixed", "yes")
-            and not self.silent
-            and all(drive.follows for drive in self.drives)
-            and all(reach.arrived for reach in self.reaches)
+    def should_move(self) -> bool:
+        """Whether a plugin or controller should move the robot or its joints."""
+        return bool(self.movers)
+
+    @property
+    def moves(self) -> bool:
+        """Whether everything that should move was moved by commands, and moved as commanded."""
+        return bool(self.drives or self.reaches or self.spins or self.flights) and not any(
+            fault.test in MOTION for fault in self.faults
         )
+
+    @property
+    def stands(self) -> bool:
+        """Whether it stands, or is fixed to the world."""
+        return self.stand is not None and self.stand.state in ("fixed", "yes")
+
+    @property
+    def outcome(self) -> Outcome:
+        """The overall result."""
+        if not self.faults:
+            return "good"
+        return "file" if all(fault.source == "file" for fault in self.faults) else "unknown"
+
+    @property
+    def good(self) -> bool:
+        """Whether it loads, stands, publishes, and moves as commanded."""
+        return self.outcome == "good"

@@ -25,6 +25,7 @@ from cartwheel.checks.rules.devices import (
 )
 from cartwheel.checks.rules.files import missing_files, unused_definitions
 from cartwheel.checks.rules.robot import (
+    balance,
     drive_joints,
     friction,
     inertias,
@@ -41,6 +42,7 @@ from cartwheel.checks.rules.robot import (
     overlapping_collisions,
     references,
     shape_scale,
+    skid_steering,
     wheel_axes,
     wheel_base,
     wheel_diameter,
@@ -71,11 +73,13 @@ RULES: tuple[Rule, ...] = tuple(
         wheel_axes,
         wheel_shapes,
         wheel_separation,
+        skid_steering,
         wheel_base,
         wheel_diameter,
         friction,
         missing_collisions,
         wheels_off_ground,
+        balance,
         overlapping_collisions,
         blocked_views,
         update_rates,

@@ -11,11 +11,12 @@ from typing import Any
 
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.codes.command import NO_ROBOTS
-from cartwheel.corpus import Verdict, robots_in, try_robot
+from cartwheel.corpus import Fault, Verdict, robots_in, try_robot
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.errors import CartwheelError
 
-SCHEMA = 1
+SCHEMA = 2
+_OUTCOMES = {"file": "fault in the robot's files", "unknown": "fault for another reason"}
 _HEAD = (
     "robot", "loaded", "mass", "stands", "drives", "turns", "reaches", "topics", "speed", "plugins",
 )  # fmt: skip
@@ -41,7 +42,12 @@ def corpus(
         note(paint(f"{number} of {len(files)}: {shown_path(file)}", "dim"))
         verdicts.append(_tried(file, package_path, standing))
     if json:
-        say(json_module.dumps([as_mapping(verdict) for verdict in verdicts], indent=2))
+        result = {
+            "schema": SCHEMA,
+            "summary": summary(verdicts),
+            "robots": [as_mapping(verdict) for verdict in verdicts],
+        }
+        say(json_module.dumps(result, indent=2))
     else:
         _show(verdicts, folders)
     return int(not all(verdict.good for verdict in verdicts))
@@ -51,10 +57,13 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
     """A verdict in the format that docs/corpus.md documents."""
     stand = verdict.stand
     return {
-        "schema": SCHEMA,
         "file": str(verdict.file),
         "name": verdict.name,
-        "good": verdict.good,
+        "verdict": verdict.outcome,
+        "faults": [_fault(each) for each in verdict.faults],
+        "should_move": verdict.should_move,
+        "moves": verdict.moves,
+        "movers": list(verdict.movers),
         "loaded": verdict.loaded,
         "error": verdict.error,
         "mass": _number(verdict.mass),
@@ -80,10 +89,30 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
                 "measured": each.measured,
                 "commanded_turn": each.commanded_turn,
                 "measured_turn": each.measured_turn,
+                "turning": each.turning,
+                "limited": each.limited,
             }
             for each in verdict.drives
         ],
-        "reasons": list(verdict.reasons),
+        "spins": [
+            {
+                "topic": each.topic,
+                "joint": each.joint,
+                "commanded": each.commanded,
+                "measured": each.measured,
+                "effort": each.effort,
+            }
+            for each in verdict.spins
+        ],
+        "flights": [
+            {
+                "topic": each.topic,
+                "motors": each.motors,
+                "command": each.command,
+                "rose": each.rose,
+            }
+            for each in verdict.flights
+        ],
         "reaches": [
             {
                 "controller": each.controller,
@@ -96,6 +125,34 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
         "speed": _number(verdict.speed),
         "diagnostics": [str(each) for each in verdict.diagnostics],
     }  # fmt: skip
+
+
+def _fault(fault: Fault) -> dict[str, Any]:
+    reason = fault.reason
+    return {
+        "test": fault.test,
+        "subject": fault.subject,
+        "source": fault.source,
+        "code": None if fault.code is None else fault.code.number,
+        "name": None if fault.code is None else fault.code.name,
+        "place": None if reason is None or reason.origin is None else str(reason.origin),
+        "message": None if reason is None else reason.message,
+    }
+
+
+def summary(verdicts: Sequence[Verdict]) -> dict[str, int]:
+    """Numbers of robots."""
+    return {
+        "robots": len(verdicts),
+        "loaded": sum(verdict.loaded for verdict in verdicts),
+        "stand": sum(verdict.stands for verdict in verdicts),
+        "should_move": sum(verdict.should_move for verdict in verdicts),
+        "move": sum(verdict.should_move and verdict.moves for verdict in verdicts),
+        **{
+            outcome: sum(verdict.outcome == outcome for verdict in verdicts)
+            for outcome in ("good", "file", "unknown")
+        },
+    }
 
 
 def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
@@ -127,25 +184,33 @@ def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
     say(paint(head, "dim"))
     for line in lines:
         say(line)
-    failed = [verdict for verdict in verdicts if verdict.error]
-    if failed:
-        say()
-    for verdict in failed:
-        say(f"{paint(shown_path(verdict.file), 'bold')}: {paint('error:', 'red', 'bold')}")
-        say(f"  {verdict.error}")
     for verdict in verdicts:
-        if verdict.reasons:
-            say(f"\n{paint(shown_path(verdict.file), 'bold')} does not drive as commanded:")
-            for reason in verdict.reasons:
-                say(f"  {reason}")
+        if verdict.faults:
+            _show_faults(verdict)
     missing = sorted({name for verdict in verdicts for name in verdict.missing})
     if missing:
         say()
         for name in missing:
             users = sum(name in verdict.missing for verdict in verdicts)
             say(f"missing plugin {name}: {users} robot{'s' if users != 1 else ''}")
-    good = sum(verdict.good for verdict in verdicts)
-    say(f"\n{good} of {len(verdicts)} robots pass all tests")
+    say(f"\n{_summary(verdicts)}")
+
+
+def _show_faults(verdict: Verdict) -> None:
+    say(f"\n{paint(shown_path(verdict.file), 'bold')}: {_OUTCOMES[verdict.outcome]}")
+    for fault in verdict.faults:
+        subject = f" {fault.subject}" if fault.subject else ""
+        say(f"  {fault.test}{subject}: {fault.reason or 'unknown reason'}")
+
+
+def _summary(verdicts: Sequence[Verdict]) -> str:
+    counts = summary(verdicts)
+    return (
+        f"{counts['good']} of {counts['robots']} robots pass all tests; "
+        f"{counts['file']} have faults in their files, {counts['unknown']} fail for other reasons\n"
+        f"{counts['loaded']} load, {counts['stand']} stand, and {counts['move']} of the "
+        f"{counts['should_move']} robots that should move do so as commanded"
+    )
 
 
 def _name(file: Path, folders: Sequence[Path]) -> str:

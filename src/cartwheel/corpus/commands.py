@@ -1,0 +1,129 @@
+"""Commands to single joints by velocity or effort, and to the propellers of an aircraft."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from cartwheel.api import Model, World
+from cartwheel.corpus.motion import positions
+from cartwheel.corpus.verdict import RISEN, Flight, Spin
+from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.graph import TopicInfo
+
+_FLOAT, _FLOATS = "std_msgs/msg/Float64", "std_msgs/msg/Float64MultiArray"
+_ACTUATORS = {
+    "mav_msgs/msg/Actuators": "angular_velocities",
+    "actuator_msgs/msg/Actuators": "velocity",
+}
+"""Fields with the propellers' speeds by message type."""
+_VELOCITY = 0.5
+"""rad/s or m/s."""
+_EFFORT = 1.0
+"""N m or N, if the joint has no effort limit."""
+_SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
+"""s."""
+_STEPS = 20
+"""Number of propeller speeds to try."""
+_CLIMBING = 1.0
+"""Time at each propeller speed, s."""
+_FASTEST = 838.0
+"""rad/s; the default of gz-sim's motor model."""
+_MOTOR = re.compile(r"motor_model|multicopter-motor")
+
+
+def spins(
+    world: World, model: Model, robot: RobotDescription, started: Sequence[Controller]
+) -> Iterator[Spin]:
+    """Commands the joints that accept velocities, all at once, and each that accepts efforts."""
+    by_velocity: list[tuple[TopicInfo, tuple[str, ...]]] = []
+    by_effort: list[tuple[TopicInfo, tuple[str, ...]]] = []
+    by_position = {each.owner for each in world.graph.joint_inputs.all()}
+    controllers = {each.node: each for each in started}
+    for info in world.graph.topics():
+        if info.type not in (_FLOAT, _FLOATS):
+            continue
+        for node in info.subscribers:
+            owner = controllers.get(node)
+            if not node.startswith(f"{model.name}/") or node.split("/", 1)[1] in by_position:
+                continue
+            joints = tuple(owner.claims) if owner is not None else _joints(info, robot)
+            kind = owner.type + str(owner.interfaces) if owner is not None else info.name
+            if joints:
+                pushes = re.search("effort|force", kind, re.IGNORECASE) and "Velocity" not in kind
+                (by_effort if pushes else by_velocity).append((info, joints))
+    if by_velocity:
+        before, after = _moved(world, model, by_velocity, _VELOCITY, (_SPEEDING, _MEASURED))
+        for info, joints in by_velocity:
+            for name in joints:
+                speed = (after[name] - before[name]) / _MEASURED
+                yield Spin(
+                    topic=info.name, joint=name, commanded=_VELOCITY, measured=speed, effort=False
+                )
+    for info, joints in by_effort:
+        limits = [each.axis.effort for name in joints if (each := robot.joint(name)) is not None]
+        effort = min([each for each in limits if each], default=_EFFORT)
+        _, pushed = _moved(world, model, [(info, joints)], effort, (0.0, _PUSHING))
+        _, pulled = _moved(world, model, [(info, joints)], -effort, (0.0, _PUSHING))
+        for name in joints:
+            speed = (pushed[name] - pulled[name]) / 2 / _PUSHING
+            yield Spin(topic=info.name, joint=name, commanded=effort, measured=speed, effort=True)
+
+
+def flights(world: World, model: Model, robot: RobotDescription) -> Iterator[Flight]:
+    """Increases the speeds of all propellers, from standstill, until the aircraft rises."""
+    tags = [tag for tag in robot.plugins if _MOTOR.search(short_name(tag.filename))]
+    if not tags:
+        return
+    stated = [tag.element.find("maxRotVelocity") for tag in tags]
+    fastest = max([float(each.text) for each in stated if each is not None], default=_FASTEST)
+    for info in world.graph.topics():
+        if info.type not in _ACTUATORS or not info.subscribers:
+            continue
+        world.reset()
+        world.run(0.5)
+        height, speed, rose = model.pose.z, 0.0, 0.0
+        for step in range(1, _STEPS + 1):
+            speed = fastest * step / _STEPS
+            world.publish(info.name, {_ACTUATORS[info.type]: [speed] * len(tags)})
+            world.run(_CLIMBING)
+            rose = model.pose.z - height
+            if rose >= RISEN:
+                break
+        yield Flight(topic=info.name, motors=len(tags), command=speed, rose=rose)
+
+
+def _joints(info: TopicInfo, robot: RobotDescription) -> tuple[str, ...]:
+    """The joint of a plugin's topic such as ``/model/robot/joint/arm/cmd_vel``, or of its tag."""
+    named = [each.name for each in robot.joints if f"/joint/{each.name}/" in info.name]
+    for tag in robot.plugins:
+        topic, joint = tag.element.find("topic"), tag.element.find("joint_name")
+        if topic is not None and joint is not None and info.name.endswith(topic.text.strip()):
+            named.append(joint.text.strip())
+    return tuple(dict.fromkeys(named))
+
+
+def _moved(
+    world: World,
+    model: Model,
+    inputs: Sequence[tuple[TopicInfo, tuple[str, ...]]],
+    value: float,
+    seconds: tuple[float, float],
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Positions at the beginning and end of a measurement, after a reset and a command.
+
+    `seconds` contains the time before the measurement and its duration.
+    """
+    world.reset()
+    world.run(0.5)
+    for info, joints in inputs:
+        said: Any = value if info.type == _FLOAT else [value] * len(joints)
+        world.publish(info.name, {"data": said})
+    if seconds[0]:
+        world.run(seconds[0])
+    start = positions(world, model)
+    world.run(seconds[1])
+    return start, positions(world, model)

@@ -1,0 +1,221 @@
+"""Explains failed tests by diagnostics: of the run, and of `cartwheel check`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from cartwheel.codes import devices, files, robot, running, world
+from cartwheel.corpus.faults import Fault
+from cartwheel.corpus.movers import is_known, managers, moving_plugins
+from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.catalogue import short_name
+from cartwheel.errors import Code, Diagnostic
+
+_AGREES = 0.15
+"""Relative tolerance between a measured velocity and the one that a mistake predicts."""
+_DRIVING = frozenset(
+    {
+        robot.DRIVE_JOINT_UNKNOWN,
+        robot.DRIVE_JOINT_NOT_CONTINUOUS,
+        robot.WHEELS_SWAPPED,
+        robot.WHEEL_AXIS_MISALIGNED,
+        robot.WHEEL_NOT_ROUND,
+        robot.WHEEL_FRICTIONLESS,
+        robot.WHEEL_WITHOUT_COLLISION,
+        robot.WHEELS_OFF_GROUND,
+        robot.UNBALANCED,
+        robot.EFFORT_ZERO,
+        robot.OVERLAPPING_COLLISIONS,
+        files.FILE_MISSING,
+        running.PLUGIN_LEFT_OUT,
+        running.JOINT_DRIVEN_TWICE,
+    }
+)
+"""Mistakes that change a base's velocity by an unknown factor."""
+_TURNING = _DRIVING | {robot.CASTER_FRICTION, running.WHEELS_WITHOUT_ROLLERS}
+_CONTROL = frozenset(
+    {
+        running.PLUGIN_LEFT_OUT,
+        devices.CONTROLLERS_FILE_UNREADABLE,
+        devices.CONTROLLERS_FILE_MISMATCH,
+        devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
+        devices.CONTROLLERS_FILE_ARGUMENT,
+        devices.CONTROL_WITHOUT_JOINTS,
+        running.CONTROLLER_NOT_STARTED,
+    }
+)
+"""Reasons why no controller runs."""
+_STANDING = frozenset(
+    {
+        files.FILE_MISSING,
+        files.MESH_UNREADABLE,
+        robot.BASE_WITHOUT_COLLISION,
+        robot.WHEEL_WITHOUT_COLLISION,
+        robot.WHEELS_OFF_GROUND,
+        robot.INERTIA_MISSING,
+        robot.JOINT_LINK_UNKNOWN,
+        robot.UNBALANCED,
+        robot.OVERLAPPING_COLLISIONS,
+    }
+)
+_JOINTS = frozenset(
+    {
+        robot.LIMIT_ZERO,
+        robot.LIMIT_IN_DEGREES,
+        robot.EFFORT_ZERO,
+        robot.OVERLAPPING_COLLISIONS,
+        devices.EFFORT_LIMIT_TOO_LOW,
+        devices.CONTROLLER_GAINS_MISSING,
+        devices.JOINT_CLAIMED_TWICE,
+    }
+)
+
+
+def faults(
+    verdict: Verdict, description: RobotDescription, findings: Callable[[], Sequence[Diagnostic]]
+) -> Iterator[Fault]:
+    """The failed tests of a robot that could be read, with reasons.
+
+    Args:
+        verdict: The measurements.
+        description: The robot.
+        findings: Returns the findings of `cartwheel check`, which takes time.
+    """
+    if verdict.failure is not None:
+        yield Fault(test="simulate" if verdict.loaded else "load", reason=verdict.failure)
+    if not verdict.loaded:
+        return
+    yield from _missing(verdict, description)
+    yield from _measured(verdict, findings)
+
+
+def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
+    """Plugins that should move the robot and are missing, and controllers that did not start."""
+    said = verdict.diagnostics
+    for tag in moving_plugins(description):
+        if is_known(tag):
+            reason = _first(
+                each
+                for each in said
+                if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
+                and each.origin == tag.origin
+            )
+        else:
+            reason = devices.PLUGIN_UNKNOWN.diagnostic(
+                f'plugin "{tag.filename}" is not supported, so it has no effect',
+                severity="warning",
+                origin=tag.origin,
+                values={"name": tag.filename},
+            )
+        if reason is not None:
+            yield Fault(test="plugin", subject=short_name(tag.filename), reason=reason)
+    if verdict.drives or verdict.reaches or verdict.spins:
+        return
+    for tag in managers(description):
+        reason = _coded(said, _CONTROL) or devices.CONTROLLERS_NOT_FOUND.diagnostic(
+            "no file contains controllers for this controller manager", origin=tag.origin
+        )
+        yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _measured(verdict: Verdict, findings: Callable[[], Sequence[Diagnostic]]) -> Iterator[Fault]:
+    """The failed tests of a robot that was loaded, with reasons."""
+    said = verdict.diagnostics
+    if verdict.stand is not None and not verdict.stands:
+        reason = _first(each for each in (*said, *findings()) if _explains_fall(each))
+        yield Fault(test="stand", subject=verdict.stand.state, reason=reason)
+    for topic in verdict.silent:
+        reason = _coded(said, frozenset({world.OPENGL_MISSING}))
+        yield Fault(test="publish", subject=topic, reason=reason)
+    for drive in verdict.drives:
+        if not drive.follows:
+            reason = _of_drive((*said, *findings()), 1.0 + drive.error, turning=False)
+            yield Fault(test="drive", subject=drive.topic, reason=reason)
+        if not drive.turns:
+            reason = _of_drive(
+                (*said, *findings()),
+                1.0 + drive.error_turn,
+                turning=True,
+                arc=drive.turning == "arc",
+            )
+            yield Fault(test="turn", subject=drive.topic, reason=reason)
+    for reach in verdict.reaches:
+        if not reach.arrived:
+            reason = _of_joint(findings(), reach.joint)
+            yield Fault(test="reach", subject=reach.joint, reason=reason)
+    for spin in verdict.spins:
+        if not spin.follows:
+            reason = _of_joint(findings(), spin.joint)
+            yield Fault(test="spin", subject=spin.joint, reason=reason)
+    for flight in verdict.flights:
+        if not flight.flies:
+            yield Fault(test="fly", subject=flight.topic)
+
+
+def _of_drive(
+    found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool = False
+) -> Diagnostic | None:
+    """The mistake that explains why a base moves at a multiple of the commanded velocity."""
+    factors = {each.code: (each, factor) for each in found if (factor := _factor(each, turning))}
+    if robot.SKID_STEERING in factors:
+        # Its ratio contains the stated separation.
+        factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
+    product = math.prod(factor for _, factor in factors.values())
+    for each, factor in factors.values():
+        if any(abs(ratio - one) <= _AGREES * one for one in (factor, product)):
+            return each
+    if arc and factors:
+        # Steering and rim speeds contradict each other, so the wheels slide.
+        expected = [1.0, *(factor for _, factor in factors.values())]
+        if min(expected) < ratio < max(expected):
+            return next(iter(factors.values()))[0]
+    codes = _TURNING if turning else _DRIVING
+    return _first(
+        each
+        for each in found
+        if each.code in codes
+        and (each.code is not files.FILE_MISSING or each.values.get("left_out") == "collision")
+    )
+
+
+def _factor(finding: Diagnostic, turning: bool) -> float | None:
+    """The velocity relative to the commanded one that follows from a wrong size."""
+    values = finding.values
+    if finding.code is robot.SKID_STEERING and turning:
+        ratio = values.get("ratio")
+        return ratio if isinstance(ratio, float) else None
+    stated, measured = values.get("stated"), values.get("measured")
+    if not isinstance(stated, float) or not isinstance(measured, float) or stated * measured == 0:
+        return None
+    if finding.code is robot.WHEEL_DIAMETER_MISMATCH:
+        return measured / stated
+    if turning and finding.code in (robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_BASE_MISMATCH):
+        return stated / measured
+    return None
+
+
+def _explains_fall(each: Diagnostic) -> bool:
+    if each.code is files.FILE_MISSING:
+        return each.values.get("left_out") == "collision"
+    return each.code in _STANDING
+
+
+def _of_joint(found: Iterable[Diagnostic], joint: str) -> Diagnostic | None:
+    return _first(
+        each
+        for each in found
+        if each.code in _JOINTS
+        and joint in (each.values.get("joint"), each.values.get("name"), each.values.get("link"))
+    )
+
+
+def _coded(found: Iterable[Diagnostic], codes: frozenset[Code]) -> Diagnostic | None:
+    return _first(each for each in found if each.code in codes)
+
+
+def _first(found: Iterable[Diagnostic]) -> Diagnostic | None:
+    """The first of the most severe diagnostics."""
+    order = {"error": 0, "warning": 1, "info": 2}
+    return min(found, key=lambda each: order[each.severity], default=None)

@@ -1,0 +1,77 @@
+"""The faults of a robot: failed tests with the diagnostics that explain them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from cartwheel.codes import command, devices, files, running, tags, world
+from cartwheel.errors import UNCLASSIFIED, Code, Diagnostic
+
+Test = Literal[
+    "load",
+    "stand",
+    "publish",
+    "drive",
+    "turn",
+    "reach",
+    "spin",
+    "fly",
+    "plugin",
+    "controller",
+    "simulate",
+]
+"""What failed.
+
+- ``load``: the description cannot be loaded; ``simulate``: the simulation stopped with an error.
+- ``stand``: the robot does not stand; ``publish``: a topic published nothing.
+- ``drive``, ``turn``: a base does not follow its forward or turning commands.
+- ``reach``: a joint does not reach its position; ``spin``: it does not follow a velocity or effort.
+- ``fly``: an aircraft does not take off.
+- ``plugin``: a plugin that should move something is missing; ``controller``: a controller did not
+  start, or no controller was found.
+"""
+MOTION: frozenset[Test] = frozenset(
+    {"drive", "turn", "reach", "spin", "fly", "plugin", "controller", "simulate"}
+)
+"""Tests of commanded motion."""
+_OURS = frozenset(
+    {
+        UNCLASSIFIED,
+        command.INTERNAL_FAULT,
+        command.SYSTEM_LIMIT,
+        devices.PLUGIN_UNKNOWN,
+        devices.PLUGIN_PARAMETER_UNSUPPORTED,
+        devices.CONTROLLER_TYPE_UNKNOWN,
+        files.XACRO_NOT_INSTALLED,
+        files.EXPANSION_TOO_LARGE,
+        files.FILE_ON_NETWORK,
+        running.PLUGIN_FAILED,
+        tags.NOT_SIMULATED,
+        world.SIMULATION_DIVERGED,
+        world.MODEL_NOT_BUILT,
+        world.PHYSICS_WARNING,
+    }
+)
+"""Codes that do not show that the robot's files are wrong."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Fault:
+    """A failed test."""
+
+    test: Test
+    subject: str = ""
+    """The topic, joint, plugin or controller; empty for the robot."""
+    reason: Diagnostic | None = None
+    """The diagnostic that explains the failure; None if the cause is unknown."""
+
+    @property
+    def code(self) -> Code | None:
+        """The code of the reason."""
+        return None if self.reason is None else self.reason.code
+
+    @property
+    def source(self) -> Literal["file", "unknown"]:
+        """``file`` if the reason is a mistake in the robot's files."""
+        return "unknown" if self.code is None or self.code in _OURS else "file"

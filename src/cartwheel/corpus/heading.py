@@ -1,0 +1,81 @@
+"""The direction in which a base drives: along its wheels, not always along x."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping
+
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.wheels import wheel_place
+from cartwheel.geometry import rotate
+
+FORWARD = (1.0, 0.0)
+_ROLLS = 0.2
+"""rad/s; minimum speed of a rolling wheel."""
+_HORIZONTAL = 0.5
+"""Maximum cosine between a wheel's axis and the vertical."""
+_PARALLEL = 0.9
+"""Minimum length of the mean of the unit axes, as lines, of wheels with a common direction."""
+
+
+def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
+    """The direction in which parallel wheels roll, a unit vector in the robot's frame.
+
+    It points toward +x, or, for wheels with an axis along x, away from the side on which the left
+    wheel would be on the right. Without parallel wheels it is x, as in REP 103.
+
+    Args:
+        robot: The robot.
+        speeds: Speeds of the joints while the robot drove forward, rad/s, by name.
+    """
+    # Doubled angles, because an axis and its negative are the same line.
+    lines = [
+        cmath.exp(2j * math.atan2(axis[1], axis[0]))
+        for name, speed in speeds.items()
+        if abs(speed) >= _ROLLS
+        and (joint := robot.joints.get(name)) is not None
+        and joint.type in ("continuous", "revolute")
+        and joint.child in robot.placed
+        and abs((axis := _axis(robot, name))[2]) <= _HORIZONTAL
+    ]
+    if not lines:
+        return FORWARD
+    mean = sum(lines) / len(lines)
+    if abs(mean) < _PARALLEL:
+        return FORWARD
+    axle = cmath.phase(mean) / 2
+    forward = (math.sin(axle), -math.cos(axle))
+    if abs(forward[0]) > 0.1:
+        sign = math.copysign(1.0, forward[0])
+    else:
+        sign = _side(robot, forward)
+    return sign * forward[0], sign * forward[1]
+
+
+def _axis(robot: Robot, name: str) -> tuple[float, float, float]:
+    joint = robot.joints[name]
+    return rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
+
+
+def _side(robot: Robot, forward: tuple[float, float]) -> float:
+    """1 if the left wheels of the drives are to the left of this direction, otherwise -1."""
+    for drive in robot.drives:
+        sides = [
+            [
+                wheel_place(robot, robot.joints[name]).position
+                for name in side
+                if name in robot.joints
+            ]
+            for side in (drive.left, drive.right)
+        ]
+        if not all(sides):
+            continue
+        (lx, ly), (rx, ry) = (
+            (sum(each[0] for each in side) / len(side), sum(each[1] for each in side) / len(side))
+            for side in sides
+        )
+        across = forward[0] * (ly - ry) - forward[1] * (lx - rx)
+        if across:
+            return math.copysign(1.0, across)
+    return 1.0

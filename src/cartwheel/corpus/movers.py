@@ -1,0 +1,75 @@
+"""What should move a robot: its drive plugins and controllers, supported or not."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from cartwheel.corpus.verdict import Verdict
+from cartwheel.description.model import Element, PluginTag, RobotDescription
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.world_plugins import BUILT_IN
+
+_MOVES = re.compile(
+    r"drive|steer|planar_move|force_based_move|motor|mecanum|tricycle|kobuki|multi_wheel|thruster"
+    r"|propeller|rotor|velocity-control|joint-.*controller|ackerman|trajectory|(?<!_ros)_control",
+    re.IGNORECASE,
+)
+"""Names of plugins that move something. Those of controller managers are not among them."""
+_MANAGER = re.compile(r"ros2?_control")
+STEERED = re.compile(r"ackerman|steer(?!_bot)|tricycle|bicycle", re.IGNORECASE)
+"""Names of plugins and types of controllers for bases that cannot turn in place."""
+
+
+def movers(verdict: Verdict, robot: RobotDescription) -> list[str]:
+    """Names of the plugins and controllers, or topics, that should move a robot or its joints."""
+    names = [short_name(tag.filename) for tag in (*moving_plugins(robot), *managers(robot))]
+    names += [drive.topic for drive in verdict.drives]
+    names += [spin.topic for spin in verdict.spins]
+    names += [flight.topic for flight in verdict.flights]
+    names += [each.controller for each in verdict.reaches]
+    return list(dict.fromkeys(names))
+
+
+def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
+    """Plugins that should move the robot or its joints, without controller managers.
+
+    An unsupported plugin also counts if its tags contain the name of a movable joint.
+    """
+    joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
+    return [
+        tag
+        for tag in robot.plugins
+        if not _MANAGER.search(name := short_name(tag.filename))
+        and (
+            _MOVES.search(name)
+            or (not is_known(tag) and not joints.isdisjoint(_words(tag.element)))
+        )
+    ]
+
+
+def managers(robot: RobotDescription) -> list[PluginTag]:
+    """Controller managers of a robot with joints that accept commands."""
+    found = [tag for tag in robot.plugins if _MANAGER.search(short_name(tag.filename))]
+    return found if _is_commanded(robot) else []
+
+
+def is_known(tag: PluginTag) -> bool:
+    """Whether Cartwheel supports a plugin."""
+    return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
+
+
+def _is_commanded(robot: RobotDescription) -> bool:
+    if any(each.find("joint") is not None for each in robot.transmissions):
+        return True
+    return any(
+        joint.find("command_interface") is not None
+        for each in robot.ros2_control
+        for joint in each.find_all("joint")
+    )
+
+
+def _words(element: Element) -> Iterator[str]:
+    yield from element.text.split()
+    for child in element.children:
+        yield from _words(child)
