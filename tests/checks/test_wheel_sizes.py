@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from cartwheel.checks.rules.robot.skid_steering import turn_ratio
+from cartwheel.checks.rules.robot.wheel_separation import turn_ratio
 from cartwheel.codes.robot import SKID_STEERING
 
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1

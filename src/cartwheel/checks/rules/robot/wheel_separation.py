@@ -1,8 +1,9 @@
-"""Stated wheel separations, compared with the distance between the wheels."""
+"""Stated wheel separations, compared with the distance between the wheels, and their effect."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -26,6 +27,9 @@ WIDEST_SKID = 2.5
 Skid-steered robots need a larger value for correct odometry. This limit applies to robots that are
 not longer than wide; see `_widest`.
 """
+_LEAST_SKID = 0.05
+"""Minimum relative difference between the commanded and the expected turn rate."""
+_HALVINGS = 40
 
 
 @rule(robot_codes.WHEEL_SEPARATION_MISMATCH)
@@ -67,13 +71,70 @@ def _widest(one: Stated, track: float) -> float:
     vanishes where t/2 (t/2 - u) + b/2 b/2 = 0, so that 2 u = t (1 + (b/t)²). This is 2 t for a
     square robot. The limit for longer robots grows by the same ratio beyond `WIDEST_SKID`.
     """
-    axle = axle_of(one.robot, one.first, one.second, beside=True)
-    along = [
-        float(np.cross(axle, wheel_place(one.robot, joint).position)[2])
-        for name in one.first + one.second
-        if (joint := one.robot.joints[name]).child in one.robot.placed
-    ]
+    along = _places(one)
     if not along or track <= 0:
         return 0.0
     base = max(along) - min(along)
     return WIDEST_SKID * track * max(1.0, (1 + (base / track) ** 2) / 2)
+
+
+@rule(robot_codes.SKID_STEERING)
+def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
+    sizes = list(stated_sizes(subject))
+    # Steered and mecanum wheels, whose drives also state a wheel base, do not slide.
+    others = {id(one.robot) for one in sizes if one.measure in ("base", "reach")}
+    for one in sizes:
+        if one.measure != "apart" or not one.skids or id(one.robot) in others:
+            continue
+        track = mean_between(one, beside=True, middles=True)
+        places = _places(one)
+        if track <= 0 or len(places) < 4 or max(places) - min(places) < 0.01 * track:
+            continue
+        ratio = one.value / track * turn_ratio(track, places)
+        if abs(ratio - 1.0) <= _LEAST_SKID:
+            continue
+        wanted = one.value / ratio
+        yield robot_codes.SKID_STEERING.diagnostic(
+            message=f"the wheels slide when the robot turns, so it turns at {ratio:.0%} of the "
+            "commanded rate",
+            values={"tag": one.label, "joint": one.first[0], "ratio": ratio, "stated": one.value},
+            origin=one.origin,
+            hint=f"A wheel separation of {wanted:.4g} m compensates for this.",
+            mark=one.mark,
+        )
+
+
+def turn_ratio(track: float, places: Sequence[float]) -> float:
+    """Turn rate of a skid-steered robot, relative to the one at which its wheels would roll.
+
+    All wheels carry the same load, and their friction opposes their sliding velocity. If the wheels
+    are driven for a turn rate of 1 rad/s and the robot turns at w, a wheel at x slides by
+    (w - 1) t/2 along the robot and by w x across it. The torques of the friction forces balance.
+    For four wheels at ±b/2 the result is t² / (t² + b²).
+
+    Args:
+        track: Distance between the left and right wheels, m.
+        places: Positions of all wheels along the robot, m.
+    """
+    middle = sum(places) / len(places)
+    offsets = [each - middle for each in places]
+    half = track / 2
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        turn = (low + high) / 2
+        torque = 0.0
+        for x in offsets:
+            along, across = (turn - 1.0) * half, turn * x
+            torque -= (along * half + across * x) / (math.hypot(along, across) or 1.0)
+        low, high = (turn, high) if torque > 0 else (low, turn)
+    return (low + high) / 2
+
+
+def _places(one: Stated) -> list[float]:
+    """Positions of the wheels along the robot, m."""
+    axle = axle_of(one.robot, one.first, one.second, beside=True)
+    return [
+        float(np.cross(axle, wheel_place(one.robot, joint).position)[2])
+        for name in one.first + one.second
+        if (joint := one.robot.joints[name]).child in one.robot.placed
+    ]
