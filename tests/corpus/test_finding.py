@@ -2,7 +2,7 @@
 
 import pytest
 
-from cartwheel.corpus import robots_in
+from cartwheel.corpus import robots_in, survey
 
 LINK = (
     '<link name="{}"><inertial><mass value="1"/>'
@@ -64,13 +64,73 @@ def test_an_include_with_a_variable_name_counts_for_all_that_it_may_mean(folder)
 
 
 def test_models_are_robots_and_worlds_are_not(folder):
-    model = '<sdf version="1.6"><model name="box"><link name="a"/></model></sdf>'
+    model = (
+        '<sdf version="1.6"><model name="box"><link name="a"/>'
+        '<plugin name="p" filename="p"/></model></sdf>'
+    )
     world = '<sdf version="1.6"><world name="w"/></sdf>'
     assert folder(box__model_dot_sdf=model, w_dot_sdf=world) == ["box/model.sdf"]
 
 
 def test_what_cannot_be_read_is_kept_for_its_trial_to_tell(folder):
     assert folder(bad_dot_urdf='<robot name="bad"><link name="a">') == ["bad.urdf"]
+
+
+def kinds(folder, launched=()):
+    found = survey(folder, launched=[folder / each for each in launched])
+    return {str(path.relative_to(folder)): kind for path, kind in found.skipped}
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<link name="a"><visual><geometry><box size="${long} 1 1"/></geometry></visual></link>',
+        '<xacro:wheel name="left"/><link name="a"/>',
+        '<link name="$(arg side)_arm"/>',
+        LINK.format("arm") + '<joint name="j" type="fixed"><parent link="base"/>'
+        '<child link="arm"/></joint>',
+    ],
+)
+def test_a_file_that_needs_names_of_another_file_is_a_part(folder, tmp_path, content):
+    whole = (
+        '<xacro:property name="long" value="1"/><xacro:arg name="side" default="left"/>'
+        + WHEEL
+        + LINK.format("base")
+    )
+    part = XACRO.format(' name="part"', content)
+    robot = XACRO.format(' name="cart"', whole)
+    assert folder(cart_dot_xacro=robot, part_dot_xacro=part) == ["cart.xacro"]
+    assert kinds(tmp_path) == {"part.xacro": "part"}
+    # Without the other file, or if a launch file starts it, it is a robot with a fault.
+    assert kinds(tmp_path, launched=["part.xacro"]) == {}
+    (tmp_path / "cart.xacro").unlink()
+    assert folder() == ["part.xacro"]
+
+
+def test_a_robot_without_a_name_is_a_part(folder, tmp_path):
+    assert folder(camera_dot_xacro=XACRO.format("", LINK.format("camera"))) == []
+    assert kinds(tmp_path) == {"camera.xacro": "part"}
+
+
+def test_a_complete_part_of_a_launched_robot_is_a_part(folder, tmp_path):
+    whole = '<xacro:include filename="core.xacro"/>' + LINK.format("lidar")
+    found = folder(
+        core_dot_xacro=XACRO.format(' name="core"', LINK.format("base")),
+        cart_dot_xacro=XACRO.format(' name="cart"', whole),
+    )
+    assert found == ["cart.xacro", "core.xacro"]
+    assert kinds(tmp_path, launched=["cart.xacro"]) == {"core.xacro": "part"}
+
+
+def test_models_without_plugins_and_sensors_are_scenery(folder, tmp_path):
+    model = '<sdf version="1.6"><model name="m"><link name="a">{}</link></model></sdf>'
+    found = folder(
+        house_dot_sdf=model.format(""),
+        eye_dot_sdf=model.format('<sensor name="s" type="camera"/>'),
+        w_dot_sdf='<sdf version="1.6"><world name="w"/></sdf>',
+    )
+    assert found == ["eye.sdf"]
+    assert kinds(tmp_path) == {"house.sdf": "scenery", "w.sdf": "world"}
 
 
 def test_other_xml_and_what_was_built_are_passed_over(folder):
@@ -85,7 +145,10 @@ def test_a_file_is_taken_as_it_is(tmp_path):
 
 
 def test_a_model_s_older_files_and_moveit_s_are_none(folder):
-    model = '<sdf version="1.6"><model name="box"><link name="a"/></model></sdf>'
+    model = (
+        '<sdf version="1.6"><model name="box"><link name="a"/>'
+        '<plugin name="p" filename="p"/></model></sdf>'
+    )
     config = '<model><name>box</name><sdf version="1.6">model.sdf</sdf></model>'
     found = folder(
         box__model_dot_config=config,

@@ -281,3 +281,37 @@ def test_a_model_named_as_the_ground_is_tried_beside_it(tmp_path):
     verdict = try_robot(path, standing=1.0)
     assert verdict.good
     assert verdict.stand.state == "fixed"
+
+
+def test_arguments_and_controllers_come_from_the_launch_files_of_the_robot(tmp_path):
+    files = {
+        "package.xml": "<package><name>arm</name></package>",
+        "arm.xacro": '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="$(arg robot)">'
+        + ARM.format(kind="Position")
+        + "</robot>",
+        # Not in a folder named config, so that only the launch file names it.
+        "settings/a.yaml": "a:\n  type: position_controllers/JointPositionController\n"
+        "  joint: shoulder\n",
+        "config/b.yaml": "b:\n  type: position_controllers/JointGroupPositionController\n"
+        "  joints: [shoulder]\n",
+        "launch/a.launch": '<launch><param name="robot_description" '
+        'command="xacro $(find arm)/arm.xacro robot:=lefty"/>'
+        '<rosparam file="$(find arm)/settings/a.yaml" command="load"/>'
+        '<node name="s" pkg="controller_manager" type="spawner" args="a"/></launch>',
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    verdict = try_robot(tmp_path / "arm.xacro", standing=1.0)
+    assert verdict.name == "lefty"
+    assert verdict.launch.file == tmp_path / "launch/a.launch"
+    assert verdict.controllers == ("a",)
+    assert verdict.good, verdict.faults
+    # The caller's arguments and files take precedence.
+    verdict = try_robot(
+        tmp_path / "arm.xacro",
+        standing=1.0,
+        arguments={"robot": "righty"},
+        controllers=[tmp_path / "config/b.yaml"],
+    )
+    assert (verdict.name, verdict.controllers) == ("righty", ("b",))

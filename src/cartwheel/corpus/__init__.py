@@ -1,7 +1,7 @@
 """Tests robots from other authors one by one: the results of `cartwheel corpus`."""
 
 from cartwheel.corpus.faults import Fault
-from cartwheel.corpus.finding import robots_in
+from cartwheel.corpus.finding import Kind, Survey, robots_in, survey
 from cartwheel.corpus.trial import try_robot
 from cartwheel.corpus.verdict import Drive, Flight, Reach, Spin, Stand, Verdict
 
@@ -9,10 +9,13 @@ __all__ = [
     "Drive",
     "Fault",
     "Flight",
+    "Kind",
     "Reach",
     "Spin",
     "Stand",
+    "Survey",
     "Verdict",
     "robots_in",
+    "survey",
     "try_robot",
 ]

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
+from cartwheel.codes.files import XACRO_NAME_UNKNOWN
+from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.loading import open_description, understand
@@ -22,30 +26,164 @@ _INCLUDE = re.compile(
     r"""<(?:xacro:)?include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL
 )
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
+_WORLDS = (".world", ".world.xacro", ".world.sdf")
+_ACTIVE = re.compile(r"<(?:plugin|sensor|include)\b")
+"""Elements of an SDF model that is not scenery. An included model may contain the others."""
+_DEFINED = {
+    "property": r"""<(?:xacro:)?property\b[^>]*?\bname\s*=\s*["']{}["']""",
+    "macro": r"""<(?:xacro:)?macro\b[^>]*?\bname\s*=\s*["'](?:xacro:)?{}["']""",
+    "argument": r"""<(?:xacro:)?arg\b[^>]*?\bname\s*=\s*["']{}["']""",
+}
+"""Definitions by the kind of name."""
 _VARIABLE = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 
 
-def robots_in(folder: Path, *, package_path: Sequence[Path] = ()) -> list[Path]:
-    """The complete robot descriptions in a folder and its subfolders, sorted by path.
+Kind = Literal["macros", "part", "world", "scenery", "old version"]
+"""Why a file is not a robot.
 
-    Worlds, macro-only files and parts are omitted. Parts are files that another description in the
-    folder includes and that are not complete robots without it. Other unreadable files are kept, so
-    that the test reports the error.
+- ``macros``: the file defines only macros or properties.
+- ``part``: the file is a part of a robot: a description in a launch file includes it; or it is not
+  complete, and another file includes it; or it refers to links, macros, properties or arguments
+  that another file defines; or its ``<robot>`` has no name.
+- ``world``: the file is a world.
+- ``scenery``: the file is an SDF model without plugins and sensors, such as a house.
+- ``old version``: the file of a model that its ``model.config`` does not choose.
+"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Survey:
+    """The descriptions in a folder, sorted by path."""
+
+    robots: tuple[Path, ...]
+    skipped: tuple[tuple[Path, Kind], ...] = ()
+    """Files that are not robots, each with the reason."""
+
+
+def survey(
+    folder: Path, *, package_path: Sequence[Path] = (), launched: Iterable[Path] = ()
+) -> Survey:
+    """Sorts the descriptions in a folder and its subfolders into robots and other files.
+
+    Unreadable files count as robots, unless they are parts, so that the test reports the error.
+
+    Args:
+        folder: A folder, or a single description, which is a robot.
+        package_path: Additional folders to search for packages.
+        launched: Descriptions that launch files name, which are neither parts nor scenery.
+    """
+    if folder.is_file():
+        return Survey(robots=(folder,))
+    files = list(_files(folder))
+    texts = {path: text for path in files if (text := _text(path)) is not None}
+    used = frozenset(path.resolve() for path in launched)
+    whole = _Folder(
+        texts=texts,
+        included=_included(texts.values()),
+        launched=used,
+        parts=_included(text for path, text in texts.items() if path.resolve() in used),
+        package_path=package_path,
+    )
+    kinds = {path: whole.kind(path) for path in texts}
+    return Survey(
+        robots=tuple(path for path, kind in kinds.items() if kind is None),
+        skipped=tuple((path, kind) for path, kind in kinds.items() if kind is not None),
+    )
+
+
+def robots_in(folder: Path, *, package_path: Sequence[Path] = ()) -> list[Path]:
+    """The complete robot descriptions in a folder and its subfolders, sorted by path; see `survey`.
 
     Args:
         folder: A folder, or a single description.
         package_path: Additional folders to search for packages.
     """
-    if folder.is_file():
-        return [folder]
-    texts = {path: text for path in _files(folder) if (text := _text(path)) is not None}
-    names = {name for text in texts.values() for name in _INCLUDE.findall(text)}
-    included = [pattern for name in names if (pattern := _pattern(name)) is not None]
-    return [
-        path
-        for path in texts
-        if _is_robot(path, package_path, part=any(one.search(path.as_posix()) for one in included))
-    ]
+    return list(survey(folder, package_path=package_path).robots)
+
+
+def _included(texts: Iterable[str]) -> list[re.Pattern[str]]:
+    names = {name for text in texts for name in _INCLUDE.findall(text)}
+    return [pattern for name in sorted(names) if (pattern := _pattern(name)) is not None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Folder:
+    texts: Mapping[Path, str]
+    """Texts of all descriptions, without comments."""
+    included: Sequence[re.Pattern[str]]
+    """Patterns for the ends of the paths of included files."""
+    launched: frozenset[Path]
+    package_path: Sequence[Path]
+    parts: Sequence[re.Pattern[str]]
+    """Patterns for the ends of the paths of files that launched descriptions include."""
+
+    def kind(self, path: Path) -> Kind | None:
+        """Why a file is not a robot; None for a robot."""
+        launched = path.resolve() in self.launched
+        part = not launched and any(one.search(path.as_posix()) for one in self.included)
+        if path.name.endswith(_WORLDS):
+            return "world"
+        try:
+            opened = open_description(path, {}, self.package_path)
+            root = opened.root
+            if root.tag != "robot":
+                return self._sdf_kind(path, root, launched=launched)
+            if not root.all("link"):
+                return "macros"
+            if launched:
+                return None
+            if any(one.search(path.as_posix()) for one in self.parts):
+                return "part"
+            if part:
+                understand(opened)
+        except DescriptionError as error:
+            if path.suffix == ".sdf" and not _is_chosen(path):
+                return "old version"
+            return "part" if part or (not launched and self._is_elsewhere(path, error)) else None
+        is_part = path.suffix == ".xacro" and (
+            "name" not in root.attributes or self._hangs(path, root)
+        )
+        return "part" if is_part else None
+
+    def _sdf_kind(self, path: Path, root: Node, *, launched: bool) -> Kind | None:
+        if root.tag not in ("sdf", "gazebo") or not root.all("model"):
+            return "world"
+        if not _is_chosen(path):
+            return "old version"
+        text = self.texts[path]
+        if not launched and not _ACTIVE.search(text):
+            return "scenery"
+        return None
+
+    def _is_elsewhere(self, path: Path, error: DescriptionError) -> bool:
+        """Whether xacro fails because a name is unknown that another file defines."""
+        kind, name = error.values.get("kind"), error.values.get("name")
+        if error.code is not XACRO_NAME_UNKNOWN:
+            return False
+        if not isinstance(kind, str) or not isinstance(name, str):
+            return False
+        found = re.compile(
+            _DEFINED.get(kind, r"(?!)").format(re.escape(name.removeprefix("xacro:"))), re.DOTALL
+        )
+        return any(found.search(text) for other, text in self.texts.items() if other != path)
+
+    def _hangs(self, path: Path, root: Node) -> bool:
+        """Whether a joint connects the file's links to a link that only another file contains."""
+        links = {each.attributes.get("name") for each in root.children if each.tag == "link"}
+        parents = {
+            each.attributes.get("link", "")
+            for joint in root.children
+            if joint.tag == "joint"
+            for each in joint.children
+            if each.tag == "parent"
+        }
+        return any(
+            re.search(rf"""<link\s[^>]*?name\s*=\s*["']{re.escape(parent)}["']""", text)
+            for parent in parents - links
+            if parent and parent != "world"
+            for other, text in self.texts.items()
+            if other != path
+        )
 
 
 def _files(folder: Path) -> Iterator[Path]:
@@ -75,22 +213,6 @@ def _pattern(name: str) -> re.Pattern[str] | None:
     if not re.search(r"\w", known.removesuffix(".xacro").removesuffix(".urdf")):
         return None
     return re.compile("/" + "/".join(parts) + "$")
-
-
-def _is_robot(path: Path, package_path: Sequence[Path], *, part: bool) -> bool:
-    try:
-        opened = open_description(path, {}, package_path)
-        root = opened.root
-        if root.tag != "robot":
-            model = root.tag in ("sdf", "gazebo") and bool(root.all("model"))
-            return model and _is_chosen(path)
-        if not root.all("link"):
-            return False
-        if part:
-            understand(opened)
-    except DescriptionError:
-        return not part and (path.suffix != ".sdf" or _is_chosen(path))
-    return True
 
 
 def _is_chosen(path: Path) -> bool:

@@ -15,6 +15,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
+from cartwheel.corpus.launches import chosen, controllers_for, launches_near, root_of
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.verdict import Verdict
@@ -45,23 +46,32 @@ def try_robot(
     package_path: Sequence[Path] = (),
     controllers: Sequence[Path] | None = None,
     standing: float = STANDING,
+    launch_folder: Path | None = None,
 ) -> Verdict:
-    """Tests a description, with default arguments unless some are given.
+    """Tests a description with the arguments and controllers that its launch files name.
 
     Args:
         file: A xacro, URDF or SDF file.
-        arguments: Arguments of the xacro.
+        arguments: Arguments of the xacro, which take precedence over those of the launch files.
         package_path: Folders to search for packages first.
-        controllers: YAML files whose controllers start. None uses the files near the robot that
-            `cartwheel run` would suggest, except those that need values from a launch file.
+        controllers: YAML files whose controllers start. None uses the files in the launch files,
+            or the files near the robot that `cartwheel run` would suggest, except those that need
+            values from a launch file.
         standing: Simulation time without commands, s.
+        launch_folder: Folder whose launch files are read. None: the folder of the robot's package,
+            with the packages beside it.
 
     Returns:
         The results, including errors in the description.
     """
     verdict = Verdict(file=file)
+    folder = launch_folder or root_of(file)
+    uses = launches_near(folder, tuple(package_path)) if folder is not None else ()
+    use = chosen(file, uses)
+    verdict = replace(verdict, launch=use)
+    arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
     try:
-        robot = load_robot(file, arguments=arguments or {}, package_path=package_path)
+        robot = load_robot(file, arguments=arguments, package_path=package_path)
     except CartwheelError as error:
         reason = error.diagnostic()
         return replace(
@@ -69,7 +79,9 @@ def try_robot(
         )
     verdict = _described(verdict, robot)
     if controllers is None:
-        controllers = [each for each in suggested(robot) if _is_complete(each, robot)]
+        starter = controllers_for(file, use, uses)
+        named = suggested(robot, among=starter.controllers) if starter is not None else []
+        controllers = [each for each in named or suggested(robot) if _is_complete(each, robot)]
     try:
         with World(lenient=True) as world:
             pose = _place(robot)
@@ -89,7 +101,7 @@ def try_robot(
                 verdict = replace(found, diagnostics=world.diagnostics)
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
-    findings = _Findings(file, arguments or {}, package_path, controllers)
+    findings = _Findings(file, arguments, package_path, controllers)
     verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.corpus.faults import MOTION, Fault
+from cartwheel.corpus.launches import LaunchUse
 from cartwheel.errors import Diagnostic
 
 TOLERANCE = 0.05
@@ -198,6 +199,8 @@ class Verdict:
     """Plugins and controllers, supported or not, that should move the robot or its joints."""
     faults: tuple[Fault, ...] = ()
     """What failed, with reasons."""
+    launch: LaunchUse | None = None
+    """The launch file whose arguments were used."""
     diagnostics: tuple[Diagnostic, ...] = ()
 
     @property

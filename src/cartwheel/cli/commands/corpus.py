@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import json as json_module
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from cartwheel.cli.console import note, paint, say, table
-from cartwheel.codes.command import NO_ROBOTS
-from cartwheel.corpus import Fault, Verdict, robots_in, try_robot
+from cartwheel.codes.command import INTERNAL_FAULT, NO_ROBOTS
+from cartwheel.corpus import Fault, Kind, Survey, Verdict, survey, try_robot
+from cartwheel.corpus.launches import launches_near
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.errors import CartwheelError
 
 SCHEMA = 2
+_KINDS: dict[Kind, str] = {
+    "macros": "with macros only",
+    "part": "parts of robots",
+    "world": "worlds",
+    "scenery": "models without plugins and sensors",
+    "old version": "old versions of models",
+}
 _OUTCOMES = {"file": "fault in the robot's files", "unknown": "fault for another reason"}
 _HEAD = (
     "robot", "loaded", "mass", "stands", "drives", "turns", "reaches", "topics", "speed", "plugins",
@@ -36,20 +45,27 @@ def corpus(
     Raises:
         CartwheelError: No robot was found.
     """
-    files = [file for folder in folders for file in _robots(folder, package_path)]
+    surveys = [(folder, _survey(folder, package_path)) for folder in folders]
+    files = [
+        (file, folder if folder.is_dir() else None)
+        for folder, found in surveys
+        for file in found.robots
+    ]
+    skipped = [each for _, found in surveys for each in found.skipped]
     verdicts = []
-    for number, file in enumerate(files, start=1):
+    for number, (file, folder) in enumerate(files, start=1):
         note(paint(f"{number} of {len(files)}: {shown_path(file)}", "dim"))
-        verdicts.append(_tried(file, package_path, standing))
+        verdicts.append(_tried(file, package_path, standing, folder))
     if json:
         result = {
             "schema": SCHEMA,
             "summary": summary(verdicts),
             "robots": [as_mapping(verdict) for verdict in verdicts],
+            "skipped": [{"file": str(file), "kind": kind} for file, kind in skipped],
         }
         say(json_module.dumps(result, indent=2))
     else:
-        _show(verdicts, folders)
+        _show(verdicts, folders, skipped)
     return int(not all(verdict.good for verdict in verdicts))
 
 
@@ -73,6 +89,8 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
         "missing_plugins": list(verdict.missing),
         "controllers": list(verdict.controllers),
         "controller_files": [str(path) for path in verdict.controller_files],
+        "launch": verdict.launch
+        and {"file": str(verdict.launch.file), "arguments": dict(verdict.launch.arguments)},
         "stands": stand and {
             "state": stand.state,
             "sunk": stand.sunk,
@@ -155,13 +173,15 @@ def summary(verdicts: Sequence[Verdict]) -> dict[str, int]:
     }
 
 
-def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
+def _survey(folder: Path, package_path: Sequence[Path]) -> Survey:
     if not folder.exists():
         raise CartwheelError(
             f"{folder} does not exist", code=NO_ROBOTS, values={"folder": str(folder)}
         )
-    found = robots_in(folder, package_path=package_path)
-    if not found:
+    uses = launches_near(folder, tuple(package_path)) if folder.is_dir() else ()
+    launched = [use.description for use in uses if use.description is not None]
+    found = survey(folder, package_path=package_path, launched=launched)
+    if not found.robots:
         raise CartwheelError(
             f"{folder} contains no robot description",
             code=NO_ROBOTS,
@@ -171,14 +191,24 @@ def _robots(folder: Path, package_path: Sequence[Path]) -> list[Path]:
     return found
 
 
-def _tried(file: Path, package_path: Sequence[Path], standing: float) -> Verdict:
+def _tried(
+    file: Path, package_path: Sequence[Path], standing: float, folder: Path | None
+) -> Verdict:
     try:
-        return try_robot(file, package_path=package_path, standing=standing)
+        return try_robot(file, package_path=package_path, standing=standing, launch_folder=folder)
     except Exception as error:  # noqa: BLE001 - the other robots are tested anyway
-        return replace(Verdict(file=file), error=f"internal error: {error!r}")
+        message = f"internal error: {error!r}"
+        reason = INTERNAL_FAULT.diagnostic(message, values={"cause": type(error).__name__})
+        return replace(
+            Verdict(file=file), error=message, faults=(Fault(test="load", reason=reason),)
+        )
 
 
-def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
+def _show(
+    verdicts: Sequence[Verdict],
+    folders: Sequence[Path],
+    skipped: Sequence[tuple[Path, Kind]],
+) -> None:
     rows = [(_name(verdict.file, folders), *_row(verdict)) for verdict in verdicts]
     head, *lines = table([_HEAD, *rows]).splitlines()
     say(paint(head, "dim"))
@@ -194,6 +224,10 @@ def _show(verdicts: Sequence[Verdict], folders: Sequence[Path]) -> None:
             users = sum(name in verdict.missing for verdict in verdicts)
             say(f"missing plugin {name}: {users} robot{'s' if users != 1 else ''}")
     say(f"\n{_summary(verdicts)}")
+    if skipped:
+        counts = Counter(kind for _, kind in skipped)
+        kinds = ", ".join(f"{count} {_KINDS[kind]}" for kind, count in sorted(counts.items()))
+        say(f"skipped: {kinds}")
 
 
 def _show_faults(verdict: Verdict) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +28,16 @@ _MOST = 400
 """Maximum number of files to read."""
 
 
-def suggested(robot: RobotDescription) -> list[Path]:
+def suggested(robot: RobotDescription, among: Sequence[Path] | None = None) -> list[Path]:
     """Returns the controller files near a robot whose controller manager has none.
 
     Returns nothing if the manager's tag contains an existing file. Files with controllers for
     wheels that a plugin drives are left out, because both would command the wheels.
+
+    Args:
+        robot: The robot.
+        among: Files to choose from, such as those that a launch file loads; None: all files near
+            the robot.
     """
     driven = {
         joint
@@ -49,6 +54,8 @@ def suggested(robot: RobotDescription) -> list[Path]:
     if not managers or any(_has_files(tag) for tag in managers):
         return []
     ros2 = _manager(managers[0]) != ROS_CONTROL
+    if among is not None:
+        return with_controllers(among, joints, ros2=ros2)
     return files_for(Path(robot.origin.file), joints, ros2=ros2)
 
 
@@ -62,8 +69,21 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
         joints: Names of the movable joints.
         ros2: Search for ROS 2 parameter files.
     """
+    return with_controllers(_candidates(robot), joints, ros2=ros2)
+
+
+def with_controllers(
+    paths: Iterable[Path], joints: Sequence[str], *, ros2: bool = False
+) -> list[Path]:
+    """Returns the files with controllers for a robot's joints, or for the states of all joints.
+
+    Args:
+        paths: YAML files.
+        joints: Names of the movable joints.
+        ros2: Search for ROS 2 parameter files.
+    """
     files = []
-    for path in _candidates(robot):
+    for path in paths:
         try:
             content = read_parameters(path)
         except CartwheelError:

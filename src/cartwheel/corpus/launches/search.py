@@ -1,0 +1,140 @@
+"""Finds the launch files near a robot, and chooses the one whose settings are used."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+from cartwheel.corpus.launches.python_launch import read_python
+from cartwheel.corpus.launches.use import UNKNOWN, Facts, LaunchUse
+from cartwheel.corpus.launches.xml_launch import read_xml
+from cartwheel.description.files.package_folders import package_above
+from cartwheel.description.files.packages import Packages
+from cartwheel.errors import DescriptionError
+
+_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
+_MOST = 500
+"""Maximum number of launch files in a folder."""
+_INCLUDES = 60
+"""Maximum number of files that a launch file may include, also indirectly."""
+_LEVELS = 4
+"""Number of folders above a description that are searched for its package."""
+
+
+@functools.lru_cache(maxsize=4)
+def launches_near(folder: Path, package_path: tuple[Path, ...] = ()) -> tuple[LaunchUse, ...]:
+    """The robots that the launch files in a folder and its subfolders start, sorted by path.
+
+    A launch file that starts controllers for a robot of another launch file is one of them, without
+    a description. Launch files are parsed, not executed. Texts that cannot be determined without
+    executing them are left out.
+    """
+    found: list[LaunchUse] = []
+    for path in _files(folder):
+        packages = Packages(path, package_path)
+        facts = Facts(
+            find=functools.partial(_find, packages), read=_read, home=package_above(path.parent)
+        )
+        _read(path, {}, facts, 0)
+        described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
+        if not described and facts.yamls:
+            described.append((None, {}))
+        for description, arguments in described:
+            known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
+            found.append(
+                LaunchUse(
+                    file=path,
+                    description=description,
+                    arguments=known,
+                    unknown=len(arguments) - len(known),
+                    controllers=tuple(dict.fromkeys(facts.yamls)),
+                    spawned=tuple(dict.fromkeys(facts.spawned)),
+                    simulated=facts.simulated,
+                )
+            )
+    return tuple(found)
+
+
+def root_of(description: Path) -> Path | None:
+    """The folder whose launch files may start a description: that of its package and the packages
+    beside it; None outside of packages.
+    """
+    for folder in description.absolute().parents[:_LEVELS]:
+        if (folder / "package.xml").is_file() or (folder / "manifest.xml").is_file():
+            beside = [
+                each
+                for each in folder.parent.iterdir()
+                if each != folder and (each / "package.xml").is_file()
+            ]
+            return folder.parent if beside else folder
+    return None
+
+
+def chosen(description: Path, uses: Iterable[LaunchUse]) -> LaunchUse | None:
+    """The launch file for a description: one that starts Gazebo and controllers, if there is one.
+
+    Among equal ones it is the first by the number of unknown arguments and by path.
+    """
+    path = description.resolve()
+    own = [
+        each for each in uses if each.description is not None and each.description.resolve() == path
+    ]
+    return min(own, key=_order, default=None)
+
+
+def controllers_for(
+    description: Path, use: LaunchUse | None, uses: Sequence[LaunchUse]
+) -> LaunchUse | None:
+    """The launch file that starts a description's controllers: its own, or another one without a
+    description in the same package, or in a package beside it.
+    """
+    if use is not None and use.controllers:
+        return use
+    others = [each for each in uses if each.description is None and each.spawned]
+    home = description.absolute()
+    return min(others, key=lambda each: (-_common(each.file, home), str(each.file)), default=None)
+
+
+def _order(use: LaunchUse) -> tuple[bool, bool, int, int, str]:
+    return (
+        not use.simulated,
+        not use.spawned and not use.controllers,
+        use.unknown,
+        len(use.file.parts),
+        str(use.file),
+    )
+
+
+def _common(one: Path, other: Path) -> int:
+    return len(os.path.commonpath([one.absolute(), other]))
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    count = 0
+    for root, folders, names in os.walk(folder):
+        folders[:] = sorted(
+            name for name in folders if not name.startswith(".") and name not in _SKIPPED
+        )
+        for name in sorted(names):
+            if name.endswith((".launch", ".launch.xml", ".launch.py", "_launch.py")):
+                count += 1
+                if count > _MOST:
+                    return
+                yield Path(root, name)
+
+
+def _read(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
+    facts.count += 1
+    if facts.count > _INCLUDES:
+        return
+    reader = read_python if path.suffix == ".py" else read_xml
+    reader(path, arguments, facts, depth)
+
+
+def _find(packages: Packages, name: str) -> Path | None:
+    try:
+        return packages.find(name)
+    except DescriptionError:
+        return None

@@ -1,0 +1,136 @@
+"""What a launch file says about a robot."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import shlex
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cartwheel.description.files.package_folders import is_file
+
+UNKNOWN = "\0"
+"""A character in texts of which a part is unknown."""
+DEEPEST = 6
+"""Maximum nesting of included launch files."""
+_SUFFIXES = (".xacro", ".urdf", ".sdf")
+_SPAWNERS = frozenset(
+    {"spawn_model", "spawn_entity.py", "create", "gzserver", "gzclient", "gz_sim", "gazebo"}
+)
+_WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
+_CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LaunchUse:
+    """A robot description in a launch file, including what the launch file includes."""
+
+    file: Path
+    """The launch file."""
+    description: Path | None
+    """The description; None if the launch file only starts controllers."""
+    arguments: Mapping[str, str]
+    """Arguments of the xacro whose values are known."""
+    unknown: int = 0
+    """Number of arguments whose values are unknown."""
+    controllers: tuple[Path, ...] = ()
+    """YAML files that it loads."""
+    spawned: tuple[str, ...] = ()
+    """Names of the controllers that it starts."""
+    simulated: bool = False
+    """Whether it starts Gazebo or spawns a model."""
+
+
+@dataclass(kw_only=True)
+class Facts:
+    """The contents of a launch file and its included files, collected while they are read."""
+
+    find: Callable[[str], Path | None]
+    """Returns the folder of a package."""
+    home: Path | None = None
+    """The package of the launch file, which stands for packages that are not found: many launch
+    files were copied from another package."""
+    read: Callable[[Path, Mapping[str, str], Facts, int], None]
+    """Reads an included launch file with arguments, at a depth."""
+    descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
+    yamls: list[Path] = field(default_factory=list)
+    spawned: list[str] = field(default_factory=list)
+    simulated: bool = False
+    count: int = 0
+    """Number of files that were read."""
+
+    def package(self, name: str) -> str:
+        """The folder of a package as text, with an unknown part if it is not found."""
+        folder = self.find(name.strip()) if UNKNOWN not in name else None
+        folder = folder or self.home
+        return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
+
+    def describe(self, text: str) -> None:
+        """Adds the description in a file name, or in a command such as ``xacro FILE a:=b``."""
+        if text.startswith("xacro/"):
+            # Some launch files forget the space, as in ["xacro", file].
+            text = "xacro " + text.removeprefix("xacro")
+        try:
+            words = shlex.split(text)
+        except ValueError:
+            return
+        arguments: dict[str, str] = {}
+        file: Path | None = None
+        skip = False
+        for index, word in enumerate(words):
+            if skip:
+                skip = False
+                continue
+            name, assigned, value = word.partition(":=")
+            if assigned and re.fullmatch(r"\w+", name):
+                if not value and index + 1 < len(words) and ":=" not in words[index + 1]:
+                    value, skip = words[index + 1], True
+                arguments[name] = value
+            elif file is None and word.endswith(_SUFFIXES):
+                file = Path(word)
+        self.add(file, arguments)
+
+    def add(self, file: Path | None, arguments: Mapping[str, str]) -> None:
+        """Adds a description with arguments, if the file exists."""
+        if file is not None and UNKNOWN not in str(file) and is_file(file):
+            self.descriptions.append((file, dict(arguments)))
+
+    def node(self, package: str, executable: str, words: list[str]) -> None:
+        """Adds what a node with these arguments starts: models or controllers."""
+        if package in ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz"):
+            self.simulated |= executable in _SPAWNERS
+            for flag, word in itertools.pairwise(words):
+                if flag in ("-file", "-f", "--file"):
+                    self.add(Path(word), {})
+        if package == "controller_manager" and executable in _CONTROLLER_SPAWNERS:
+            self._spawn(words)
+
+    def _spawn(self, words: list[str]) -> None:
+        skip = False
+        for index, word in enumerate(words):
+            if skip:
+                skip = False
+            elif word.startswith("-"):
+                # Options with a value, such as --controller-manager /controller_manager.
+                skip = word not in ("--inactive", "--stopped", "--load-only", "--activate-as-group")
+                if word in ("-p", "--param-file") and index + 1 < len(words):
+                    self.parameters(words[index + 1])
+            elif word not in ("spawn", "load", "start") and re.fullmatch(r"[\w/]+", word):
+                self.spawned.append(word.rsplit("/", 1)[-1])
+
+    def parameters(self, text: str) -> None:
+        """Adds a YAML file if it exists."""
+        path = Path(text.strip())
+        if UNKNOWN not in text and path.suffix in (".yaml", ".yml") and is_file(path):
+            self.yamls.append(path)
+
+    def include(self, text: str, arguments: Mapping[str, str], depth: int) -> None:
+        """Reads an included launch file if it exists."""
+        self.simulated |= bool(_WORLD.search(text.rsplit("/", 1)[-1]))
+        if UNKNOWN in text or depth >= DEEPEST:
+            return
+        path = Path(text.strip())
+        if is_file(path):
+            self.read(path, arguments, self, depth + 1)

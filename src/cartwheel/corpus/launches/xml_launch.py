@@ -1,0 +1,129 @@
+"""Reads launch files in XML: those of roslaunch (ROS 1) and of launch_xml (ROS 2)."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+
+from cartwheel.corpus.launches.use import UNKNOWN, Facts
+from cartwheel.description.elements import xml
+from cartwheel.description.elements.node import Node
+
+_CALL = re.compile(r"\$\(\s*([\w-]+)\s*([^()]*)\)")
+_FALSE = frozenset({"false", "0", "False"})
+
+
+def read_xml(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
+    """Adds the contents of a launch file to `facts`."""
+    root = xml.readable_file(path)
+    if root is not None and root.tag == "launch":
+        _Reader(path, dict(arguments), facts, depth).group(root)
+
+
+class _Reader:
+    def __init__(self, path: Path, given: dict[str, str], facts: Facts, depth: int) -> None:
+        self._path = path
+        self._given = given
+        self._arguments = dict(given)
+        self._facts = facts
+        self._depth = depth
+
+    def group(self, node: Node) -> None:
+        """Reads the elements of a launch file or of a ``<group>``."""
+        for child in node.children:
+            if self._holds(child):
+                self._element(child)
+
+    def _element(self, node: Node) -> None:
+        facts = self._facts
+        tag = node.tag
+        if tag in ("arg", "let"):
+            self._argument(node)
+        elif tag == "group":
+            self.group(node)
+        elif tag == "include":
+            given = {
+                child.attributes.get("name", ""): self._value(child, "value")
+                for child in node.children
+                if child.tag == "arg" and self._holds(child)
+            }
+            if node.attributes.get("pass_all_args") == "true":
+                given = {**self._arguments, **given}
+            facts.include(self._value(node, "file"), given, self._depth)
+        elif tag == "param":
+            self._parameter(node)
+        elif tag == "rosparam":
+            if node.attributes.get("command", "load") == "load" and "file" in node.attributes:
+                facts.parameters(self._value(node, "file"))
+        elif tag == "node":
+            kind = "exec" if "exec" in node.attributes else "type"
+            facts.node(
+                self._value(node, "pkg"), self._value(node, kind), _words(self._value(node, "args"))
+            )
+            self.group(node)
+
+    def _argument(self, node: Node) -> None:
+        name = node.attributes.get("name", "")
+        if "value" in node.attributes:
+            self._arguments[name] = self._value(node, "value")
+        elif name not in self._given and "default" in node.attributes:
+            self._arguments[name] = self._value(node, "default")
+
+    def _parameter(self, node: Node) -> None:
+        facts = self._facts
+        if "from" in node.attributes:
+            facts.parameters(self._value(node, "from"))
+        if not node.attributes.get("name", "").endswith("description"):
+            return
+        for name in ("command", "textfile"):
+            if name in node.attributes:
+                facts.describe(self._value(node, name))
+        value = node.attributes.get("value", "")
+        if "command" in value:
+            facts.describe(self._value(node, "value"))
+
+    def _holds(self, node: Node) -> bool:
+        """Whether the conditions of an element hold. An unknown condition holds."""
+        for name, wanted in (("if", True), ("unless", False)):
+            if name in node.attributes:
+                value = self._value(node, name).strip()
+                if UNKNOWN not in value and (value not in _FALSE) is not wanted:
+                    return False
+        return True
+
+    def _value(self, node: Node, name: str) -> str:
+        text = node.attributes.get(name, "")
+        for _ in range(20):
+            found = _CALL.search(text)
+            if found is None:
+                break
+            value = self._call(found[1], found[2].strip())
+            text = text[: found.start()] + value + text[found.end() :]
+        # What is left is an expression with parentheses, such as $(eval len('a')).
+        return re.sub(r"\$\(.*\)", UNKNOWN, text)
+
+    def _call(self, kind: str, rest: str) -> str:
+        """The value of ``$(kind rest)``."""
+        words = rest.split(None, 1)
+        first = words[0] if words else ""
+        if kind in ("arg", "var"):
+            return self._arguments.get(first, UNKNOWN)
+        if kind in ("find", "find-pkg-share"):
+            return self._facts.package(first)
+        if kind in ("env", "optenv"):
+            return os.environ.get(first, words[1] if len(words) > 1 else UNKNOWN)
+        if kind == "dirname":
+            return str(self._path.parent)
+        if kind == "command":
+            return rest.strip("'\"")
+        return UNKNOWN
+
+
+def _words(text: str) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError:
+        return text.split()

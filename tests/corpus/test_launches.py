@@ -1,0 +1,142 @@
+"""What launch files say about robots."""
+
+import pytest
+
+from cartwheel.corpus.launches import chosen, launches_near
+
+ROBOT = '<robot name="arm"><link name="base"/></robot>'
+INCLUDED = """import os
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import Command, LaunchConfiguration
+
+raise SystemExit("never executed")
+
+def generate_launch_description():
+    share = os.path.join(get_package_share_directory("arm"))
+    xacro_file = os.path.join(share, "urdf", "arm.urdf.xacro")
+    text = Command(["xacro ", xacro_file, " sim_mode:=", LaunchConfiguration("sim"),
+                    " prefix:=", LaunchConfiguration("prefix"), " seed:=", clock()])
+    return LaunchDescription([
+        DeclareLaunchArgument("sim", default_value="false"),
+        DeclareLaunchArgument("prefix", default_value="left_"),
+        Node(package="robot_state_publisher", parameters=[{"robot_description": text}]),
+    ])
+"""
+STARTER = """from launch import LaunchDescription
+
+package = "arm"
+share = get_package_share_directory(package)
+
+def generate_launch_description():
+    included = IncludeLaunchDescription(
+        PythonLaunchDescriptionSource([PathJoinSubstitution(
+            [FindPackageShare(package), "launch", "rsp.launch.py"])]),
+        launch_arguments={"sim": "true"}.items(),
+    )
+    spawn = Node(package="ros_gz_sim", executable="create", arguments=["-topic", "description"])
+    start = Node(package="controller_manager", executable="spawner",
+                 arguments=["arm_controller", "--controller-manager", "/controller_manager",
+                            "--param-file", f"{share}/config/a.yaml"])
+    return LaunchDescription([included, spawn, TimerAction(period=3.0, actions=[start])])
+"""
+ROS1 = """<launch>
+  <arg name="model" default="$(find arm)/urdf/arm.urdf.xacro"/>
+  <arg name="gripper" default="true"/>
+  <include file="$(find gazebo_ros)/launch/empty_world.launch"/>
+  <group if="$(arg gripper)">
+    <param name="robot_description" command="$(find xacro)/xacro --inorder '$(arg model)'
+        gripper:=$(arg gripper) user:=$(eval 1 + 1)"/>
+  </group>
+  <group unless="$(arg gripper)">
+    <param name="robot_description" command="xacro '$(arg model)' gripper:=no"/>
+  </group>
+  <include file="$(find arm)/launch/control.launch"/>
+</launch>"""
+CONTROL = """<launch>
+  <rosparam file="$(find arm)/config/a.yaml" command="load"/>
+  <node name="s" pkg="controller_manager" type="spawner" args="arm_controller joints --timeout 20"/>
+</launch>"""
+ROS2_XML = """<launch>
+  <let name="path" value="$(find-pkg-share arm)/urdf/arm.urdf.xacro"/>
+  <node pkg="robot_state_publisher" exec="robot_state_publisher">
+    <param name="robot_description" value="$(command 'xacro $(var path) sim:=true')"/>
+  </node>
+  <node pkg="ros_gz_sim" exec="create" args="-topic robot_description"/>
+</launch>"""
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A package with a robot, and launch files by name."""
+
+    def write(**launch):
+        folder = tmp_path / "arm"
+        for path, text in {
+            "package.xml": "<package><name>arm</name></package>",
+            "urdf/arm.urdf.xacro": ROBOT,
+            "config/a.yaml": "arm_controller: {type: a/B}",
+            **{f"launch/{name.replace('_dot_', '.')}": text for name, text in launch.items()},
+        }.items():
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text)
+        return folder
+
+    return write
+
+
+def test_python_launch_files_are_parsed_and_never_executed(package):
+    folder = package(rsp_dot_launch_dot_py=INCLUDED, sim_dot_launch_dot_py=STARTER)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.file == folder / "launch/sim.launch.py"
+    assert use.simulated
+    assert use.arguments == {"sim_mode": "true", "prefix": "left_"}
+    assert use.unknown == 1
+    assert use.spawned == ("arm_controller",)
+    assert use.controllers == (folder / "config/a.yaml",)
+
+
+def test_defaults_are_used_where_no_launch_file_gives_a_value(package):
+    folder = package(rsp_dot_launch_dot_py=INCLUDED)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.arguments == {"sim_mode": "false", "prefix": "left_"}
+    assert not use.simulated
+
+
+def test_launch_files_of_ros1_name_arguments_controllers_and_conditions(package):
+    folder = package(sim_dot_launch=ROS1, control_dot_launch=CONTROL)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.file == folder / "launch/sim.launch"
+    assert use.simulated
+    assert use.arguments == {"gripper": "true"}
+    assert use.unknown == 1
+    assert use.spawned == ("arm_controller", "joints")
+    assert use.controllers == (folder / "config/a.yaml",)
+    (control,) = [each for each in launches_near(folder) if each.description is None]
+    assert control.file == folder / "launch/control.launch"
+
+
+def test_launch_files_of_ros2_in_xml(package):
+    folder = package(sim_dot_launch_dot_xml=ROS2_XML)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.simulated
+    assert use.arguments == {"sim": "true"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def broken(:",
+        "x = " + "(" * 5000,
+        "while True:\n    pass",
+        "include = IncludeLaunchDescription(PythonLaunchDescriptionSource(__file__))",
+    ],
+)
+def test_broken_and_recursive_launch_files_say_nothing(package, text):
+    folder = package(a_dot_launch_dot_py=text)
+    assert launches_near(folder) == ()
+
+
+def test_a_launch_file_in_xml_that_includes_itself_ends(package):
+    folder = package(a_dot_launch='<launch><include file="$(dirname)/a.launch"/></launch>')
+    assert launches_near(folder) == ()
