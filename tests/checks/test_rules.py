@@ -530,3 +530,14 @@ def test_each_file_of_rules_has_rules_that_are_applied():
     found = {rule.find.__module__ for rule in RULES}
     rooms = pkgutil.walk_packages(rules.__path__, "cartwheel.checks.rules.")
     assert found == {each.name for each in rooms if not each.ispkg}
+
+
+def test_only_that_it_has_no_effect_is_reported_about_a_tag(bench, spoil):
+    plugin = (
+        '<gazebo><plugin name="p" filename="libgazebo_ros_planar_move.so">'
+        "<leftFrontJoint>no_such_joint</leftFrontJoint></plugin></gazebo></robot>"
+    )
+    text = spoil(("</robot>", plugin))
+    (finding,) = bench.find(text, "plugin-parameter-unknown")
+    assert finding.values["parameter"] == "leftFrontJoint"
+    assert not bench.find(text, "plugin-joint-unknown")

@@ -554,3 +554,22 @@ def test_what_a_macro_makes_may_have_its_own_name(folder):
     )
     (part,) = expanded().root.children
     assert (part.tag, part.attributes["n"]) == ("part", "2")
+
+
+def test_a_property_that_is_defined_after_its_use_is_named_with_its_line(folder):
+    write(
+        "robot.xacro",
+        """<link name="a${width}"/>
+<xacro:macro name="m"><xacro:property name="width" value="1"/></xacro:macro>
+
+<xacro:property name="width" value="2"/>""",
+    )
+    with raises(files.XACRO_NAME_UNKNOWN, kind="property", name="width") as caught:
+        expanded()
+    use = caught.value.origin.line
+    assert caught.value.values["defined"] == f"robot.xacro:{use + 3}"
+    assert caught.value.values["meant"] == "width"
+    write("robot.xacro", '<link name="a${width}"/><xacro:property name="with" value="2"/>')
+    with raises(files.XACRO_NAME_UNKNOWN, kind="property", name="width") as caught:
+        expanded()
+    assert "defined" not in caught.value.values

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rules import RULES
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
+from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
 from cartwheel.codes.tags import DEFAULT_USED
 from cartwheel.description.elements.node import Node
 from cartwheel.description.loading import Opened, open_description, understand
@@ -194,10 +195,16 @@ def _is_empty(root: Node) -> bool:
     return not nodes.children(root, "model") and not nodes.children(root, "world")
 
 
-def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Removes duplicates; findings of one kind from one macro line become a single finding."""
+def _distinct(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Removes duplicates; findings of one kind from one macro line become a single finding.
+
+    If an element has no effect, only this is reported about it.
+    """
+    idle = {id(each.origin): each for each in findings if _is_idle(each)}
     distinct: dict[tuple[object, ...], Diagnostic] = {}
     for each in findings:
+        if idle.get(id(each.origin), each).code is not each.code:
+            continue
         key = each.identity
         if each.origin is not None and each.origin.stack:
             key = (*each.kind, str(each.origin))
@@ -205,6 +212,12 @@ def _distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
         if all(each.identity != other.identity for other in (first, *first.also)):
             distinct[key] = replace(first, also=(*first.also, each))
     return list(distinct.values())
+
+
+def _is_idle(finding: Diagnostic) -> bool:
+    """Whether a finding means that a whole element has no effect, not even a misspelt one."""
+    values = finding.values
+    return finding.code is PLUGIN_PARAMETER_UNKNOWN and not values.get("meant")
 
 
 def place(finding: Diagnostic, order: Mapping[str, int]) -> tuple[int, str, int]:

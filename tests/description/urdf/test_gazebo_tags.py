@@ -1,8 +1,9 @@
 """What ``<gazebo>`` tags say, tag by tag, and what is told of those that do nothing."""
 
 import pytest
-from tests.coded import named, placed
+from tests.coded import coded, named, placed
 
+from cartwheel.codes.robot import REFERENCE_UNKNOWN
 from cartwheel.description import load_text
 from cartwheel.description import model as m
 from cartwheel.errors import DescriptionError
@@ -317,6 +318,24 @@ def test_errors(tags, code):
         load(tags)
     assert str(caught.value.origin) == "robot.urdf:2"
     assert named(caught.value) == code
+
+
+@pytest.mark.parametrize(
+    ("tags", "meant"),
+    [
+        ("<mu1>1</mu1>", ""),
+        ("<preserveFixedJoint>true</preserveFixedJoint>", "arm_joint"),
+        ('<sensor name="a" type="imu"/>', "arm_joint"),
+    ],
+)
+def test_a_link_is_suggested_for_tags_of_links_and_a_joint_for_those_of_joints(tags, meant):
+    text = (
+        '<robot name="r"><link name="base"/><link name="arm"/><joint name="arm_joint" type="fixed">'
+        '<parent link="base"/><child link="arm"/></joint><gazebo reference="arm_jont">'
+        f"{tags}</gazebo></robot>"
+    )
+    (diagnostic,) = coded(load_text(text), REFERENCE_UNKNOWN)
+    assert diagnostic.values["meant"] == meant
 
 
 @pytest.mark.parametrize("place", ["base", "hinge"])

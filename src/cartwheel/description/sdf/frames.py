@@ -159,6 +159,11 @@ class Frames:
         nested = [f"{k}::{n}" for k, scope in self._scopes.items() for n in scope.names()]
         return [*self._frames, *nested]
 
+    def links(self) -> list[str]:
+        """The names of all links, which are suggested where a link is usual."""
+        nested = [f"{k}::{n}" for k, scope in self._scopes.items() for n in scope.links()]
+        return [name for name, frame in self._frames.items() if frame.kind == "link"] + nested
+
     def _pose(self, name: str, origin: Origin, asking: list[str]) -> Pose:
         if name in ("", MODEL) or (name == WORLD and self.kind == WORLD):
             return Pose()

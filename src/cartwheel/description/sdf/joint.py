@@ -78,7 +78,7 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         raise NoLinkError(
             f'joint "{name}": child link "{child}" does not exist',
             origin=node.origin,
-            hint=suggestion(child, frames.names()),
+            hint=suggestion(child, frames.links()),
             values=_unknown_link(name, "child", child, frames),
         )
     frames.add(
@@ -260,13 +260,13 @@ def _end(node: Node, tag: str, joint: str, frames: Frames) -> str:
         raise NoLinkError(
             f'joint "{joint}": {tag} link "{name}" does not exist',
             origin=part.origin,
-            hint=suggestion(name, frames.names()),
+            hint=suggestion(name, frames.links()),
             values=_unknown_link(joint, tag, name, frames),
         ) from error
 
 
 def _unknown_link(joint: str, end: str, name: str, frames: Frames) -> dict[str, Value]:
-    return {"joint": joint, "end": end, "name": name, "meant": meant(name, frames.names())}
+    return {"joint": joint, "end": end, "name": name, "meant": meant(name, frames.links())}
 
 
 def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) -> Axis:

@@ -206,9 +206,9 @@ def _set_canonical(node: Node, frames: Frames, link_nodes: list[Node], nested: l
         if stated not in frames.names():
             raise node.fail(
                 f'the canonical link "{stated}" does not exist',
-                suggestion(stated, frames.names()),
+                suggestion(stated, frames.links()),
                 code=tags.NAME_UNKNOWN,
-                values={"name": stated, "meant": meant(stated, frames.names())},
+                values={"name": stated, "meant": meant(stated, frames.links())},
             )
         frames.default_link = frames.link_of(stated, node.origin)
     elif link_nodes:

@@ -99,7 +99,7 @@ def read_gazebo_tags(
             continue
         if reference not in links and reference not in joints:
             # Gazebo ignores it silently, and published robots contain such tags.
-            names = sorted({*links, *joints})
+            names = referable(node, links, joints)
             ctx.report(
                 robot_codes.REFERENCE_UNKNOWN.diagnostic(
                     f'<gazebo> refers to "{reference}", which is neither a link nor a joint, so '
@@ -127,6 +127,18 @@ def read_gazebo_tags(
         if (reference in links) != (reference in joints):
             _warn_misplaced(node, reference, reference in links, ctx)
     return tags
+
+
+def referable(node: Node, links: Collection[str], joints: Collection[str]) -> list[str]:
+    """The names that a ``<gazebo>`` may refer to: only links if its tags are only for links."""
+    tags = {child.tag for child in node.children}
+    of_link, of_joint = (
+        bool(tags & set(own) - set(other))
+        for own, other in ((LINK_TAGS, JOINT_TAGS), (JOINT_TAGS, LINK_TAGS))
+    )
+    if of_link != of_joint:
+        return sorted(links if of_link else joints)
+    return sorted({*links, *joints})
 
 
 def _settle(node: Node, ctx: UrdfContext) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import numbers
-from cartwheel.description.elements.xml import near_files
+from cartwheel.description.elements.xml import near_files, readable_file
 from cartwheel.errors import Code, DescriptionError, Origin, Value
 from cartwheel.options import xacro_argument
 from cartwheel.similar_names import meant, suggestion
@@ -32,6 +32,8 @@ class Failure:
     arguments: tuple[str, ...]
     parameters: tuple[str, ...]
     """Parameters of the called macro."""
+    files: tuple[str, ...]
+    """The files read so far."""
 
 
 class ArgumentError(Exception):
@@ -97,6 +99,10 @@ def explain(failure: Failure) -> DescriptionError:
             hint = f"{name} is an argument: use $(arg {name})."
         code, values = _unknown("property", name, near)
         values["expression"] = expression
+        later = _defined_later(name, failure)
+        if later is not None:
+            hint = f"It is defined later, at {later}. Move the definition above this line."
+            values |= {"meant": name, "defined": str(later)}
     elif isinstance(inner, ArgumentError):
         name = inner.name
         hint, near = _meant(name, failure.arguments)
@@ -175,6 +181,24 @@ def _expression(error: BaseException) -> str:
         (each.expression for each in reversed(list(_chain(error))) if hasattr(each, "expression")),
         "",
     )
+
+
+def _defined_later(name: str, failure: Failure) -> Origin | None:
+    """Where a property is defined that does not exist yet where it is used; None if nowhere.
+
+    Definitions in macros are local to a call, so they do not count.
+    """
+    for file in dict.fromkeys((failure.origin.file, *failure.files)):
+        root = readable_file(Path(file))
+        level = [root] if root is not None else []
+        while level:
+            for node in level:
+                if node.tag == "xacro:property" and node.attributes.get("name") == name:
+                    return node.origin
+            level = [
+                child for node in level if node.tag != "xacro:macro" for child in node.children
+            ]
+    return None
 
 
 def _undefined(error: NameError) -> str:

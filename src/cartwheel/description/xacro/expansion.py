@@ -245,6 +245,7 @@ class Run:
                 properties=tuple(sorted(_names(self.symbols))),
                 arguments=tuple(sorted(self.declared)),
                 parameters=self._parameters(call),
+                files=tuple(self.files),
             )
         )
         return self.absences.explain(failure)

@@ -9,6 +9,7 @@ from cartwheel.checks.kinematic_tree import elements_of, link_names, mimic_chain
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.urdf.gazebo_tags import referable
 from cartwheel.errors import Diagnostic
 
 
@@ -44,15 +45,16 @@ def mimic_unknown(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(robot_codes.REFERENCE_UNKNOWN)
 def reference_unknown(subject: Subject) -> Iterator[Diagnostic]:
-    known = link_names(subject) | {nodes.name_of(node) for node in elements_of(subject, "joint")}
+    links = link_names(subject)
+    joints = {nodes.name_of(node) for node in elements_of(subject, "joint")}
     for node in elements_of(subject, "gazebo"):
         reference = nodes.text_of(node, "reference")
-        if not reference or reference in known:
+        if not reference or reference in links | joints:
             continue
         yield spelling.misspelt(
             robot_codes.REFERENCE_UNKNOWN,
             reference,
-            known,
+            referable(node, links, joints),
             attribute="reference",
             message=f'<gazebo> refers to "{reference}", which is neither a link nor a joint, '
             "so Gazebo ignores it",
