@@ -648,8 +648,6 @@ ENDS = "<parent>a</parent><child>b</child>"
         (BAD_JOINT.format("fixed", "<parent>a</parent>"), "tag-missing"),
         (BAD_JOINT.format("revolut", ENDS), "joint-type-unknown revolute"),
         (BAD_JOINT.format("revolute", ENDS + "<axis><xyz>0 0 0</xyz></axis>"), "axis-zero"),
-        (BAD_JOINT.format("revolute", ENDS + "<axis><limit><lower>1</lower><upper>0</upper>"
-         "</limit></axis>"), "limit-reversed"),
         (BAD_JOINT.format("revolute", ENDS + '<axis><mimic joint="k"/></axis>'), "mimic-unknown"),
         (BAD_JOINT.format("fixed", ENDS) + f'<joint name="j" type="fixed">{ENDS}</joint>',
          "name-taken"),
@@ -673,6 +671,16 @@ def test_errors(inside, code):
     assert named(caught.value) == code
     assert caught.value.origin is not None
     assert caught.value.origin.line >= 2
+
+
+def test_reversed_limits_have_no_effect():
+    limits = "<axis><limit><lower>1</lower><upper>0</upper></limit></axis>"
+    found = robot(BAD_JOINT.format("revolute", ENDS + limits))
+    (error,) = [each for each in found.diagnostics if each.severity == "error"]
+    assert named(error) == "limit-reversed"
+    assert error.values == {"joint": "j", "lower": 1, "upper": 0}
+    (joint,) = found.joints
+    assert (joint.axis.lower, joint.axis.upper) == (None, None)
 
 
 @pytest.mark.parametrize(

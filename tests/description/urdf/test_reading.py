@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from tests.coded import named, placed
 
+import cartwheel as cw
 from cartwheel.description import load_text
 from cartwheel.description import model as m
 from cartwheel.errors import DescriptionError
@@ -276,36 +277,6 @@ ERRORS = [
         "axis-zero",
     ),
     (
-        urdf(
-            link("a"),
-            link("b"),
-            joint(
-                "j",
-                "a",
-                "b",
-                '<limit lower="2" upper="1" effort="1" velocity="1"/>',
-                "revolute",
-            ),
-        ),
-        4,
-        "limit-reversed",
-    ),
-    (
-        urdf(link("a"), link("b"), joint("j", "a", "b", '<dynamics damping="-1"/>', "continuous")),
-        4,
-        "value-invalid",
-    ),
-    (
-        urdf(link("a"), link("b"), joint("j", "a", "b", '<mimic joint="k"/>', "continuous")),
-        4,
-        "mimic-unknown",
-    ),
-    (
-        urdf(link("a"), link("b"), joint("j", "a", "b", '<mimic joint="j"/>', "continuous")),
-        4,
-        "mimic-unknown",
-    ),
-    (
         urdf('<link name="a">', '<inertial><mass value="abc"/></inertial></link>'),
         3,
         "value-invalid",
@@ -345,14 +316,6 @@ ERRORS = [
     ),
     (
         urdf(
-            '<link name="a"><visual>',
-            '<geometry><mesh filename="x.stl" scale="1 0 1"/></geometry></visual></link>',
-        ),
-        3,
-        "value-invalid",
-    ),
-    (
-        urdf(
             OPEN_VISUAL,
             '<origin xyz="0 0"/><geometry><box size="1 1 1"/></geometry>',
             CLOSE_VISUAL,
@@ -374,6 +337,60 @@ def test_errors(text, line, code):
         load(text)
     assert str(caught.value.origin) == f"robot.urdf:{line}"
     assert named(caught.value) == code
+
+
+LOADED = {
+    "reversed": (
+        joint("j", "a", "b", '<limit lower="2" upper="1" effort="1" velocity="1"/>', "revolute"),
+        "limit-reversed",
+    ),
+    "damping": (joint("j", "a", "b", '<dynamics damping="-1"/>', "continuous"), "value-invalid"),
+    "friction": (joint("j", "a", "b", '<dynamics friction="-1"/>', "continuous"), "value-invalid"),
+    "mimic": (joint("j", "a", "b", '<mimic joint="k"/>', "continuous"), "mimic-unknown"),
+    "itself": (joint("j", "a", "b", '<mimic joint="j"/>', "continuous"), "mimic-unknown"),
+}
+
+
+@pytest.mark.parametrize("case", LOADED)
+def test_a_robot_is_loaded_without_what_gazebo_ignores_in_a_joint(case):
+    text, code = LOADED[case]
+    robot = load(urdf(link("a"), link("b"), text))
+    (error,) = [each for each in robot.diagnostics if each.severity == "error"]
+    assert named(error) == code
+    assert str(error.origin) == "robot.urdf:4"
+    (made,) = robot.joints
+    assert (made.axis.lower, made.axis.upper) == (None, None)
+    assert (made.axis.damping, made.axis.friction, made.mimic) == (0, 0, None)
+    with cw.World("empty") as world:
+        world.spawn(robot)
+        world.run(0.1)
+
+
+def test_of_a_ring_of_mimics_one_joint_moves_independently():
+    names = {"j": "k", "k": "j", "l": "k"}
+    text = urdf(
+        *(link(each) for each in "abcd"),
+        *(
+            joint(name, "a", child, f'<mimic joint="{leader}"/>', "continuous")
+            for (name, leader), child in zip(names.items(), "bcd", strict=True)
+        ),
+    )
+    robot = load(text)
+    (error,) = [each for each in robot.diagnostics if each.severity == "error"]
+    assert error.values["joint"] == "j"
+    leaders = {each.name: each.mimic and each.mimic.joint for each in robot.joints}
+    assert leaders == {"j": None, "k": "j", "l": "k"}
+
+
+def test_a_mesh_with_a_scale_of_0_is_left_out():
+    robot = load(
+        urdf(
+            OPEN_VISUAL, '<geometry><mesh filename="x.stl" scale="1 0 1"/></geometry>', CLOSE_VISUAL
+        )
+    )
+    (error,) = [each for each in robot.diagnostics if each.severity == "error"]
+    assert error.values["left_out"] == "visual"
+    assert not robot.links[0].visuals
 
 
 @pytest.mark.parametrize("mass", [1, 40])

@@ -12,7 +12,7 @@ from cartwheel.description.model import Axis, Joint, JointType, Mimic, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
 from cartwheel.description.sdf.frames import WORLD, Frames
 from cartwheel.description.sdf.sensors import read_sensor, read_sensors
-from cartwheel.errors import DescriptionError, Value
+from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 from cartwheel.similar_names import meant, suggestion
 
@@ -289,11 +289,8 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
     lower = _limit(node.optional_number_at("limit/lower", infinite=True))
     upper = _limit(node.optional_number_at("limit/upper", infinite=True))
     if lower is not None and upper is not None and lower > upper:
-        raise node.fail(
-            f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}',
-            code=robot.LIMIT_REVERSED,
-            values={"joint": joint, "lower": lower, "upper": upper},
-        )
+        ctx.report(reversed_limits(joint, lower, upper, node.origin))
+        lower = upper = None
     return Axis(
         xyz=xyz,
         lower=lower,
@@ -346,3 +343,13 @@ def _pitch(node: Node) -> float:
     if value == 0:
         raise node.fail("the thread_pitch of a screw must not be 0")
     return -2 * math.pi / value
+
+
+def reversed_limits(joint: str, lower: float, upper: float, origin: Origin) -> Diagnostic:
+    """The error for reversed limits, which Gazebo's physics engine ignores."""
+    return robot.LIMIT_REVERSED.diagnostic(
+        f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}, so the '
+        "joint is not limited",
+        origin=origin,
+        values={"joint": joint, "lower": lower, "upper": upper},
+    )

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 
 from cartwheel.codes import robot, tags
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
+from cartwheel.description.sdf.joint import reversed_limits
 from cartwheel.description.urdf.context import UrdfContext, read_origin
-from cartwheel.errors import DescriptionError
+from cartwheel.errors import Value
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.similar_names import meant, suggestion
 
@@ -29,8 +31,7 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
     """A joint, and its frame in its parent link, which is the child's frame at zero.
 
     Raises:
-        DescriptionError: A link does not exist, the axis has length zero, the limits are reversed,
-            or the type is unknown.
+        DescriptionError: A link does not exist, the axis has length zero, or the type is unknown.
     """
     name = node.require("name").strip()
     written = node.require("type").strip()
@@ -131,11 +132,8 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
         if kind in ("revolute", "prismatic"):
             lower, upper = lower or 0.0, upper or 0.0
             if lower > upper:
-                raise limits.fail(
-                    f'joint "{name}": the lower limit {lower:g} is above the upper limit {upper:g}',
-                    code=robot.LIMIT_REVERSED,
-                    values={"joint": name, "lower": lower, "upper": upper},
-                )
+                ctx.report(reversed_limits(name, lower, upper, limits.origin))
+                lower = upper = None
     elif kind in ("revolute", "prismatic"):
         ctx.report(
             robot.LIMIT_MISSING.diagnostic(
@@ -159,8 +157,8 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
             )
         lower = upper = None
     dynamics = node.child("dynamics")
-    damping = _not_negative(dynamics, "damping", name)
-    friction = _not_negative(dynamics, "friction", name)
+    damping = _not_negative(dynamics, "damping", name, ctx)
+    friction = _not_negative(dynamics, "friction", name, ctx)
     return Axis(
         xyz=unit,
         lower=_finite(lower),
@@ -193,15 +191,21 @@ def _finite(value: float | None) -> float | None:
     return value if value is not None and abs(value) < 1e15 else None
 
 
-def _not_negative(dynamics: Node | None, attribute: str, joint: str) -> float:
+def _not_negative(dynamics: Node | None, attribute: str, joint: str, ctx: UrdfContext) -> float:
     if dynamics is None:
         return 0.0
     value = dynamics.number_of(attribute, 0.0)
     if value < 0:
-        raise dynamics.fail(
-            f'joint "{joint}": the {attribute} {value:g} is negative, which would drive the joint'
+        ctx.report(
+            tags.VALUE_INVALID.diagnostic(
+                f'joint "{joint}": the {attribute} {value:g} is negative, which would drive the '
+                "joint, so 0 is used",
+                origin=dynamics.origin,
+                values={"joint": joint, "attribute": attribute, "stated": value},
+                mark=attribute,
+            )
         )
-    return value
+    return max(0.0, value)
 
 
 def _mimic(node: Node) -> Mimic:
@@ -225,34 +229,41 @@ def _soft(node: Node) -> SoftLimits:
     )
 
 
-def check_mimics(joints: Iterable[Joint]) -> None:
-    """Rejects mimics of missing joints, and cycles of joints that mimic each other."""
+def without_invalid_mimics(joints: Sequence[Joint], ctx: UrdfContext) -> list[Joint]:
+    """The joints; those that mimic a missing joint, or each other, move independently instead."""
     by_name = {joint.name: joint for joint in joints}
-    for joint in by_name.values():
+    for joint in joints:
         if joint.mimic is None:
             continue
-        if joint.mimic.joint not in by_name:
-            raise DescriptionError(
-                f'joint "{joint.name}" mimics the joint "{joint.mimic.joint}", '
-                "which does not exist",
-                code=robot.MIMIC_UNKNOWN,
-                values={
-                    "joint": joint.name,
-                    "name": joint.mimic.joint,
-                    "meant": meant(joint.mimic.joint, sorted(set(by_name) - {joint.name})),
-                },
+        leader, name = joint.mimic.joint, joint.name
+        others = sorted(set(by_name) - {name})
+        values: dict[str, Value] = {"joint": name, "name": leader}
+        if leader not in by_name:
+            message = f'joint "{name}" mimics the joint "{leader}", which does not exist'
+            hint = suggestion(leader, others)
+            values["meant"] = meant(leader, others)
+        elif _follows_itself(joint, by_name):
+            message, hint = f'joint "{name}" mimics itself through "{leader}"', ""
+        else:
+            continue
+        by_name[name] = replace(joint, mimic=None)
+        ctx.report(
+            robot.MIMIC_UNKNOWN.diagnostic(
+                f"{message}, so it moves independently",
                 origin=joint.origin,
-                hint=suggestion(joint.mimic.joint, sorted(set(by_name) - {joint.name})),
+                hint=hint,
+                values=values,
             )
-        seen = {joint.name}
-        leader = joint
-        while leader.mimic is not None and leader.mimic.joint in by_name:
-            leader = by_name[leader.mimic.joint]
-            if leader.name in seen:
-                raise DescriptionError(
-                    f'joint "{joint.name}" mimics itself through "{joint.mimic.joint}"',
-                    code=robot.MIMIC_UNKNOWN,
-                    values={"joint": joint.name, "name": joint.mimic.joint},
-                    origin=joint.origin,
-                )
-            seen.add(leader.name)
+        )
+    return list(by_name.values())
+
+
+def _follows_itself(joint: Joint, by_name: Mapping[str, Joint]) -> bool:
+    seen: set[str] = set()
+    leader = joint
+    while leader.mimic is not None and leader.mimic.joint in by_name:
+        if leader.name in seen:
+            return leader is joint
+        seen.add(leader.name)
+        leader = by_name[leader.mimic.joint]
+    return False

@@ -180,11 +180,11 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
 def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
     uri = node.require("filename").strip()
     scale = node.vec3_of("scale", (1.0, 1.0, 1.0))
-    if 0.0 in scale:
-        raise node.fail(
-            f'the scale of a mesh of link "{link}" has a component of 0 (got {_listed(scale)})'
-        )
     try:
+        if 0.0 in scale:
+            raise node.fail(
+                f'the scale of a mesh of link "{link}" has a component of 0 (got {_listed(scale)})'
+            )
         path = ctx.packages.resolve(uri, node.origin, what="mesh")
         mesh = Mesh(uri=uri, path=path, scale=scale)
         load_mesh(mesh, origin=node.origin)

@@ -22,7 +22,7 @@ from cartwheel.description.urdf.estimate import with_masses
 from cartwheel.description.urdf.gazebo_tags import GazeboTags, read_gazebo_tags
 from cartwheel.description.urdf.harmless import HARMLESS
 from cartwheel.description.urdf.inertia import judged_inertia
-from cartwheel.description.urdf.joint import check_mimics, read_joint
+from cartwheel.description.urdf.joint import read_joint, without_invalid_mimics
 from cartwheel.description.urdf.link import ReadLink, read_link
 from cartwheel.description.urdf.material import read_materials
 from cartwheel.description.urdf.tree import WORLD, Tree, build_tree
@@ -73,8 +73,7 @@ def read_urdf(
     names = [part.link.name for part in parts]
     known = frozenset(names)
     read = [read_joint(node, known, ctx) for node in joint_nodes]
-    joints = [joint for joint, _ in read]
-    check_mimics(joints)
+    joints = without_invalid_mimics([joint for joint, _ in read], ctx)
     tree = build_tree([(part.link.name, part.link.origin) for part in parts], joints)
     poses = tree.poses({joint.name: frame for joint, frame in read})
 
