@@ -55,7 +55,8 @@ Gazebo whose tags and topics Cartwheel supports. The following rules apply to al
   plugin that drives joints or applies forces is always active. `<alwaysOn>` has no effect.
 - Folders in `filename` are ignored. The prefix `lib` and the extension `.so` are optional. The
   prefix `ignition-gazebo-` has the same meaning as `gz-sim-`.
-- A plugin that is not listed here has no effect, and is reported when the robot is loaded.
+- A plugin that is not listed here has no effect, and is reported when the robot is loaded. If its
+  name states its purpose, such as "lidar", the report contains the `<plugin>` to write instead.
 """
 
 _SENSORS = """\

@@ -18,6 +18,7 @@ from cartwheel.dialects.catalogue import (
 from cartwheel.dialects.gz.sensor_tags import own_tag, publishes
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
+from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
 from cartwheel.errors import CartwheelError, StaticModelError
@@ -61,7 +62,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
             if plugin is None:
-                _report_unknown(part, tag, more)
+                _report_unknown(part, tag, sensor, more)
             elif plugin.for_world or (plugin.for_sensor and sensor is None):
                 place = "world" if plugin.for_world else "sensor"
                 part.report(
@@ -140,18 +141,26 @@ def _serve(
         )
 
 
-def _report_unknown(part: Part, tag: PluginTag, more: Plugins) -> None:
+def _report_unknown(part: Part, tag: PluginTag, sensor: Sensor | None, more: Plugins) -> None:
     # The cutoff is high because the names of different plugins are similar.
     meant = meant_one(tag.filename, [f"lib{name}.so" for name in plugin_names(more)], cutoff=0.92)
     broken = unloadable()
     suggested = f'Did you mean "{meant}"?' if meant else ""
+    other = None if meant else substitute(tag)
+    if other is not None:
+        suggested = other.hint(in_sensor=sensor is not None)
     part.report(
         devices.PLUGIN_UNKNOWN.diagnostic(
             f'plugin "{tag.filename}" is not supported, so it has no effect',
             severity="warning",
             origin=tag.origin,
             hint=" ".join((suggested, *broken)).strip(),
-            values={"name": tag.filename, "meant": meant, "broken": tuple(broken)},
+            values={
+                "name": tag.filename,
+                "meant": meant,
+                "substitute": other.filename if other is not None else "",
+                "broken": tuple(broken),
+            },
             mark=tag.filename,
         )
     )

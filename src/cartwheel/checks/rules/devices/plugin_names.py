@@ -9,6 +9,7 @@ from cartwheel.checks import plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
+from cartwheel.dialects.substitutes import substitute
 from cartwheel.errors import Diagnostic
 from cartwheel.similar_names import meant_one
 
@@ -18,7 +19,7 @@ _CLASSIC = re.compile(r"(?:lib)?(gazebo_ros_\w+)(?:\.so)?")
 @rule(devices_codes.PLUGIN_UNKNOWN)
 def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        for tag, _ in robot.plugins():
+        for tag, sensor in robot.plugins():
             if (own := _plain_file(tag.filename)) != tag.filename:
                 yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
                     severity="warning",
@@ -34,13 +35,19 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             # Suggest a tag only for misspelt names: other plugins share most of their tags.
             near = meant_one(tag.filename, plugin_tags.filenames(), cutoff=0.92)
+            other = None if near else substitute(tag)
             yield devices_codes.PLUGIN_UNKNOWN.diagnostic(
                 severity="warning" if near else "info",
                 message=f'the plugin "{tag.filename}" does not exist'
                 if near
                 else f'Cartwheel does not simulate the plugin "{tag.filename}"',
-                values={"plugin": tag.filename, "meant": near},
+                values={
+                    "plugin": tag.filename,
+                    "meant": near,
+                    "substitute": other.filename if other is not None else "",
+                },
                 origin=tag.origin,
+                hint=other.hint(in_sensor=sensor is not None) if other is not None else "",
                 instead=f'filename="{near}"' if near else "",
                 place="attribute" if near else "",
                 mark=tag.filename,

@@ -1,0 +1,144 @@
+"""The supported plugin that is nearest to an unsupported one, and the text to write for it."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from xml.sax.saxutils import escape, quoteattr
+
+from cartwheel.description.model import Element, PluginTag
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tag_roles import JOINT_ROLES
+
+_PURPOSES = (
+    (r"ackerman", "a car", "libgazebo_ros_ackermann_drive.so"),
+    (r"skid ?steer", "a skid-steer drive", "libgazebo_ros_skid_steer_drive.so"),
+    (r"diff ?drive|differential ?drive", "a differential drive", "libgazebo_ros_diff_drive.so"),
+    (r"tricycle", "a tricycle drive", "libgazebo_ros_tricycle_drive.so"),
+    (r"mecanum|\bomni|holonomic|planar ?move", "planar motion", "libgazebo_ros_planar_move.so"),
+    (
+        r"livox|velodyne|ouster|robosense|rslidar|hesai",
+        "a 3D lidar",
+        "libgazebo_ros_velodyne_laser.so",
+    ),
+    (r"laser|lidar|ray ?sensor|hokuyo", "a lidar", "libgazebo_ros_ray_sensor.so"),
+    (r"(?<!image )sonar|ultrasonic|ultrasound|range ?finder", "a sonar", "libgazebo_ros_range.so"),
+    (
+        r"kinect|depth ?camera|rgbd|\bastra\b|\bzed|realsense",
+        "a depth camera",
+        "libgazebo_ros_openni_kinect.so",
+    ),
+    (r"camera(?! ?move)", "a camera", "libgazebo_ros_camera.so"),
+    (r"magnetometer|compass", "a magnetometer", "libhector_gazebo_ros_magnetic.so"),
+    (r"barometer|altimeter", "a barometer", "libhector_gazebo_ros_baro.so"),
+    (r"gps|gnss|navsat", "a GPS receiver", "libhector_gazebo_ros_gps.so"),
+    (r"\bimu\b", "an IMU", "libgazebo_ros_imu_sensor.so"),
+    (r"ground ?truth|pose ?gt|odom", "the ground-truth pose", "libgazebo_ros_p3d.so"),
+    (r"joint ?state", "joint states", "libgazebo_ros_joint_state_publisher.so"),
+    (r"mimic", "mimic joints", "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so"),
+    (r"bumper|contact ?sensor", "a bumper", "libgazebo_ros_bumper.so"),
+    (r"vacuum|suction", "a vacuum gripper", "libgazebo_ros_vacuum_gripper.so"),
+    (r"grasp ?fix|fix ?grasp", "a gripper", "libgazebo_grasp_fix.so"),
+    (r"link ?attach", "the attachment of links", "libgazebo_ros_link_attacher.so"),
+    (r"motor ?model", "a propeller", "librotors_gazebo_motor_model.so"),
+    (r"battery(?! ?consumer)", "a battery", "gz-sim-linear-battery-plugin-system"),
+    (r"wheel ?slip", "wheel slip", "libgazebo_ros_wheel_slip.so"),
+    (
+        r"controller ?manager|^fetch gazebo plugin$|^panda gazebo$",
+        "a controller manager",
+        "libgazebo_ros_control.so",
+    ),
+)
+"""Patterns, the plugins' purposes, and the supported plugins; the first match applies. A pattern is
+for the words of a short name, in lower case and with spaces between them."""
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
+_BLANK = "…"
+"""A value for the user to fill in."""
+_LONGEST = 100
+"""Characters of a name or value."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Substitute:
+    """A supported plugin for the purpose of an unsupported one."""
+
+    filename: str
+    purpose: str
+    text: str
+    """The ``<plugin>`` to write, with the values of the unsupported plugin."""
+    sensor_type: str
+    """Type of the ``<sensor>`` that must contain it; empty for plugins of models."""
+
+    def hint(self, *, in_sensor: bool) -> str:
+        """Returns what to write, as a sentence."""
+        inside = f' inside a <sensor type="{self.sensor_type}">'
+        blanks = f' Replace each "{_BLANK}" with a value.' if _BLANK in self.text else ""
+        return (
+            f'The nearest supported plugin for {self.purpose} is "{self.filename}". To use it, '
+            f"write {self.text}{inside if self.sensor_type and not in_sensor else ''}.{blanks}"
+        )
+
+
+def substitute(tag: PluginTag) -> Substitute | None:
+    """Returns the nearest supported plugin, by the purpose that an unsupported one's name states.
+
+    Returns:
+        None if the name states no known purpose.
+    """
+    name = " ".join(_WORD.findall(short_name(tag.filename)[:_LONGEST])).lower()
+    for pattern, purpose, filename in _PURPOSES:
+        plugin = plugin_named(filename) if re.search(pattern, name) else None
+        if plugin is not None:
+            inner = "".join(_translated(plugin, tag.element))
+            return Substitute(
+                filename=filename,
+                purpose=purpose,
+                text=f"<plugin name={quoteattr(tag.name[:_LONGEST])} "
+                f'filename="{filename}">{inner}</plugin>',
+                sensor_type=plugin.sensor_type if plugin.for_sensor else "",
+            )
+    return None
+
+
+def _translated(plugin: type[Plugin[object]], element: Element) -> Iterator[str]:
+    """Returns the supported tags for which the unsupported plugin has a value.
+
+    Tags that the supported plugin requires, and joints, have the value `_BLANK` if it has none.
+    """
+    values = {_words(each.tag): each.text.strip() for each in element.children if each.text.strip()}
+    if (namespace := values.get(_words("robotNamespace"))) is not None:
+        yield _written("robotNamespace", namespace)
+    for item in dataclasses.fields(plugin.parameters):
+        tags: tuple[str, ...] = item.metadata["tags"]
+        if any("/" in each for each in tags):
+            continue
+        role = item.metadata["role"]
+        found = next((values[_words(each)] for each in tags if _words(each) in values), None)
+        if found is None and role in JOINT_ROLES and (side := role.partition("_")[0]) != "joint":
+            found = next(
+                (
+                    value
+                    for words, value in values.items()
+                    if side in words and words & {"wheel", "joint", "wheels", "joints"}
+                ),
+                None,
+            )
+        required = item.default is dataclasses.MISSING
+        if found is None and (
+            required or (role in JOINT_ROLES and not item.metadata["optional"] and item.default)
+        ):
+            found = _BLANK
+        if found is not None:
+            yield _written(tags[0], found)
+
+
+def _written(tag: str, value: str) -> str:
+    return f"<{tag}>{escape(value) if len(value) <= _LONGEST else _BLANK}</{tag}>"
+
+
+def _words(tag: str) -> frozenset[str]:
+    """Returns the words of a tag, so that ``leftFrontJoint`` equals ``front_left_joint``."""
+    return frozenset(word.lower() for word in _WORD.findall(tag))
