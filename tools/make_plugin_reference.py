@@ -210,7 +210,7 @@ def _page(plugin: type[Plugin[Any]], interface: Interface, links: dict[str, str]
         lines += ["|---|---|---|---|", *rows, ""]
     if interface:
         lines += ["## Topics and services", ""]
-        lines += [f"![Topics and services of {title(plugin)}](../{_picture_name(plugin)})", ""]
+        lines += [f"![Topics and services: {title(plugin)}](../{_picture_name(plugin)})", ""]
         switched = any(kind is bool for _, kind in fields(plugin))
         lines += [f"{_TABLE_SWITCHED if switched else _TABLE}.", ""]
         lines += ["| Name | Type | Role |", "|---|---|---|"]

@@ -52,7 +52,7 @@ def connect(host: str, port: int, seconds: float) -> socket.socket:
         addresses = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     except (UnicodeError, OverflowError, ValueError) as error:
         raise OSError(f"invalid host name: {error}") from None
-    failure = OSError("the host has no address")
+    failure = OSError("the host name has no IP address")
     for family, kind, protocol, _, address in addresses[:_ADDRESSES]:
         rest = deadline - time.monotonic()
         if rest <= 0:

@@ -57,7 +57,7 @@ class Report(Observer):
         """Says that this is not the only simulation."""
         print_diagnostic(
             OTHER_SIMULATION_RUNNING.diagnostic(
-                "another simulation is running, so commands such as topic require --sim",
+                "another simulation is running, so commands such as cartwheel topic require --sim",
                 hint="\n".join(["Running simulations:", *(f"    {entry}" for entry in others)]),
             )
         )

@@ -178,9 +178,9 @@ def _in_folder(folder: Path, uri: Node, ctx: Context) -> Path:
         return folder / "model.sdf"
     wanted = best[1] if best is not None and best[1] else "model.sdf"
     raise NotThereError(
-        f'the folder of "{uri.text}" contains no {wanted}',
+        f'the model folder for "{uri.text}" contains no {wanted}',
         code=files.FILE_MISSING,
         origin=uri.origin,
         values={"kind": "model", "name": uri.text},
-        hint=f"The model was found in the folder {folder}.",
+        hint=f"The folder is {folder}.",
     )

@@ -34,7 +34,7 @@ class GzDriveParameters:
     tf_topic: str = tag(
         "tf_topic",
         default="",
-        doc="Topic of the odometry's transform (TFMessage). Default: `/model/<model>/tf`.",
+        doc="Topic of the odometry transform (TFMessage). Default: `/model/<model>/tf`.",
     )
     frame: str = tag(
         "frame_id", default="", doc="Frame ID of the odometry. Default: `<model>/odom`."

@@ -26,15 +26,15 @@ class MimicJointParameters:
         "multiplier",
         default=1.0,
         most=MOST_RATIO,
-        doc="Factor in the position of `<mimicJoint>`, which is multiplier * position of "
-        "`<joint>` + offset.",
+        doc="Factor m. The position of `<mimicJoint>` is m times the position of `<joint>`, plus "
+        "`<offset>`.",
     )
     offset: float = tag(
         "offset",
         default=0.0,
         unit="rad or m",
         most=FARTHEST,
-        doc="Offset in the position of `<mimicJoint>`.",
+        doc="Added to the position of `<mimicJoint>`.",
     )
     max_effort: float = tag(
         "maxEffort",

@@ -190,7 +190,8 @@ class DiffDrive(Plugin[DiffDriveParameters]):
         if element.find("torque") and not element.find("wheelTorque"):
             self.warn(
                 devices.PLUGIN_PARAMETER_OBSOLETE,
-                f"<torque> is read as <wheelTorque>; Gazebo 11 ignores it and uses {_TORQUE:g} N m",
+                f"<torque> is read as <wheelTorque>; Gazebo 11 ignores <torque> and uses "
+                f"{_TORQUE:g} N m",
                 severity="info",
                 values={"parameter": "torque"},
             )

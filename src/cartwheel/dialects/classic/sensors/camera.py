@@ -392,6 +392,7 @@ class Prosilica(RosCamera[ProsilicaParameters]):
         if self.graph.parameters.search("trigger_mode", scope) == "polled":
             self.warn(
                 devices.PLUGIN_PARAMETER_IGNORED,
-                'the parameter trigger_mode "polled" has no effect: the camera streams',
+                'the parameter trigger_mode "polled" has no effect because the camera publishes '
+                "continuously",
                 values={"parameter": "trigger_mode"},
             )
