@@ -121,14 +121,14 @@ class Simulation(Models):
                 due = min(due, change)
             # Recomputed, because a task may have changed the step length.
             left = engine.steps_until(target_ns)
-            single = separation.active or faults.pending is not None
+            single = separation.roots or faults.pending is not None
             count = 1 if single else min(left, due - engine.step)
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
             engine.advance(count, forwarded=forwarded)
             left -= count
-            if separation.active:
+            if separation.roots:
                 separation.limit(engine.model, engine.data)
             if engine.step >= watch.due:
                 watch.check(population.origin_of)

@@ -133,7 +133,8 @@ class DifferentialDrive(Drive):
 
     def update(self, seconds: float) -> None:
         self.actuate(seconds)
-        self.measure(seconds)
+        if self._config.odometry != "ground truth":
+            self.measure(seconds)
 
     def actuate(self, seconds: float) -> None:
         """Commands the wheels, `seconds` after the last call."""
@@ -142,8 +143,8 @@ class DifferentialDrive(Drive):
             forward, turn = self._command
             period = seconds if config.limit_period is None else config.limit_period
             self._set_targets(self.linear.step(forward, period), self.angular.step(turn, period))
-        if self._speeds != self._targets:
-            if config.acceleration > 0:
+        if self._speeds is not self._targets:
+            if config.acceleration > 0 and self._speeds != self._targets:
                 most = config.acceleration * seconds
                 self._speeds = [
                     speed if speed == target else ramp(speed, target, most)
@@ -151,8 +152,10 @@ class DifferentialDrive(Drive):
                 ]
             else:
                 self._speeds = self._targets
-        for wheel, speed, radius in zip(self._wheels, self._speeds, self._radii, strict=True):
-            wheel.command = speed / radius
+            pairs = zip(self._speeds, self._radii, strict=True)
+            self._rotating = [speed / radius for speed, radius in pairs]
+        for wheel, speed in zip(self._wheels, self._rotating, strict=True):
+            wheel.command = speed
 
     def measure(self, seconds: float) -> None:
         """Adds the motion since the last call, `seconds` ago, to the dead reckoning."""
@@ -187,7 +190,8 @@ class DifferentialDrive(Drive):
     def _rest(self) -> None:
         self._command = (0.0, 0.0)
         self._targets = [0.0] * len(self._wheels)
-        self._speeds = [0.0] * len(self._wheels)
+        self._speeds = self._targets
+        self._rotating = [0.0] * len(self._wheels)
         self._rotation = None
         self.linear.reset()
         self.angular.reset()

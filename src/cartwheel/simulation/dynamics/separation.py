@@ -32,20 +32,17 @@ class Separation:
 
     def __init__(self, *, slow: bool = True) -> None:
         self._slow = slow
-        self._roots: set[int] = set()
-
-    @property
-    def active(self) -> bool:
-        return bool(self._roots)
+        self.roots: set[int] = set()
+        """Root bodies of the models that are being separated."""
 
     def forget(self) -> None:
         """Stops all separations, after a time reset."""
-        self._roots.clear()
+        self.roots.clear()
 
     def resume(self, model: Any, data: Any) -> None:
         """Continues after the model was recompiled, with any remaining overlaps."""
-        if self._roots:
-            self._roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
+        if self.roots:
+            self.roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
 
     def begin(self, model: Any, data: Any, placed: set[int]) -> list[tuple[str, float]]:
         """Finds overlaps of a model that was just placed.
@@ -66,14 +63,14 @@ class Separation:
             name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, other) or "world"
             found[name] = max(found.get(name, 0.0), depth)
             if self._slow:
-                self._roots |= {one, two}
+                self.roots |= {one, two}
         return sorted(found.items())
 
     def limit(self, model: Any, data: Any) -> None:
         """Limits the speeds after a step; a separation ends when nothing overlaps any more."""
         roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
-        self._roots &= roots
-        for root in sorted(self._roots):
+        self.roots &= roots
+        for root in sorted(self.roots):
             joint = int(model.body_jntadr[root])
             if joint < 0 or model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_FREE:
                 continue
