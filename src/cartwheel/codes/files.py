@@ -176,3 +176,9 @@ LINK_RECONNECTED = Code(
     "warning",
     "a link is empty or attached elsewhere because a part of the robot is left out",
 )
+STAND_IN_USED = Code(
+    "CW161",
+    "stand-in-used",
+    "info",
+    "a package was not found, and Cartwheel's stand-in for it is used",
+)

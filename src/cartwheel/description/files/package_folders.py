@@ -30,13 +30,27 @@ _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 
 
 def share() -> Path:
-    """The folder with the built-in ``robots``, ``worlds`` and ``models``.
+    """The folder with the built-in ``robots``, ``worlds``, ``models`` and ``standins``.
 
     The repository's root in a checkout, ``cartwheel/share`` in an installed package.
     """
     package = Path(__file__).resolve().parents[2]
     installed = package / "share"
     return installed if installed.is_dir() else package.parent.parent
+
+
+def stand_ins() -> Path:
+    """The folder with Cartwheel's own packages for sensor packages that are not installed."""
+    return share() / "standins"
+
+
+def stand_in_name(path: Path) -> str | None:
+    """The package that a file replaces; None unless the file is in a stand-in package."""
+    root = stand_ins()
+    if not path.is_relative_to(root):
+        return None
+    parts = path.relative_to(root).parts
+    return parts[0] if len(parts) > 1 else None
 
 
 def around(folder: Path) -> list[Path]:

@@ -18,6 +18,7 @@ from cartwheel.description.files.package_folders import (
     package_name,
     packages_in,
     share,
+    stand_ins,
 )
 
 _ROS1 = "ROS_PACKAGE_PATH"
@@ -139,7 +140,7 @@ class PackageSearch:
                 for bare in (root, root / name):
                     if bare.name == name and is_dir(bare):
                         return bare
-        return None
+        return package_in(stand_ins(), name)
 
     def _own_folder(self, name: str) -> Path | None:
         """The folder with this name that contains the file but no manifest, if the file is in no

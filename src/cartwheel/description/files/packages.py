@@ -19,7 +19,7 @@ from cartwheel.codes.tags import VALUE_INVALID
 from cartwheel.description.elements import numbers
 from cartwheel.description.files import fuel
 from cartwheel.description.files.install_rules import source_of
-from cartwheel.description.files.missing_packages import Advice
+from cartwheel.description.files.missing_packages import Advice, how_to_install
 from cartwheel.description.files.package_folders import (
     around,
     is_dir,
@@ -27,6 +27,7 @@ from cartwheel.description.files.package_folders import (
     package_above,
     package_name,
     share,
+    stand_in_name,
 )
 from cartwheel.description.files.package_search import PackageSearch, listed
 from cartwheel.description.files.readable_files import (
@@ -72,6 +73,8 @@ class Packages:
         self.package_path = tuple(Path(path).expanduser().absolute() for path in package_path)
         self._environment = os.environ if environment is None else environment
         self._search = PackageSearch(self.file, self.package_path, self._environment)
+        self.stand_ins: dict[str, Origin | None] = {}
+        """The packages whose stand-ins were read, with the first element that refers to each."""
 
     @property
     def folder(self) -> Path:
@@ -89,6 +92,10 @@ class Packages:
             message = f'the package "{name}" was not found'
             raise _missing("package", name, message, origin, self._search.package_advice(name))
         return found
+
+    def how_to_install(self, name: str) -> str:
+        """A hint on how to install a package."""
+        return how_to_install(name, self._environment)
 
     def all_named(self, name: str) -> list[Path]:
         """The folders of all packages with a name, in search order."""
@@ -139,6 +146,15 @@ class Packages:
                 origin=origin,
                 values={"kind": what, "name": uri},
             )
+        for path in candidates:
+            package = stand_in_name(path)
+            if package is not None:
+                message = (
+                    f'the package "{package}" was not found, and its stand-in does not contain '
+                    f"the {what}"
+                )
+                known = self._search.package_advice(package)
+                raise _missing("package", package, message, origin, known)
         raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
 
     def model_folders(self) -> list[Path]:
@@ -167,13 +183,17 @@ class Packages:
         return tuple(dict.fromkeys(root for each in folders for root in self._workspace(each)))
 
     def require(self, path: Path, what: str, origin: Origin | None = None) -> None:
-        """Rejects a file that the description may not read.
+        """Rejects a file that the description may not read, and notes the use of a stand-in.
 
         Raises:
             DescriptionError: The file may not be read; the hint says which files may.
         """
         if not self.may_read(path):
             self._refuse(f'{what} "{path}"', origin)
+        stand_in = stand_in_name(path)
+        inside = origin is not None and stand_in_name(Path(origin.file).absolute()) is not None
+        if stand_in is not None and not inside:
+            self.stand_ins.setdefault(stand_in, origin)
 
     def _refuse(self, what: str, origin: Origin | None) -> NoReturn:
         raise DescriptionError(
@@ -191,7 +211,7 @@ class Packages:
         for variable in _RESOURCES:
             yield from self._search.paths(variable)
         yield from (Path("~/.gazebo/models").expanduser(), *fuel.caches(self._environment))
-        yield from (share() / each for each in ("models", "robots", "worlds"))
+        yield from (share() / each for each in ("models", "robots", "worlds", "standins"))
 
     def _workspace(self, folder: Path) -> list[Path]:
         """The folders around a file that it may read."""

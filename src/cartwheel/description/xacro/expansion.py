@@ -14,6 +14,7 @@ from cartwheel.description.expressions import Budget
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.xacro.absent import Absences
 from cartwheel.description.xacro.dom import Document, DomBuilder, Element, clone, size_of, to_node
+from cartwheel.description.xacro.driver_parts import choose_driver_parts
 from cartwheel.description.xacro.errors import Failure, explain
 from cartwheel.description.xacro.module import fresh_xacro
 from cartwheel.description.xacro.replacements import replace_functions
@@ -64,14 +65,30 @@ def expand(
     replace_functions(module, run)
     run.execute(module, content)
     root = to_node(run.document.documentElement)
+    choose_driver_parts(root)
     run.absences.connect(root)
     return Expansion(
         root=root,
-        diagnostics=(*run.diagnostics, *_unknown_arguments(run, arguments)),
+        diagnostics=(
+            *run.diagnostics,
+            *_stand_ins(packages),
+            *_unknown_arguments(run, arguments),
+        ),
         declared=tuple(sorted(run.declared)),
         files=tuple(dict.fromkeys(run.files)),
         arguments=dict(run.values),
     )
+
+
+def _stand_ins(packages: Packages) -> Iterator[Diagnostic]:
+    for name, origin in packages.stand_ins.items():
+        yield codes.STAND_IN_USED.diagnostic(
+            f'the package "{name}" was not found, and Cartwheel\'s stand-in for it is used: its '
+            "frames and sensors match, but its shapes are plain",
+            origin=origin,
+            hint=packages.how_to_install(name),
+            values={"package": name},
+        )
 
 
 def _unknown_arguments(run: Run, arguments: Mapping[str, str]) -> Iterator[Diagnostic]:
