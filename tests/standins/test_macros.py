@@ -1,0 +1,97 @@
+"""The macros of the stand-ins: their frames are at the documented places, their sensors publish."""
+
+import re
+
+import pytest
+from tests.coded import coded
+from tests.standins.calls import CALLS, Call
+
+import cartwheel as cw
+from cartwheel.codes.files import STAND_IN_USED
+from cartwheel.description import load_text
+from cartwheel.description.files.package_folders import package_name, stand_ins
+from cartwheel.description.model import RobotDescription
+from cartwheel.geometry import Pose, rotate
+
+BASE = """<link name="base_link">
+  <inertial><mass value="20"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><origin xyz="0 0 0.1"/><geometry><box size="1 1 0.2"/></geometry></collision></link>"""
+HUNG = """<joint name="hung" type="fixed"><parent link="base_link"/><child link="{}"/>
+  <origin xyz="0.1 0 0.2"/></joint>"""
+
+
+def robot_of(call: Call) -> RobotDescription:
+    package, path = call.file.split("/", 1)
+    robot = load_text(
+        f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{BASE}'
+        f'<xacro:include filename="$(find {package})/{path}"/>{call.text}'
+        f"{HUNG.format(call.hung) if call.hung else ''}</robot>"
+    )
+    assert isinstance(robot, RobotDescription)
+    return robot
+
+
+def poses_of(robot: RobotDescription) -> dict[str, Pose]:
+    """The pose of each link relative to ``base_link``, with all joints at zero."""
+    base = robot.link("base_link").pose.inverse()
+    return {link.name: base @ link.pose for link in robot.links}
+
+
+@pytest.mark.parametrize("call", CALLS, ids=str)
+def test_frames(call):
+    robot = robot_of(call)
+    (used,) = coded(robot, STAND_IN_USED)
+    assert used.values["package"] == call.file.split("/")[0]
+    assert used.severity == "info"
+    assert [each for each in robot.diagnostics if each.severity != "info"] == []
+    poses = poses_of(robot)
+    for frame, position in call.frames.items():
+        assert poses[frame].position == pytest.approx(position, abs=2e-5), frame
+    for frame in call.optical:
+        rotation = poses[frame].orientation
+        # The colour lens of the Astra is turned by 0.003 rad.
+        assert rotate(rotation, (0, 0, 1)) == pytest.approx((1, 0, 0), abs=0.005), frame
+        assert rotate(rotation, (1, 0, 0)) == pytest.approx((0, -1, 0), abs=0.005), frame
+
+
+@pytest.mark.parametrize("call", CALLS, ids=str)
+def test_topics(call, make):
+    world: cw.World = make.world()
+    world.session.spawn(robot_of(call))
+    boxes = {topic: world.mailbox(topic) for topic in call.topics}
+    # The slowest sensors publish at 5 Hz.
+    world.run(0.21)
+    frames = {topic: {m.header.frame_id for m in box.drain()} for topic, box in boxes.items()}
+    assert frames == {topic: {frame} for topic, frame in call.topics.items()}
+    assert [each for each in world.diagnostics if each.severity != "info"] == []
+
+
+def test_every_macro_is_called():
+    """Except those that other stand-ins are made of, and those that tests of others call."""
+    defined = set()
+    for file in stand_ins().rglob("*.xacro"):
+        defined |= set(re.findall(r'<xacro:macro name="(?!stand_in_)([\w-]+)"', file.read_text()))
+    for file in stand_ins().rglob("*.xacro"):
+        defined -= set(re.findall(r"<xacro:([\w-]+) ", file.read_text()))
+    called = {call.text.split()[0].removeprefix("<xacro:").rstrip("/>") for call in CALLS}
+    called = {re.split(r"[ />]", each)[0] for each in called}
+    assert defined - called == set()
+
+
+@pytest.mark.parametrize(
+    "file",
+    [each for each in sorted(stand_ins().rglob("*.xacro")) if each.name.startswith("test_")]
+    + sorted(stand_ins().rglob("[dz]*_descr.urdf.xacro")),
+    ids=lambda file: f"{file.parts[-3]}/{file.name}",
+)
+def test_example_robots(file):
+    robot = load_text(file.read_text(), file=str(file))
+    assert isinstance(robot, RobotDescription)
+    assert any(link.sensors for link in robot.links)
+
+
+def test_each_folder_is_the_package_of_its_name():
+    folders = [each for each in stand_ins().iterdir() if each.is_dir()]
+    assert len(folders) >= 12
+    for folder in folders:
+        assert package_name(folder) == folder.name
