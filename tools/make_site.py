@@ -88,6 +88,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "gazebo-tags.md",
             "controllers.md",
             "worlds.md",
+            "stand-ins.md",
             "conventions.md",
             "reference/*.md",
         ],

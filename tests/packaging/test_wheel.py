@@ -64,9 +64,9 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return programs
 
 
-def test_robots_worlds_and_models_are_in_the_wheel(wheel: Path) -> None:
+def test_robots_worlds_models_and_stand_ins_are_in_the_wheel(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
-    for kind in ("robots", "worlds", "models"):
+    for kind in ("robots", "worlds", "models", "standins"):
         files = [file for file in (ROOT / kind).rglob("*") if file.is_file()]
         assert files, kind
         for file in files:

@@ -4,7 +4,9 @@ import re
 
 import pytest
 from tests.coded import coded
-from tests.standins.calls import CALLS, Call
+from tests.standins.calls import Call
+from tests.standins.cameras import CAMERAS
+from tests.standins.lasers import LASERS
 
 import cartwheel as cw
 from cartwheel.codes.files import STAND_IN_USED
@@ -13,6 +15,7 @@ from cartwheel.description.files.package_folders import package_name, stand_ins
 from cartwheel.description.model import RobotDescription
 from cartwheel.geometry import Pose, rotate
 
+CALLS = [*CAMERAS, *LASERS]
 BASE = """<link name="base_link">
   <inertial><mass value="20"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
   <collision><origin xyz="0 0 0.1"/><geometry><box size="1 1 0.2"/></geometry></collision></link>"""
@@ -57,7 +60,7 @@ def test_frames(call):
 @pytest.mark.parametrize("call", CALLS, ids=str)
 def test_topics(call, make):
     world: cw.World = make.world()
-    world.session.spawn(robot_of(call))
+    world.session.spawn(robot_of(call), pose=Pose((0, 0, 0.2)))
     boxes = {topic: world.mailbox(topic) for topic in call.topics}
     # The slowest sensors publish at 5 Hz.
     world.run(0.21)

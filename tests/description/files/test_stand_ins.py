@@ -3,7 +3,7 @@
 import pytest
 from tests.coded import coded, raises
 
-from cartwheel.checks import check_file
+from cartwheel.checks import check
 from cartwheel.codes import files
 from cartwheel.description import load
 from cartwheel.description.files.package_folders import stand_in_name, stand_ins
@@ -61,7 +61,7 @@ def test_a_package_nearby_wins(load_robot, tmp_path, place):
 def test_a_folder_without_a_manifest_wins(load_robot, tmp_path):
     own = tmp_path / "src" / "realsense2_description" / "urdf"
     own.mkdir(parents=True)
-    (own / "_d435.urdf.xacro").write_text(f'<robot {NS}>{LINK.replace("base", "own")}</robot>')
+    (own / "_d435.urdf.xacro").write_text(f"<robot {NS}>{LINK.replace('base', 'own')}</robot>")
     assert [link.name for link in load_robot(include()).links] == ["own"]
 
 
@@ -95,21 +95,20 @@ def test_each_stand_in_is_reported_once_at_its_first_include(load_robot):
 
 
 def test_a_stand_in_that_includes_another_one(load_robot):
-    robot = load_robot(
-        LINK, include("$(find realsense2_camera)/urdf/_d435.urdf.xacro"), CALL
-    )
+    robot = load_robot(LINK, include("$(find realsense2_camera)/urdf/_d435.urdf.xacro"), CALL)
     assert reported(robot) == ["realsense2_camera"]
 
 
 def test_check_reports_nothing_about_the_contents_of_a_stand_in(load_robot, tmp_path):
     load_robot(
         '<link name="base"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
-        'ixy="0" ixz="0" iyz="0"/></inertial></link>',
+        'ixy="0" ixz="0" iyz="0"/></inertial>'
+        '<collision><geometry><box size="0.5 0.5 0.5"/></geometry></collision></link>',
         include("$(find realsense2_description)/urdf/_d435i.urdf.xacro"),
-        '<xacro:sensor_d435i parent="base"><origin xyz="1 0 0"/></xacro:sensor_d435i>',
+        '<xacro:sensor_d435i parent="base"><origin xyz="0.2 0 0"/></xacro:sensor_d435i>',
     )
-    found = check_file(tmp_path / "src" / "mine" / "urdf" / "robot.xacro")
-    assert [each.code for each in found.diagnostics] == [files.STAND_IN_USED]
+    found = check(tmp_path / "src" / "mine" / "urdf" / "robot.xacro")
+    assert [each.code for each in found.findings] == [files.STAND_IN_USED]
 
 
 def test_a_file_that_the_stand_in_lacks(load_robot):
@@ -193,4 +192,11 @@ def test_a_macro_in_a_namespace(load_robot):
         f'<xacro:include filename="{D435}" ns="intel"/>',
         CALL.replace("xacro:sensor", "xacro:intel.sensor"),
     )
+    assert robot.link("camera_link") is not None
+
+
+def test_a_macro_that_the_stand_in_lacks_is_left_out(load_robot):
+    robot = load_robot(LINK, include(), CALL, '<xacro:sensor_t265 parent="base" name="t"/>')
+    (lost,) = coded(robot, files.MACRO_ABSENT)
+    assert lost.values["package"] == "realsense2_description"
     assert robot.link("camera_link") is not None

@@ -89,6 +89,16 @@ class Absences:
                 )
             )
 
+    @property
+    def may_define_macros(self) -> bool:
+        """Whether an absent file, or a package with a stand-in, may define further macros."""
+        return bool(self._incomplete())
+
+    def _incomplete(self) -> list[AbsentFile]:
+        """The absent files, and the packages whose stand-ins are used."""
+        packages = self.packages.stand_ins
+        return [*self.files, *(AbsentFile(f"$(find {name})", name) for name in packages)]
+
     def leave_out_call(self, call: LostCall, known: list[str]) -> None:
         """Reports a call of a macro that is not defined, probably because its file is absent.
 
@@ -97,12 +107,13 @@ class Absences:
             known: The macros that are defined, with their prefix.
         """
         self.calls.append(call)
-        likely = _likely(call, self.files)
+        files = self._incomplete()
+        likely = _likely(call, files)
         source = f'"{likely.name}"' if likely else "one of the absent files"
         values: dict[str, Value] = {
             "name": call.tag,
             "package": likely.package if likely else "",
-            "files": tuple(each.name for each in self.files),
+            "files": tuple(each.name for each in files),
             "left_out": "macro",
         }
         self.diagnostics.append(
@@ -110,7 +121,7 @@ class Absences:
                 f"<{call.tag}> is left out because its macro is not defined, probably because "
                 f"{source} is not found",
                 origin=call.origin,
-                hint=suggestion(call.tag, known) if likely is None else "",
+                hint=suggestion(call.tag, known) if likely not in self.files else "",
                 values=values,
             )
         )
@@ -133,11 +144,11 @@ class Absences:
         Raises:
             DescriptionError: A file is absent, and nothing is left of the robot.
         """
-        if root.tag != "robot" or self._first is None:
+        if root.tag != "robot" or not (self._first or self.calls):
             return
         links = {node.attributes["name"].strip(): node for node in root.all("link")
                  if "name" in node.attributes}  # fmt: skip
-        if not links:
+        if not links and self._first is not None:
             raise self._first
         stated = set(links)
         held: dict[str, str] = {}

@@ -255,7 +255,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         run.place, run.macros, run.symbols = node, macros, symbols
         if node.tagName == "xacro:call":
             return original.handle_macro_call(node, macros, symbols)
-        if run.absences.files and not is_defined(
+        if run.absences.may_define_macros and not is_defined(
             node.tagName.removeprefix(PREFIX), macros, symbols
         ):
             leave_out_call(node, symbols)
