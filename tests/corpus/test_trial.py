@@ -5,15 +5,22 @@ import math
 import pytest
 
 from cartwheel.api import World
-from cartwheel.codes.devices import CONTROLLERS_NOT_FOUND, PLUGIN_UNKNOWN
+from cartwheel.codes.devices import (
+    CONTROLLERS_NOT_FOUND,
+    PLUGIN_PARAMETER_OBSOLETE,
+    PLUGIN_UNKNOWN,
+)
 from cartwheel.codes.robot import (
     DUPLICATE_NAME,
     UNBALANCED,
     WHEEL_DIAMETER_MISMATCH,
     WHEEL_FRICTIONLESS,
     WHEEL_SEPARATION_MISMATCH,
+    WHEELS_SWAPPED,
 )
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.corpus import try_robot
+from cartwheel.corpus.launches import launches_near
 from cartwheel.corpus.trial import _listened
 
 INERTIA = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
@@ -119,6 +126,21 @@ def test_a_separation_explains_the_turn_rate_that_follows_from_it_and_no_other(t
     assert {fault.code for fault in verdict.faults} == {WHEEL_FRICTIONLESS}
 
 
+def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):
+    swapped = cart(0.1).replace("left_joint</", "x</").replace("right_joint</", "left_joint</")
+    swapped = swapped.replace("x</", "right_joint</")
+    verdict = tried(swapped)
+    assert verdict.drives[0].follows
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("turn", WHEELS_SWAPPED)
+    # Less torque than the friction of the casters and of the tyres' contact can be overcome with.
+    weak = swapped.replace("</plugin>", "<torque>0.0001</torque></plugin>")
+    faults = tried(weak).faults
+    assert {fault.test for fault in faults} == {"drive", "turn"}
+    assert {fault.code for fault in faults} == {PLUGIN_PARAMETER_OBSOLETE}
+    assert {fault.source for fault in faults} == {"unknown"}
+
+
 def test_the_robots_own_limits_are_no_fault(tried):
     slow = "<max_velocity>0.1</max_velocity></plugin>"
     verdict = tried(cart(0.1).replace("libgazebo_ros_diff_drive.so", "gz-sim-diff-drive-system")
@@ -193,17 +215,34 @@ def test_the_controllers_beside_a_robot_take_its_joint_where_they_are_told(tmp_p
     assert verdict.good
 
 
-def test_a_joint_that_is_too_weak_does_not_arrive(tmp_path, tried):
-    path = tmp_path / "weak.yaml"
-    path.write_text(
-        "arm_controller:\n  type: effort_controllers/JointPositionController\n"
-        "  joint: shoulder\n  pid: {p: 1.0, d: 1.0}\n"
-    )
+PID = (
+    "arm_controller:\n  type: effort_controllers/JointPositionController\n"
+    "  joint: shoulder\n  pid: {{p: {p}, d: 1.0}}\n"
+)
+
+
+def test_an_error_that_follows_from_gravity_and_the_gains_is_none(tmp_path, tried):
+    path = tmp_path / "soft.yaml"
+    path.write_text(PID.format(p=3.0))
     verdict = tried(ARM.format(kind="Effort"), controllers=[path])
     (reach,) = verdict.reaches
-    # m g l is 0.98 N m/rad: a spring of 1 N m/rad hardly holds it, and leaves it far off.
+    # At rest, p times the error is the weight: 3 e = m g l sin(q), with m g l = 0.98 N m.
+    assert abs(reach.error) == pytest.approx(0.98 * abs(math.sin(reach.reached)) / 3.0, rel=0.02)
+    assert reach.sag == pytest.approx(abs(reach.error), rel=0.02)
+    assert reach.arrived
+    assert verdict.good
+
+
+def test_a_joint_that_is_too_weak_does_not_arrive(tmp_path, tried):
+    path = tmp_path / "weak.yaml"
+    path.write_text(PID.format(p=100.0))
+    weak = ARM.format(kind="Effort").replace('effort="50"', 'effort="0.01"')
+    verdict = tried(weak, controllers=[path])
+    (reach,) = verdict.reaches
     assert not reach.arrived
-    assert not verdict.good
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject, fault.code) == ("reach", "shoulder", None)
+    assert verdict.outcome == "unknown"
 
 
 def test_a_plugin_that_is_missing_and_moves_a_joint_is_a_fault(tried):
@@ -217,6 +256,28 @@ def test_a_plugin_that_is_missing_and_moves_a_joint_is_a_fault(tried):
     assert fault.source == "unknown"
     assert verdict.should_move
     assert not verdict.moves
+
+
+def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_fault(tmp_path):
+    files = {
+        "package.xml": "<package><name>arm</name></package>",
+        "arm.urdf": f'<robot name="arm">{ARM.format(kind="Position")}</robot>',
+        "a.yaml": "a:\n  type: position_controllers/JointPositionController\n  joint: shoulder\n"
+        "b:\n  type: my_controllers/Own\n  joint: shoulder\n",
+        "a.launch": '<launch><param name="robot_description" textfile="$(find arm)/arm.urdf"/>'
+        '<rosparam file="$(find arm)/a.yaml"/>'
+        '<node name="s" pkg="controller_manager" type="spawner" args="a b"/></launch>',
+    }
+    for name, text in files.items():
+        (tmp_path / "arm" / name).parent.mkdir(exist_ok=True)
+        (tmp_path / "arm" / name).write_text(text)
+    verdict = try_robot(
+        tmp_path / "arm" / "arm.urdf", standing=1.0, launches=launches_near(tmp_path)
+    )
+    assert verdict.controllers == ("a",)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject, fault.code) == ("controller", "b", CONTROLLER_NOT_STARTED)
+    assert fault.source == "unknown"
 
 
 def test_a_manager_without_controllers_is_a_fault(tried):
@@ -299,19 +360,20 @@ def test_arguments_and_controllers_come_from_the_launch_files_of_the_robot(tmp_p
         '<rosparam file="$(find arm)/settings/a.yaml" command="load"/>'
         '<node name="s" pkg="controller_manager" type="spawner" args="a"/></launch>',
     }
+    arm = tmp_path / "workspace" / "arm"
     for name, text in files.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
-    verdict = try_robot(tmp_path / "arm.xacro", standing=1.0)
+        (arm / name).parent.mkdir(parents=True, exist_ok=True)
+        (arm / name).write_text(text)
+    verdict = try_robot(arm / "arm.xacro", standing=1.0)
     assert verdict.name == "lefty"
-    assert verdict.launch.file == tmp_path / "launch/a.launch"
+    assert verdict.launch.file == arm / "launch/a.launch"
     assert verdict.controllers == ("a",)
     assert verdict.good, verdict.faults
     # The caller's arguments and files take precedence.
     verdict = try_robot(
-        tmp_path / "arm.xacro",
+        arm / "arm.xacro",
         standing=1.0,
         arguments={"robot": "righty"},
-        controllers=[tmp_path / "config/b.yaml"],
+        controllers=[arm / "config/b.yaml"],
     )
     assert (verdict.name, verdict.controllers) == ("righty", ("b",))

@@ -19,7 +19,6 @@ _DRIVING = frozenset(
     {
         robot.DRIVE_JOINT_UNKNOWN,
         robot.DRIVE_JOINT_NOT_CONTINUOUS,
-        robot.WHEELS_SWAPPED,
         robot.WHEEL_AXIS_MISALIGNED,
         robot.WHEEL_NOT_ROUND,
         robot.WHEEL_FRICTIONLESS,
@@ -28,7 +27,7 @@ _DRIVING = frozenset(
         robot.UNBALANCED,
         robot.EFFORT_ZERO,
         robot.OVERLAPPING_COLLISIONS,
-        files.FILE_MISSING,
+        devices.PLUGIN_PARAMETER_OBSOLETE,
         running.PLUGIN_LEFT_OUT,
         running.JOINT_DRIVEN_TWICE,
     }
@@ -47,6 +46,8 @@ _CONTROL = frozenset(
     }
 )
 """Reasons why no controller runs."""
+_ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
+"""Causes for which a controller does not start in ROS either, although another one works."""
 _STANDING = frozenset(
     {
         files.FILE_MISSING,
@@ -87,7 +88,9 @@ def faults(
         yield Fault(test="simulate" if verdict.loaded else "load", reason=verdict.failure)
     if not verdict.loaded:
         return
-    yield from _missing(verdict, description)
+    # Two plugins of a kind are one fault.
+    missing = {fault.subject: fault for fault in reversed([*_missing(verdict, description)])}
+    yield from reversed(missing.values())
     yield from _measured(verdict, findings)
 
 
@@ -111,11 +114,25 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
             )
         if reason is not None:
             yield Fault(test="plugin", subject=short_name(tag.filename), reason=reason)
+    refused = {
+        each.values.get("controller"): each
+        for each in said
+        if each.code is running.CONTROLLER_NOT_STARTED
+        and each.values.get("cause") not in _ALTERNATIVE
+    }
+    for name in verdict.spawned:
+        if name in refused and name not in verdict.controllers:
+            yield Fault(test="controller", subject=name, reason=refused[name])
     if verdict.drives or verdict.reaches or verdict.spins:
         return
     for tag in managers(description):
-        reason = _coded(said, _CONTROL) or devices.CONTROLLERS_NOT_FOUND.diagnostic(
-            "no file contains controllers for this controller manager", origin=tag.origin
+        reason = _coded(said, frozenset({devices.HARDWARE_NOT_SIMULATED}))
+        reason = (
+            reason
+            or _coded(said, _CONTROL)
+            or devices.CONTROLLERS_NOT_FOUND.diagnostic(
+                "no file contains controllers for this controller manager", origin=tag.origin
+            )
         )
         yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 
@@ -143,11 +160,11 @@ def _measured(verdict: Verdict, findings: Callable[[], Sequence[Diagnostic]]) ->
             yield Fault(test="turn", subject=drive.topic, reason=reason)
     for reach in verdict.reaches:
         if not reach.arrived:
-            reason = _of_joint(findings(), reach.joint)
+            reason = _of_joint((*said, *findings()), reach.joint)
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
-            reason = _of_joint(findings(), spin.joint)
+            reason = _of_joint((*said, *findings()), spin.joint)
             yield Fault(test="spin", subject=spin.joint, reason=reason)
     for flight in verdict.flights:
         if not flight.flies:
@@ -164,7 +181,7 @@ def _of_drive(
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
     product = math.prod(factor for _, factor in factors.values())
     for each, factor in factors.values():
-        if any(abs(ratio - one) <= _AGREES * one for one in (factor, product)):
+        if any(abs(ratio - one) <= _AGREES * abs(one) for one in (factor, product)):
             return each
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
@@ -176,7 +193,7 @@ def _of_drive(
         each
         for each in found
         if each.code in codes
-        and (each.code is not files.FILE_MISSING or each.values.get("left_out") == "collision")
+        and (each.code is not devices.PLUGIN_PARAMETER_OBSOLETE or _limits_torque(each))
     )
 
 
@@ -186,6 +203,8 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
     if finding.code is robot.SKID_STEERING and turning:
         ratio = values.get("ratio")
         return ratio if isinstance(ratio, float) else None
+    if finding.code is robot.WHEELS_SWAPPED and turning:
+        return -1.0
     stated, measured = values.get("stated"), values.get("measured")
     if not isinstance(stated, float) or not isinstance(measured, float) or stated * measured == 0:
         return None
@@ -194,6 +213,11 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
     if turning and finding.code in (robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_BASE_MISMATCH):
         return stated / measured
     return None
+
+
+def _limits_torque(each: Diagnostic) -> bool:
+    """Whether an obsolete parameter, which Gazebo 11 ignores, limits the wheels' torque."""
+    return any("orque" in str(value) for value in each.values.values())
 
 
 def _explains_fall(each: Diagnostic) -> bool:

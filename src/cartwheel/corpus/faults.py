@@ -40,8 +40,10 @@ _OURS = frozenset(
         UNCLASSIFIED,
         command.INTERNAL_FAULT,
         command.SYSTEM_LIMIT,
+        devices.PLUGIN_PARAMETER_OBSOLETE,
         devices.PLUGIN_UNKNOWN,
         devices.PLUGIN_PARAMETER_UNSUPPORTED,
+        devices.HARDWARE_NOT_SIMULATED,
         devices.CONTROLLER_TYPE_UNKNOWN,
         files.XACRO_NOT_INSTALLED,
         files.EXPANSION_TOO_LARGE,
@@ -53,7 +55,7 @@ _OURS = frozenset(
         world.PHYSICS_WARNING,
     }
 )
-"""Codes that do not show that the robot's files are wrong."""
+"""Codes that do not show that the robot fails in Gazebo as well."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -74,4 +76,7 @@ class Fault:
     @property
     def source(self) -> Literal["file", "unknown"]:
         """``file`` if the reason is a mistake in the robot's files."""
-        return "unknown" if self.code is None or self.code in _OURS else "file"
+        if self.reason is None or self.code in _OURS:
+            return "unknown"
+        ours = {code.number for code in _OURS}
+        return "unknown" if self.reason.values.get("cause") in ours else "file"

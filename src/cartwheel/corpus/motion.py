@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from cartwheel.api import Model, World
@@ -106,8 +106,14 @@ def drives(
     world.reset()
 
 
-def reaches(world: World, model: Model, description: RobotDescription) -> list[Reach]:
-    """Commands all position-controlled joints at once and measures where they end."""
+def reaches(
+    world: World, model: Model, description: RobotDescription, gains: Mapping[str, float]
+) -> list[Reach]:
+    """Commands all position-controlled joints at once and measures where they end.
+
+    `gains` contains the proportional gains of PID controllers with an effort output and without an
+    integral, by joint, in N m/rad or N/m.
+    """
     if not world.graph.joint_inputs.all():
         return []
     world.reset()
@@ -127,9 +133,21 @@ def reaches(world: World, model: Model, description: RobotDescription) -> list[R
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
+            sag=_sag(world, model, joint.name, gains.get(joint.name, 0.0)),
         )
         for taker, joint, target in told
     ]
+
+
+def _sag(world: World, model: Model, joint: str, gain: float) -> float:
+    """Error of a proportional controller that holds a joint against gravity, rad or m."""
+    if gain <= 0:
+        return 0.0
+    simulation = world.session.simulation
+    simulation.refresh()
+    number = simulation.engine.joint_id(model.name, joint)
+    load = simulation.data.qfrc_bias[simulation.model.jnt_dofadr[number]]
+    return abs(float(load)) / gain
 
 
 def _driven(
@@ -184,6 +202,9 @@ def _drive_on(world: World, topic: TopicInfo, command: Sequence[float], seconds:
 def _target(joint: Joint, position: float) -> float:
     """A nearby position within the joint's limits."""
     step = _SLIDE if joint.type == "prismatic" else _STEP
+    if joint.axis.velocity:
+        # Half of the joint's limit leaves time to accelerate.
+        step = min(step, 0.5 * joint.axis.velocity * _TRAJECTORY)
     lower, upper = joint.axis.lower, joint.axis.upper
     if joint.type == "continuous" or lower is None or upper is None:
         return position + step

@@ -17,7 +17,7 @@ _MOVES = re.compile(
 )
 """Names of plugins that move something. Those of controller managers are not among them."""
 _MANAGER = re.compile(r"ros2?_control")
-STEERED = re.compile(r"ackerman|steer(?!_bot)|tricycle|bicycle", re.IGNORECASE)
+STEERED = re.compile(r"ackerman|(?<!skid)(?<!skid[-_])steer|tricycle|bicycle", re.IGNORECASE)
 """Names of plugins and types of controllers for bases that cannot turn in place."""
 
 
@@ -49,24 +49,15 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
 
 
 def managers(robot: RobotDescription) -> list[PluginTag]:
-    """Controller managers of a robot with joints that accept commands."""
-    found = [tag for tag in robot.plugins if _MANAGER.search(short_name(tag.filename))]
-    return found if _is_commanded(robot) else []
+    """Controller managers of a robot with movable joints."""
+    if all(joint.type == "fixed" for joint in robot.joints):
+        return []
+    return [tag for tag in robot.plugins if _MANAGER.search(short_name(tag.filename))]
 
 
 def is_known(tag: PluginTag) -> bool:
     """Whether Cartwheel supports a plugin."""
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
-
-
-def _is_commanded(robot: RobotDescription) -> bool:
-    if any(each.find("joint") is not None for each in robot.transmissions):
-        return True
-    return any(
-        joint.find("command_interface") is not None
-        for each in robot.ros2_control
-        for joint in each.find_all("joint")
-    )
 
 
 def _words(element: Element) -> Iterator[str]:

@@ -15,7 +15,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
-from cartwheel.corpus.launches import chosen, controllers_for, launches_near, root_of
+from cartwheel.corpus.launches import LaunchUse, chosen, controllers_for, launches_near, root_of
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.verdict import Verdict
@@ -46,7 +46,7 @@ def try_robot(
     package_path: Sequence[Path] = (),
     controllers: Sequence[Path] | None = None,
     standing: float = STANDING,
-    launch_folder: Path | None = None,
+    launches: Sequence[LaunchUse] | None = None,
 ) -> Verdict:
     """Tests a description with the arguments and controllers that its launch files name.
 
@@ -58,16 +58,17 @@ def try_robot(
             or the files near the robot that `cartwheel run` would suggest, except those that need
             values from a launch file.
         standing: Simulation time without commands, s.
-        launch_folder: Folder whose launch files are read. None: the folder of the robot's package,
-            with the packages beside it.
+        launches: Contents of launch files. None: the launch files in the robot's package and in the
+            packages beside it are read.
 
     Returns:
         The results, including errors in the description.
     """
     verdict = Verdict(file=file)
-    folder = launch_folder or root_of(file)
-    uses = launches_near(folder, tuple(package_path)) if folder is not None else ()
-    use = chosen(file, uses)
+    if launches is None:
+        folder = root_of(file)
+        launches = launches_near(folder, package_path) if folder is not None else ()
+    use = chosen(file, launches)
     verdict = replace(verdict, launch=use)
     arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
     try:
@@ -78,10 +79,13 @@ def try_robot(
             verdict, error=str(error), failure=reason, faults=(Fault(test="load", reason=reason),)
         )
     verdict = _described(verdict, robot)
+    named: list[Path] = []
+    starter: LaunchUse | None = None
     if controllers is None:
-        starter = controllers_for(file, use, uses)
+        starter = controllers_for(file, use, launches)
         named = suggested(robot, among=starter.controllers) if starter is not None else []
         controllers = [each for each in named or suggested(robot) if _is_complete(each, robot)]
+    spawned = starter.spawned if starter is not None and (named or not controllers) else ()
     try:
         with World(lenient=True) as world:
             pose = _place(robot)
@@ -96,6 +100,7 @@ def try_robot(
                 loaded=True,
                 controllers=tuple(each.name for each in _controllers(world).started),
                 controller_files=tuple(controllers),
+                spawned=spawned,
             )
             for found in _moved(verdict, world, model, robot, standing):
                 verdict = replace(found, diagnostics=world.diagnostics)
@@ -212,9 +217,25 @@ def _moved(
         yield verdict
         verdict = replace(verdict, flights=tuple(commands.flights(world, model, robot)))
         yield verdict
-    verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot)))
+    verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot, _gains(started))))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started)))
+
+
+def _gains(started: Sequence[Controller]) -> dict[str, float]:
+    """Proportional gains of effort controllers without an integral, by joint."""
+    found: dict[str, float] = {}
+    for controller in started:
+        values = controller.settings.flat()
+        for joint, interface in controller.interfaces.items():
+            gains = [
+                (values.get(f"{path}.p"), values.get(f"{path}.i", 0.0))
+                for path in ("pid", f"gains.{joint}", f"{joint}.pid")
+                if f"{path}.p" in values
+            ]
+            if interface == "effort" and gains and not gains[0][1]:
+                found[joint] = float(gains[0][0] or 0.0)
+    return found
 
 
 def _steered(robot: RobotDescription, started: Sequence[Controller]) -> bool:

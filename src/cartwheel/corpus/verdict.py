@@ -105,6 +105,9 @@ class Reach:
     """rad or m."""
     reached: float
     angular: bool
+    sag: float = 0.0
+    """Error that follows from gravity and the controller's own gains, rad or m: the load divided by
+    the proportional gain of a PID controller with an effort output and without an integral."""
 
     @property
     def error(self) -> float:
@@ -113,7 +116,8 @@ class Reach:
 
     @property
     def arrived(self) -> bool:
-        return abs(self.error) <= (ANGLE if self.angular else LENGTH)
+        """Whether the error is small, or not larger than that from gravity and the gains."""
+        return abs(self.error) <= (ANGLE if self.angular else LENGTH) + self.sag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -184,6 +188,8 @@ class Verdict:
     """Unsupported plugins."""
     controllers: tuple[str, ...] = ()
     """Controllers that ran."""
+    spawned: tuple[str, ...] = ()
+    """Controllers that a launch file starts."""
     controller_files: tuple[Path, ...] = ()
     """Files that started the controllers, if the robot does not specify any."""
     stand: Stand | None = None

@@ -13,7 +13,7 @@ from typing import Any
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.codes.command import INTERNAL_FAULT, NO_ROBOTS
 from cartwheel.corpus import Fault, Kind, Survey, Verdict, survey, try_robot
-from cartwheel.corpus.launches import launches_near
+from cartwheel.corpus.launches import LaunchUse, launches_near
 from cartwheel.description.elements.xml import shown_path
 from cartwheel.errors import CartwheelError
 
@@ -45,17 +45,13 @@ def corpus(
     Raises:
         CartwheelError: No robot was found.
     """
-    surveys = [(folder, _survey(folder, package_path)) for folder in folders]
-    files = [
-        (file, folder if folder.is_dir() else None)
-        for folder, found in surveys
-        for file in found.robots
-    ]
-    skipped = [each for _, found in surveys for each in found.skipped]
+    surveys = [_survey(folder, package_path) for folder in folders]
+    files = [(file, launches) for found, launches in surveys for file in found.robots]
+    skipped = [each for found, _ in surveys for each in found.skipped]
     verdicts = []
-    for number, (file, folder) in enumerate(files, start=1):
+    for number, (file, launches) in enumerate(files, start=1):
         note(paint(f"{number} of {len(files)}: {shown_path(file)}", "dim"))
-        verdicts.append(_tried(file, package_path, standing, folder))
+        verdicts.append(_tried(file, package_path, standing, launches))
     if json:
         result = {
             "schema": SCHEMA,
@@ -173,13 +169,16 @@ def summary(verdicts: Sequence[Verdict]) -> dict[str, int]:
     }
 
 
-def _survey(folder: Path, package_path: Sequence[Path]) -> Survey:
+def _survey(
+    folder: Path, package_path: Sequence[Path]
+) -> tuple[Survey, Sequence[LaunchUse] | None]:
+    """The robots in a folder, and its launch files; None for a file, whose package has them."""
     if not folder.exists():
         raise CartwheelError(
             f"{folder} does not exist", code=NO_ROBOTS, values={"folder": str(folder)}
         )
-    uses = launches_near(folder, tuple(package_path)) if folder.is_dir() else ()
-    launched = [use.description for use in uses if use.description is not None]
+    launches = launches_near(folder, package_path) if folder.is_dir() else None
+    launched = [use.description for use in launches or () if use.description is not None]
     found = survey(folder, package_path=package_path, launched=launched)
     if not found.robots:
         raise CartwheelError(
@@ -188,14 +187,14 @@ def _survey(folder: Path, package_path: Sequence[Path]) -> Survey:
             hint="Pass a folder that contains .xacro, .urdf or .sdf files.",
             values={"folder": str(folder)},
         )
-    return found
+    return found, launches
 
 
 def _tried(
-    file: Path, package_path: Sequence[Path], standing: float, folder: Path | None
+    file: Path, package_path: Sequence[Path], standing: float, launches: Sequence[LaunchUse] | None
 ) -> Verdict:
     try:
-        return try_robot(file, package_path=package_path, standing=standing, launch_folder=folder)
+        return try_robot(file, package_path=package_path, standing=standing, launches=launches)
     except Exception as error:  # noqa: BLE001 - the other robots are tested anyway
         message = f"internal error: {error!r}"
         reason = INTERNAL_FAULT.diagnostic(message, values={"cause": type(error).__name__})

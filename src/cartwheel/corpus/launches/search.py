@@ -23,8 +23,7 @@ _LEVELS = 4
 """Number of folders above a description that are searched for its package."""
 
 
-@functools.lru_cache(maxsize=4)
-def launches_near(folder: Path, package_path: tuple[Path, ...] = ()) -> tuple[LaunchUse, ...]:
+def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[LaunchUse, ...]:
     """The robots that the launch files in a folder and its subfolders start, sorted by path.
 
     A launch file that starts controllers for a robot of another launch file is one of them, without
