@@ -106,6 +106,15 @@ def test_a_force_is_given_until_the_next(make):
     assert velocity == pytest.approx(0.7 / INERTIA, rel=0.02)
 
 
+def test_the_topic_of_a_joint_in_a_nested_model_is_a_valid_name(make):
+    nested = arm("").replace('name="arm"', 'name="inner"')
+    plugin = controller("apply-joint-force", "", joint="<joint_name>inner::turn</joint_name>")
+    world = make.world(make.sdf(f'<model name="arm">{nested}{plugin}</model>'), ground=None)
+    world.publish("/model/arm/joint/inner__turn/cmd_force", data=0.7)
+    world.run(1.0)
+    assert float(world.session.simulation.data.qvel[0]) == pytest.approx(0.7 / INERTIA, rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("plugin", "code"),
     [

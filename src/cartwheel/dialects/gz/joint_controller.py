@@ -257,5 +257,5 @@ class ApplyJointForce(Plugin[ApplyJointForceParameters]):
 
     def configure(self) -> None:
         joint = self.config.joint.strip()
-        topic = f"/model/{self.part.name}/joint/{joint}/cmd_force"
+        topic = gz_name(self, f"/model/{self.part.name}/joint/{joint}/cmd_force", "")
         self.add(JointForce(self.scope, JointForceConfig(joint=joint, topic=topic)))
