@@ -173,3 +173,11 @@ ADDRESS_UNAVAILABLE = Code(
 LOG_LEVEL_UNKNOWN = Code(
     "CW841", "log-level-unknown", "error", "ROS has no logger level with this name"
 )
+AUTOPILOT_PACKET_IGNORED = Code(
+    "CW842", "autopilot-packet-ignored", "warning", "a packet is not from the connected autopilot"
+)
+AUTOPILOT_CONNECTED = Code("CW843", "autopilot-connected", "info", "an autopilot has connected")
+AUTOPILOT_LOST = Code("CW844", "autopilot-lost", "warning", "an autopilot no longer sends packets")
+AUTOPILOT_FRAMES_MISSED = Code(
+    "CW845", "autopilot-frames-missed", "warning", "packets of an autopilot are missing"
+)

@@ -6,8 +6,10 @@ the startup.
 """
 
 PLUGINS = {
+    "ArduPilotPlugin": "makers.ardupilot",
     "ElevatorPlugin": "classic.mechanisms.elevator",
     "HarnessPlugin": "classic.mechanisms.harness",
+    "LiftDragPlugin": "gz.lift_drag",
     "WheelSlipPlugin": "classic.forces.wheel_slip",
     "diffdrive_plugin_multi_wheel": "makers.multi_wheel",
     "gazebo_grasp_fix": "makers.grasp_fix",
@@ -72,6 +74,7 @@ PLUGINS = {
     "gz-sim-joint-position-controller-system": "gz.joint_controller",
     "gz-sim-joint-state-publisher-system": "classic.sensors.joint_state_publisher",
     "gz-sim-joint-trajectory-controller-system": "gz.joint_trajectory",
+    "gz-sim-lift-drag-system": "gz.lift_drag",
     "gz-sim-linear-battery-plugin-system": "gz.battery",
     "gz-sim-linearbatteryplugin-system": "gz.battery",
     "gz-sim-mecanum-drive-system": "gz.mecanum",

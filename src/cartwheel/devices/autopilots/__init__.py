@@ -1,0 +1,1 @@
+"""Interfaces of flight controllers that run as separate programs (software in the loop, SITL)."""
