@@ -17,6 +17,7 @@ PLUGINS = {
     "gazebo_mimic_joint_plugin": "makers.mimic_joint",
     "gazebo_motor_model": "makers.px4_motor_model",
     "gazebo_ros2_control": "ros2_control.plugin",
+    "gazebo_ros_ackerman": "makers.limo",
     "gazebo_ros_ackermann_drive": "classic.drives.ackermann_drive",
     "gazebo_ros_block_laser": "classic.sensors.block_laser",
     "gazebo_ros_bumper": "classic.sensors.bumper",

@@ -1,0 +1,175 @@
+"""``libgazebo_ros_ackerman.so``: the four driven wheels and the steering of AgileX's LIMO."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.devices.drives.steering_commands import (
+    SteeringCommandsConfig,
+    SteeringCommandsDrive,
+)
+from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.tags import SMALLEST, tag
+from cartwheel.simulation.limits import FARTHEST
+
+_BASE, _TRACK, _MAX_ANGLE = 0.2, 0.172, 0.523598767
+"""Wheel base and track of the LIMO, m, and its maximum steering angle, rad; in the original, they
+are constants."""
+_LEVER = 0.2 * _TRACK
+"""The original calculates the speeds of the left and right wheels with it, m."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LimoParameters:
+    front_left: str = tag(
+        "leftFrontJoint",
+        default="left_front_joint",
+        role="joint",
+        doc="Joint of the front left wheel.",
+    )
+    front_right: str = tag(
+        "rightFrontJoint",
+        default="right_front_joint",
+        role="joint",
+        doc="Joint of the front right wheel.",
+    )
+    rear_left: str = tag(
+        "leftRearJoint",
+        default="left_rear_joint",
+        role="joint",
+        doc="Joint of the rear left wheel.",
+    )
+    rear_right: str = tag(
+        "rightRearJoint",
+        default="right_rear_joint",
+        role="joint",
+        doc="Joint of the rear right wheel.",
+    )
+    left_hinge: str = tag(
+        "leftHingeJoint",
+        default="",
+        doc="No effect: a position controller moves the left steering joint.",
+    )
+    right_hinge: str = tag(
+        "rightHingeJoint",
+        default="",
+        doc="No effect: a position controller moves the right steering joint.",
+    )
+    separation: float = tag(
+        "wheelSeparation", default=0.4, unit="m", doc="No effect: the distance is 0.172 m."
+    )
+    diameter: float = tag(
+        "wheelDiameter",
+        default=0.15,
+        unit="m",
+        least=SMALLEST,
+        most=FARTHEST,
+        doc="Diameter of all wheels.",
+    )
+    torque: float = tag(
+        "torque",
+        default=5.0,
+        unit="N m",
+        least=0.0,
+        role="wheel_torque",
+        doc="Maximum torque of each motor.",
+    )
+    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
+    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
+    base_frame: str = tag(
+        "robotBaseFrame",
+        default="base_footprint",
+        role="frame",
+        doc="Link whose pose is published as odometry. If no link has this name, the root link "
+        "is used.",
+    )
+    rate: float = tag(
+        "updateRate",
+        default=100.0,
+        unit="Hz",
+        least=0.0,
+        doc="Rate at which commands are applied and messages are published. If 0, both happen "
+        "at every simulation step.",
+    )
+    publish_tf: bool = tag(
+        "broadcastTF",
+        default=False,
+        doc="Whether to publish the odometry as a transform on `/tf`.",
+    )
+    covariance_x: float = tag(
+        "covariance_x",
+        default=1e-4,
+        unit="m²",
+        least=0.0,
+        doc="Variance of the x position in the odometry.",
+    )
+    covariance_y: float = tag(
+        "covariance_y",
+        default=1e-4,
+        unit="m²",
+        least=0.0,
+        doc="Variance of the y position in the odometry.",
+    )
+    covariance_yaw: float = tag(
+        "covariance_yaw",
+        default=0.01,
+        unit="rad²",
+        least=0.0,
+        doc="Variance of the yaw in the odometry.",
+    )
+
+
+class LimoAckermannDrive(Plugin[LimoParameters]):
+    """Drives the four wheels of a LIMO robot as commanded by Twist messages.
+
+    ``linear.x`` is the speed in m/s and ``angular.z`` the yaw rate in rad/s. The steering angles
+    are published as commands for the position controllers ``limo_fl_steering_hinge_controller`` and
+    ``limo_fr_steering_hinge_controller``: without them, the wheels are not steered. The plugin also
+    publishes the ground-truth pose as odometry. Original plugin: ``gazebo_ros_ackerman`` in the
+    package ``limo_gazebo_sim``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackerman.so",)
+    parameters: ClassVar[type] = LimoParameters
+
+    def configure(self) -> None:
+        config = self.config
+        covariance = planar_covariance(
+            config.covariance_x, config.covariance_y, config.covariance_yaw
+        )
+        self.add(
+            SteeringCommandsDrive(
+                self.scope,
+                SteeringCommandsConfig(
+                    front=(config.front_left, config.front_right),
+                    rear=(config.rear_left, config.rear_right),
+                    angle_topics=(
+                        "limo_fl_steering_hinge_controller/command",
+                        "limo_fr_steering_hinge_controller/command",
+                    ),
+                    radius=config.diameter / 2,
+                    wheel_base=_BASE,
+                    track=_TRACK,
+                    lever=_LEVER,
+                    max_angle=_MAX_ANGLE,
+                    max_torque=config.torque,
+                    drive=DriveConfig(
+                        command_topic=config.command_topic,
+                        control_rate=config.rate,
+                        odometry=OdometryConfig(
+                            topic=config.odometry_topic,
+                            frame=config.odometry_frame,
+                            base=config.base_frame,
+                            rate=config.rate,
+                            transform=config.publish_tf,
+                            pose_covariance=covariance,
+                            twist_covariance=covariance,
+                        ),
+                    ),
+                ),
+            )
+        )
