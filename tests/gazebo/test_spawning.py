@@ -8,8 +8,11 @@ from concurrent.futures import ThreadPoolExecutor, wait
 import pytest
 from tests.coded import coded, raises
 
+from cartwheel.api import World
+from cartwheel.codes.devices import PLUGIN_PARAMETER_INVALID
 from cartwheel.codes.files import FILE_MISSING
 from cartwheel.codes.graph import ENTITY_NAME_TAKEN, GRAPH_CLOSED
+from cartwheel.codes.running import PLUGIN_LEFT_OUT
 from cartwheel.codes.world import UNKNOWN_MODEL
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.spawning import Spawning
@@ -310,3 +313,23 @@ def test_while_it_is_paused(api):
     api.done("spawn_urdf_model", model_name="mine", model_xml=URDF)
     assert api.done("get_model_state", model_name="mine").success
     assert api.simulation.time_ns == 0
+
+
+@BOTH
+@pytest.mark.parametrize("lenient", [True, False])
+def test_a_service_leaves_out_plugins_as_spawn_does(make, gazebo, service, lenient):
+    plugin = (
+        '<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"><bodyName>base</bodyName>'
+        "<updateRate>-5</updateRate></plugin></gazebo></robot>"
+    )
+    text = URDF.replace("</robot>", plugin)
+    with World("empty", lenient=lenient) as world:
+        api = gazebo(world)
+        if not lenient:
+            api.refused(service, model_name="mine", model_xml=text)
+            assert world.models == ("ground_plane",)
+            return
+        api.done(service, model_name="mine", model_xml=text)
+        assert world.models == ("ground_plane", "mine")
+        (left_out,) = coded(world, PLUGIN_LEFT_OUT)
+        assert left_out.values["cause"] == PLUGIN_PARAMETER_INVALID.number

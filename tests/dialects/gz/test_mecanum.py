@@ -1,10 +1,12 @@
 """gz-sim's mecanum drive: its motion, odometry and limits."""
 
 import math
+import re
 
 import pytest
 from tests.devices.drives.carts import (
     FOUR,
+    cart_sdf,
     spawn,
 )
 
@@ -41,6 +43,32 @@ def test_mecanum_goes_where_it_is_told_and_believes_its_wheels(make, cart, read,
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(
         (forward, sideways, turn), abs=0.01
     )
+
+
+def turned(model):
+    """The same cart, facing along y: its wheels are turned about the base."""
+
+    def turn(match):
+        x, y = float(match[1]), float(match[2])
+        return f"<pose>{-y} {x} {match[3]} {-math.pi / 2} 0 {math.pi / 2}</pose>"
+
+    text = re.sub(rf"<pose>(\S+) (\S+) (\S+) {-math.pi / 2} 0 0</pose>", turn, model)
+    assert text != model
+    return text
+
+
+@pytest.mark.parametrize("motion", [(0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.5)])
+def test_a_mecanum_drive_that_faces_along_y_moves_as_its_wheels_roll(make, cart, motion):
+    forward, sideways, turn = motion
+    text = turned(cart_sdf(FOUR, MECANUM, mu=0.3))
+    world = spawn(make, make.sdf(text))
+    world.publish("/model/cart/cmd_vel", linear_x=forward, linear_y=sideways, angular_z=turn)
+    world.run(0.5)
+    start = world.model("cart").pose
+    world.run(2.0)
+    end = start.inverse() @ world.model("cart").pose
+    assert (end.x, end.y) == pytest.approx((-2.0 * sideways, 2.0 * forward), abs=0.02)
+    assert end.yaw == pytest.approx(2.0 * turn, abs=0.03)
 
 
 def test_mecanum_wheels_speed_up_no_faster_than_they_may(make, cart, read):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from cartwheel.component import Scope
@@ -11,7 +12,7 @@ from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
-from cartwheel.devices.drives.rollers import has_rollers
+from cartwheel.devices.drives.rollers import has_rollers, rolling_direction
 from cartwheel.devices.elementwise import Number, cos, sin
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
@@ -88,6 +89,8 @@ class MecanumWheelsConfig:
     offset: Vec3 | None = None
     """Pose of the base frame, which the commands and the odometry describe, relative to the wheels'
     centre: x and y, m, and yaw, rad. None: both are equal."""
+    heading: float = 0.0
+    """Direction in which the wheels roll forward, relative to the x axis of the base, rad."""
     subtracts: Literal["rotations", "distances"] = "rotations"
     """What is subtracted to obtain the motion in a time step: the rotations of the wheels, or the
     distances that they rolled. The results differ only in rounding."""
@@ -180,6 +183,9 @@ class MecanumWheels:
     def push(self, forward: float, sideways: float, turn: float) -> None:
         """Pushes a robot without rollers at velocities in m/s and rad/s."""
         if self._servo is not None:
+            if heading := self._config.heading:
+                cos, sin = math.cos(heading), math.sin(heading)
+                forward, sideways = cos * forward - sin * sideways, sin * forward + cos * sideways
             self._servo.command((forward, sideways, None), (None, None, turn))
 
 
@@ -218,7 +224,13 @@ class MecanumDrive(Drive):
         ]
         servo = None if has_rollers(part.description) else part.body_drive(origin=origin)
         self._reckoning = DeadReckoning()
-        self._wheels = MecanumWheels(config.wheels, wheels, servo, self._reckoning)
+        heading = rolling_direction(
+            part.description,
+            (*config.front_left, *config.back_left),
+            (*config.front_right, *config.back_right),
+        )
+        dimensions = replace(config.wheels, heading=heading)
+        self._wheels = MecanumWheels(dimensions, wheels, servo, self._reckoning)
         self._period = 1 / config.drive.control_rate
         self.run(config.drive)
 

@@ -1,8 +1,20 @@
-"""Detects the rollers of mecanum wheels in a robot's description."""
+"""Detects the rollers and the direction of mecanum wheels in a robot's description."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
+from cartwheel.geometry import rotate
+
+_AGREE = 0.9
+"""Minimum length of the mean of the wheels' axes, which are unit vectors."""
+_NOISE = 1e-3
+"""Smaller angles are rounding errors of the description, rad."""
 
 
 def has_rollers(description: RobotDescription) -> bool:
@@ -13,3 +25,37 @@ def has_rollers(description: RobotDescription) -> bool:
     """
     surfaces = [c.surface for link in description.links for c in link.collisions]
     return any(each.fdir1_frame is not None and each.mu1 != each.mu2 for each in surfaces)
+
+
+def rolling_direction(
+    description: RobotDescription, left: Sequence[str], right: Sequence[str]
+) -> float:
+    """The direction in which wheels with a positive speed roll, as an angle to the x axis in rad.
+
+    It is 0 for a robot that faces along x, and if the wheels' axes differ from each other or from
+    the direction of the axles.
+
+    Args:
+        description: The robot.
+        left: Joints of the left wheels.
+        right: Joints of the right wheels.
+    """
+    poses = link_poses(description, {})
+    front = poses[description.canonical_link].inverse()
+    axes, sides = [], []
+    for names in (left, right):
+        joints = [each for each in description.joints if each.name in names]
+        places = [front @ poses[each.child] @ each.pose for each in joints]
+        if not places:
+            return 0.0
+        axes += [
+            rotate(place.orientation, each.axis.xyz)
+            for place, each in zip(places, joints, strict=True)
+        ]
+        sides.append(np.mean([place.position for place in places], axis=0))
+    mean, gap = np.mean(axes, axis=0), sides[0] - sides[1]
+    wide = float(np.linalg.norm(gap))
+    if math.hypot(mean[0], mean[1]) < _AGREE or float(mean @ gap) < _AGREE * wide:
+        return 0.0
+    angle = math.atan2(-mean[0], mean[1])
+    return angle if abs(angle) > _NOISE else 0.0

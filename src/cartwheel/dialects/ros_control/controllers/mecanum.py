@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from cartwheel.codes import devices, running
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
-from cartwheel.devices.drives.rollers import has_rollers
+from cartwheel.devices.drives.rollers import has_rollers, rolling_direction
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
@@ -199,6 +199,7 @@ class MecanumDriveController(WheelController):
             radius=radius,
             reach=reach,
             offset=(given.offset_x, given.offset_y, given.offset_yaw),
+            heading=rolling_direction(description, names[0::2], names[1::2]),
             limits=(given.linear_x, given.linear_y, given.angular),
         )
         stamped = ros2 and given.stamped
