@@ -80,9 +80,13 @@ def report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> No
         axes = [
             rotate(at.orientation, each.axis.xyz) for at, each in zip(places, wheels, strict=True)
         ]
-        backwards = all(float(np.dot(axis, gap)) < 0 for axis in axes)
-        sideways = abs(gap[1]) < 0.1 * abs(gap[0])
-        if backwards if sideways else gap[1] < 0 and not backwards:
+        # A robot turns as commanded if its axes point from the right wheel to the left one.
+        senses = [float(np.dot(axis, gap)) for axis in axes]
+        if abs(gap[1]) < 0.1 * abs(gap[0]):
+            swapped = all(sense < 0 for sense in senses)
+        else:
+            swapped = gap[1] < 0 and not all(sense > 0 for sense in senses)
+        if swapped:
             plugin.warn(
                 robot.WHEELS_SWAPPED,
                 f'the left wheel ("{pair.left}") is to the right of the right wheel '

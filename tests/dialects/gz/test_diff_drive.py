@@ -1,11 +1,13 @@
 """gz-sim's differential drive: circles, limits and names."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from tests.coded import coded
 from tests.devices.drives.carts import (
+    cart_sdf,
     circle,
     path,
     spawn,
@@ -83,6 +85,37 @@ def test_a_limit_that_contradicts_itself_is_refused(make, cart):
     with pytest.raises(PluginError) as caught:
         spawn(make, cart(TWO, gz_diff(tags), balls=GLIDERS))
     assert caught.value.code is devices.PLUGIN_RANGE_REVERSED
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "reversed_", "swapped"),
+    [
+        ((0.0, 0.15), (0.0, -0.15), False, False),
+        ((0.0, -0.15), (0.0, 0.15), False, True),
+        # It faces backwards, and turns as commanded.
+        ((0.0, -0.15), (0.0, 0.15), True, False),
+    ],
+)
+def test_the_sides_of_the_wheels_depend_on_their_axes(make, left, right, reversed_, swapped):
+    text = cart_sdf({"left": left, "right": right}, gz_diff(), balls=GLIDERS)
+    if reversed_:
+        assert text.count("<xyz>0 0 1</xyz>") >= 2
+        text = text.replace("<xyz>0 0 1</xyz>", "<xyz>0 0 -1</xyz>")
+    assert bool(coded(spawn(make, make.sdf(text)), robot.WHEELS_SWAPPED)) == swapped
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_axes_define_the_sides_of_a_robot_that_faces_along_y(make, swapped):
+    side = -0.15 if swapped else 0.15
+    text = cart_sdf({"left": (0.0, side), "right": (0.0, -side)}, gz_diff(), balls=GLIDERS)
+    quarter = math.pi / 2
+    turned = re.sub(
+        rf"<pose>(\S+) (\S+) (\S+) {-quarter} 0 0</pose>",
+        lambda at: f"<pose>{-float(at[2])} {at[1]} {at[3]} {-quarter} 0 {quarter}</pose>",
+        text,
+    )
+    assert turned != text
+    assert bool(coded(spawn(make, make.sdf(turned)), robot.WHEELS_SWAPPED)) == swapped
 
 
 def test_a_wheel_on_the_wrong_side_is_told(make, cart, read):
