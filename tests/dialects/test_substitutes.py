@@ -13,6 +13,7 @@ from cartwheel.dialects.substitutes import _PURPOSES, substitute
 from cartwheel.errors import Origin
 
 ORIGIN = Origin(file="robot.urdf", line=1)
+SPACE = {"robotNamespace": "/fly"}
 
 
 def unknown(filename, **tags):
@@ -34,6 +35,8 @@ def unknown(filename, **tags):
         ("libgazebo_ros_controller_manager.so", "libgazebo_ros_control.so"),
         ("libfetch_gazebo_plugin.so", "libgazebo_ros_control.so"),
         ("liblinear_battery_ros_plugin.so", "gz-sim-linear-battery-plugin-system"),
+        ("libplugin_drone.so", "gz-sim-velocity-control-system"),
+        ("libhector_gazebo_quadrotor_simple_controller.so", "gz-sim-velocity-control-system"),
         # Names that contain a keyword, or nothing known.
         ("libimage_sonar_ros_plugin.so", None),
         ("libsimulation_helper.so", None),
@@ -98,6 +101,28 @@ def test_the_text_drives_the_robot(make, cart):
     other.publish("/cmd_vel", linear_x=0.5)
     other.run(2.0)
     assert other.model("cart").pose.x > 0.5
+
+
+@pytest.mark.parametrize(("tags", "topic"), [({}, "/cmd_vel"), (SPACE, "/fly/cmd_vel")])
+def test_the_text_flies_a_drone(make, cart, tags, topic):
+    text = substitute(unknown("libplugin_drone.so", **tags)).text
+    world = make.world()
+    world.spawn(cart({}, text), z=1.0)
+    world.run(1.0)
+    assert world.model("cart").pose.z == pytest.approx(1.0, abs=0.02)
+    world.publish(topic, linear_x=0.4, linear_z=0.3)
+    world.run(2.0)
+    pose = world.model("cart").pose
+    # It accelerates for less than 0.1 s.
+    assert (pose.x, pose.z) == pytest.approx((0.8, 1.6), abs=0.05)
+
+
+def test_a_namespace_of_ros_2_is_copied():
+    space = Element(tag="namespace", text="/cart", origin=ORIGIN)
+    tag = unknown("libour_lidar.so")
+    element = replace(tag.element, children=(Element(tag="ros", children=(space,), origin=ORIGIN),))
+    text = substitute(replace(tag, element=element)).text
+    assert "<robotNamespace>/cart</robotNamespace>" in text
 
 
 @pytest.mark.wording

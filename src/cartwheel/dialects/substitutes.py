@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
@@ -47,6 +47,11 @@ _PURPOSES = (
     (r"battery(?! ?consumer)", "a battery", "gz-sim-linear-battery-plugin-system"),
     (r"wheel ?slip", "wheel slip", "libgazebo_ros_wheel_slip.so"),
     (
+        r"^plugin drone|quadrotor simple controller|drone simple controller",
+        "a drone that follows Twist commands",
+        "gz-sim-velocity-control-system",
+    ),
+    (
         r"controller ?manager|^fetch gazebo plugin$|^panda gazebo$",
         "a controller manager",
         "libgazebo_ros_control.so",
@@ -54,6 +59,9 @@ _PURPOSES = (
 )
 """Patterns, the plugins' purposes, and the supported plugins; the first match applies. A pattern is
 for the words of a short name, in lower case and with spaces between them."""
+_VALUES = {"gz-sim-velocity-control-system": {"topic": "{}/cmd_vel", "initial_linear": "0 0 0"}}
+"""Further tags of supported plugins, with "{}" for the namespace. With these, a drone hovers before
+the first command, and subscribes to the topic of ROS."""
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 _BLANK = "…"
 """A value for the user to fill in."""
@@ -92,7 +100,7 @@ def substitute(tag: PluginTag) -> Substitute | None:
     for pattern, purpose, filename in _PURPOSES:
         plugin = plugin_named(filename) if re.search(pattern, name) else None
         if plugin is not None:
-            inner = "".join(_translated(plugin, tag.element))
+            inner = "".join(_translated(plugin, tag.element, _VALUES.get(filename, {})))
             return Substitute(
                 filename=filename,
                 purpose=purpose,
@@ -103,14 +111,20 @@ def substitute(tag: PluginTag) -> Substitute | None:
     return None
 
 
-def _translated(plugin: type[Plugin[object]], element: Element) -> Iterator[str]:
+def _translated(
+    plugin: type[Plugin[object]], element: Element, more: Mapping[str, str]
+) -> Iterator[str]:
     """Returns the supported tags for which the unsupported plugin has a value.
 
     Tags that the supported plugin requires, and joints, have the value `_BLANK` if it has none.
     """
     values = {_words(each.tag): each.text.strip() for each in element.children if each.text.strip()}
-    if (namespace := values.get(_words("robotNamespace"))) is not None:
+    ros = element.find("ros/namespace")
+    namespace = ros.text.strip() if ros is not None else values.get(_words("robotNamespace"), "")
+    if namespace and not more:
         yield _written("robotNamespace", namespace)
+    prefix = namespace.rstrip("/")
+    values = {_words(name): value.replace("{}", prefix) for name, value in more.items()} | values
     for item in dataclasses.fields(plugin.parameters):
         tags: tuple[str, ...] = item.metadata["tags"]
         if any("/" in each for each in tags):
