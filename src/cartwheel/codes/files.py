@@ -182,3 +182,9 @@ STAND_IN_USED = Code(
     "info",
     "a package was not found, and Cartwheel's stand-in for it is used",
 )
+STAND_IN_PARAMETER = Code(
+    "CW162",
+    "stand-in-parameter",
+    "warning",
+    "a parameter of a macro is ignored because the package's stand-in does not support it",
+)

@@ -200,3 +200,33 @@ def test_a_macro_that_the_stand_in_lacks_is_left_out(load_robot):
     (lost,) = coded(robot, files.MACRO_ABSENT)
     assert lost.values["package"] == "realsense2_description"
     assert robot.link("camera_link") is not None
+
+
+def test_a_parameter_that_the_stand_in_lacks_is_ignored(load_robot):
+    robot = load_robot(LINK, include(), CALL.replace(' parent="base"', ' parent="base" colour="1"'))
+    (ignored,) = coded(robot, files.STAND_IN_PARAMETER)
+    assert ignored.values == {
+        "package": "realsense2_description",
+        "name": "colour",
+        "macro": "xacro:sensor_d435",
+    }
+    assert robot.link("camera_link") is not None
+
+
+def test_a_parameter_that_another_macro_lacks_is_an_error(load_robot):
+    with raises(files.MACRO_CALL_INVALID, name="b"):
+        load_robot(LINK, '<xacro:macro name="m" params="a"/>', '<xacro:m a="1" b="2"/>')
+
+
+@pytest.mark.parametrize("own", ["", '<link name="base_link"/><link name="more"/>'])
+def test_the_base_of_an_example_robot_is_spare(load_robot, own):
+    joint = (
+        '<joint name="j" type="fixed"><parent link="base_link"/><child link="more"/></joint>'
+        if own
+        else ""
+    )
+    test = include("$(find realsense2_camera)/urdf/test_d435_camera.urdf.xacro")
+    robot = load_robot(own, test, joint)
+    assert [each.name for each in robot.links].count("base_link") == 1
+    assert "if_undefined" not in robot.text
+    assert "camera_depth" in sensors(robot)

@@ -14,6 +14,8 @@ from cartwheel.description.elements.xml import Node
 
 MARK = "driver_of"
 """Attribute with the device's root link; an empty value marks nothing."""
+SPARE = "if_undefined"
+"""Attribute of a link that is removed if the robot's files define a link with this name."""
 
 
 def choose_driver_parts(root: Node) -> None:
@@ -25,6 +27,10 @@ def choose_driver_parts(root: Node) -> None:
     Args:
         root: The expanded robot.
     """
+    stated = [node for node in root.children if SPARE not in node.attributes]
+    root.children = [
+        node for node in root.children if node in stated or not _names([node]) & _names(stated)
+    ]
     marked = [node for node in root.children if node.attributes.get(MARK)]
     own = [node for node in root.children if not node.attributes.get(MARK)]
     for device in dict.fromkeys(node.attributes[MARK] for node in marked):
@@ -33,8 +39,9 @@ def choose_driver_parts(root: Node) -> None:
             continue
         root.children = [node for node in root.children if node.attributes.get(MARK) != device]
     for node in root.children:
-        if MARK in node.attributes:
-            node.set_attributes({k: v for k, v in node.attributes.items() if k != MARK})
+        if MARK in node.attributes or SPARE in node.attributes:
+            kept = {k: v for k, v in node.attributes.items() if k not in (MARK, SPARE)}
+            node.set_attributes(kept)
 
 
 def _is_sensed(device: str, own: Iterable[Node], parts: Iterable[Node]) -> bool:

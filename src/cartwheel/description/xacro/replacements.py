@@ -21,12 +21,14 @@ from cartwheel.codes import files as codes
 from cartwheel.description.elements import xml
 from cartwheel.description.expressions import Evaluator, ExpressionError
 from cartwheel.description.files.install_rules import source_of
+from cartwheel.description.files.package_folders import stand_in_name
 from cartwheel.description.xacro.absent import LostCall
 from cartwheel.description.xacro.dom import Document, Element, replace_node
 from cartwheel.description.xacro.errors import ArgumentError
 from cartwheel.description.xacro.symbols import eval_extension_of, read_yaml, symbols_of
 from cartwheel.description.xacro.unprefixed import PREFIX, call_prefixed
 from cartwheel.errors import DescriptionError
+from cartwheel.similar_names import suggestion
 
 if TYPE_CHECKING:
     from cartwheel.description.xacro.expansion import Run
@@ -120,6 +122,28 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         except KeyError:
             return False
         return True
+
+    def ignore_parameters(node: Element, macros: object, symbols: object) -> None:
+        """Removes parameters that a stand-in's macro lacks; some release may have them."""
+        name = node.tagName.removeprefix(PREFIX)
+        if not is_defined(name, macros, symbols):
+            return
+        _, _, macro = space.resolve_macro(name, macros, symbols)
+        package = stand_in_name(Path(macro.body.origin.file).absolute())
+        if package is None:
+            return
+        for parameter in [each for each, _ in node.attributes.items() if each not in macro.params]:
+            node.removeAttribute(parameter)
+            run.diagnostics.append(
+                codes.STAND_IN_PARAMETER.diagnostic(
+                    f'the parameter "{parameter}" is ignored because the stand-in for '
+                    f'"{package}" does not support it',
+                    origin=node.origin,
+                    mark=f"{parameter}=",
+                    hint=suggestion(parameter, macro.params),
+                    values={"package": package, "name": parameter, "macro": node.tagName},
+                )
+            )
 
     def matching(pattern: str) -> list[str]:
         fixed = Path(re.split(r"[][*?]", pattern)[0] + "_").parent
@@ -260,6 +284,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         ):
             leave_out_call(node, symbols)
             return True
+        ignore_parameters(node, macros, symbols)
         run.calls.append(node)
         result = original.handle_macro_call(node, macros, symbols)
         run.calls.pop()
