@@ -4,7 +4,7 @@ import re
 
 import pytest
 from tests.coded import coded
-from tests.standins.calls import Call
+from tests.standins.calls import Call, on_base
 from tests.standins.cameras import CAMERAS
 from tests.standins.lasers import LASERS
 
@@ -98,3 +98,34 @@ def test_each_folder_is_the_package_of_its_name():
     assert len(folders) >= 12
     for folder in folders:
         assert package_name(folder) == folder.name
+
+
+REALSENSE_PLUGIN = """<gazebo reference="camera_link">
+  <sensor name="color" type="camera"><update_rate>30</update_rate>{image}</sensor>
+  <sensor name="ired1" type="camera"><update_rate>30</update_rate>{image}</sensor>
+  <sensor name="ired2" type="camera"><update_rate>30</update_rate>{image}</sensor>
+  <sensor name="depth" type="depth"><update_rate>30</update_rate>{image}</sensor>
+</gazebo>
+<gazebo><plugin name="camera" filename="librealsense_gazebo_plugin.so">
+  <colorTopicName>color/image_raw</colorTopicName>
+  <colorOpticalframeName>camera_color_optical_frame</colorOpticalframeName>
+</plugin></gazebo>""".format(
+    image="<camera><horizontal_fov>1.2</horizontal_fov><image><width>64</width><height>48</height>"
+    "</image><clip><near>0.1</near><far>10</far></clip></camera>"
+)
+
+
+def test_realsense_gazebo_plugin(make):
+    """The plugin's sensors replace those of the stand-in, and its frames are there."""
+    call = Call(
+        "realsense2_description/urdf/_d435.urdf.xacro",
+        on_base("sensor_d435", 'use_nominal_extrinsics="true"') + REALSENSE_PLUGIN,
+        {},
+    )
+    world: cw.World = make.world()
+    world.session.spawn(robot_of(call), pose=Pose((0, 0, 0.2)))
+    box = world.mailbox("/camera/color/image_raw")
+    world.run(0.1)
+    message = box.drain()[0]
+    assert (message.header.frame_id, message.width) == ("camera_color_optical_frame", 64)
+    assert "/camera/infra1/image_rect_raw" not in {t.name for t in world.session.graph.topics()}
