@@ -387,6 +387,24 @@ def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven
     assert told(car(text.replace("</plugin>", f"{more}</plugin>"))) == []
 
 
+def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tmp_path):
+    path = tmp_path / "car.yaml"
+    wheels = {
+        "left": '"front_left_joint", "rear_left_joint"',
+        "right": '"front_right_joint", "rear_right_joint"',
+    }
+    text = ROS2.format(type="diff_drive_controller/DiffDriveController") + (
+        f"    left_wheel_names: [{wheels['left']}]\n    right_wheel_names: [{wheels['right']}]\n"
+        f"    wheel_separation: {TRACK}\n    wheel_radius: {RADIUS}\n"
+    )
+    slow = TRACK**2 / (TRACK**2 + BASE**2)
+    for multiplier, ratio in ((1.0, slow), (2.0, 2 * slow)):
+        path.write_text(f"{text}    wheel_separation_multiplier: {multiplier}\n")
+        report = bench.report(car(), controller_files=[path])
+        (finding,) = [each for each in report.findings if each.code is SKID_STEERING]
+        assert finding.values["ratio"] == pytest.approx(ratio, rel=1e-6)
+
+
 def test_the_turn_rate_of_a_skid_steered_robot_is_that_at_which_friction_torques_balance(bench):
     """For four wheels with track t and wheelbase b it is t²/(t² + b²) of the commanded rate."""
     report = bench.report(car(plugin("libgazebo_ros_skid_steer_drive.so", **SKID)))

@@ -133,6 +133,15 @@ def test_models_without_plugins_and_sensors_are_scenery(folder, tmp_path):
     assert kinds(tmp_path) == {"house.sdf": "scenery", "w.sdf": "world"}
 
 
+def test_a_model_config_without_its_file_does_not_stop_the_survey(folder):
+    model = (
+        '<sdf version="1.6"><model name="box"><link name="a"/>'
+        '<plugin name="p" filename="p"/></model></sdf>'
+    )
+    config = "<model><name>box</name><sdf>gone.sdf</sdf></model>"
+    assert folder(box__model_dot_config=config, box__model_dot_sdf=model) == ["box/model.sdf"]
+
+
 def test_other_xml_and_what_was_built_are_passed_over(folder):
     robot = f'<robot name="a">{LINK.format("a")}</robot>'
     assert folder(note_dot_xacro="<note/>", build__a_dot_urdf=robot) == []

@@ -123,6 +123,12 @@ def test_launch_files_of_ros2_in_xml(package):
     assert use.arguments == {"sim": "true"}
 
 
+def test_arguments_without_a_space_between_them_are_unknown(package):
+    folder = package(a_dot_launch_dot_py=INCLUDED.replace(" prefix:=", "prefix:="))
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.arguments == {}
+
+
 @pytest.mark.parametrize(
     "text",
     [

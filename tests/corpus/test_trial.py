@@ -280,6 +280,15 @@ def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_f
     assert fault.source == "unknown"
 
 
+@pytest.mark.parametrize("tag", ["<rollGain>5</rollGain>", "<motorConstant>1</motorConstant>"])
+def test_an_unsupported_plugin_with_gains_or_motors_is_a_fault(tried, tag):
+    fly = f'<gazebo><plugin name="x" filename="libown_thing.so">{tag}</plugin></gazebo>'
+    verdict = tried(BOX.format(name="base", at="0 0 0", size="1 1 1"), fly)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject) == ("plugin", "own_thing")
+    assert verdict.should_move
+
+
 def test_a_manager_without_controllers_is_a_fault(tried):
     verdict = tried(ARM.format(kind="Position"))
     (fault,) = verdict.faults

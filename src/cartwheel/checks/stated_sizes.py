@@ -49,6 +49,8 @@ class Stated:
     """Whether several wheels on a side slide during turns."""
     origin: Origin
     mark: str
+    factor: float = 1.0
+    """Factor by which a controller multiplies the value."""
     write: Callable[[str], str]
     """Formats a number as replacement text."""
     place: Place
@@ -168,6 +170,8 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
         if value is None or number is None or not all(sides):
             continue
         name = next(each for each in spellings if controller.has(each))
+        times = controller.value(f"{name}_multiplier")
+        factor = times.number if times is not None else None
         yield Stated(
             robot=robot,
             measure=_MEASURES[row.role],
@@ -177,6 +181,7 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
             first=sides[0],
             second=sides[1] if len(sides) == 2 else (),
             skids=len(sides[0]) > 1,
+            factor=factor or 1.0,
             origin=value.origin,
             mark=value.text,
             write=value.replaced,

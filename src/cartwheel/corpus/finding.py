@@ -219,4 +219,8 @@ def _is_chosen(path: Path) -> bool:
     """Whether a model file is the one in its model.config, which may also list older versions."""
     if not (path.parent / "model.config").is_file():
         return True
-    return path.samefile(find_description(path.parent))
+    try:
+        return path.samefile(find_description(path.parent))
+    except DescriptionError:
+        # The model.config refers to a file that does not exist.
+        return True

@@ -11,12 +11,14 @@ from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.world_plugins import BUILT_IN
 
 _MOVES = re.compile(
-    r"drive|steer|planar_move|force_based_move|motor|mecanum|tricycle|kobuki|multi_wheel|thruster"
+    r"drive|steer|drone|copter|planar_move|force_based_move|motor|mecanum|tricycle|kobuki|multi_wheel|thruster"
     r"|propeller|rotor|velocity-control|joint-.*controller|ackerman|trajectory|(?<!_ros)_control",
     re.IGNORECASE,
 )
 """Names of plugins that move something. Those of controller managers are not among them."""
 _MANAGER = re.compile(r"ros2?_control")
+_COMMANDS = re.compile(r"gain|force|torque|thrust|motor|rotor|cmd_?vel", re.IGNORECASE)
+"""Names of the tags of unsupported plugins that move something."""
 STEERED = re.compile(r"ackerman|(?<!skid)(?<!skid[-_])steer|tricycle|bicycle", re.IGNORECASE)
 """Names of plugins and types of controllers for bases that cannot turn in place."""
 
@@ -34,7 +36,8 @@ def movers(verdict: Verdict, robot: RobotDescription) -> list[str]:
 def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     """Plugins that should move the robot or its joints, without controller managers.
 
-    An unsupported plugin also counts if its tags contain the name of a movable joint.
+    An unsupported plugin also counts if its tags contain the name of a movable joint, or if a tag
+    is named after gains, forces, motors or velocity commands.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     return [
@@ -43,7 +46,13 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         if not _MANAGER.search(name := short_name(tag.filename))
         and (
             _MOVES.search(name)
-            or (not is_known(tag) and not joints.isdisjoint(_words(tag.element)))
+            or (
+                not is_known(tag)
+                and (
+                    not joints.isdisjoint(_words(tag.element))
+                    or any(_COMMANDS.search(name) for name in _tags(tag.element))
+                )
+            )
         )
     ]
 
@@ -58,6 +67,12 @@ def managers(robot: RobotDescription) -> list[PluginTag]:
 def is_known(tag: PluginTag) -> bool:
     """Whether Cartwheel supports a plugin."""
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
+
+
+def _tags(element: Element) -> Iterator[str]:
+    for child in element.children:
+        yield child.tag
+        yield from _tags(child)
 
 
 def _words(element: Element) -> Iterator[str]:

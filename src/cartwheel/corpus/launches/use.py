@@ -87,7 +87,8 @@ class Facts:
             if assigned and re.fullmatch(r"\w+", name):
                 if not value and index + 1 < len(words) and ":=" not in words[index + 1]:
                     value, skip = words[index + 1], True
-                arguments[name] = value
+                # Without the space before the next argument, both values are unknown.
+                arguments[name] = UNKNOWN if ":=" in value else value
             elif file is None and word.endswith(_SUFFIXES):
                 file = Path(word)
         self.add(file, arguments)

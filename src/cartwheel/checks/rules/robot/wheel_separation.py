@@ -90,10 +90,10 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         places = _places(one)
         if track <= 0 or len(places) < 4 or max(places) - min(places) < 0.01 * track:
             continue
-        ratio = one.value / track * turn_ratio(track, places)
+        ratio = one.value * one.factor / track * turn_ratio(track, places)
         if abs(ratio - 1.0) <= _LEAST_SKID:
             continue
-        wanted = one.value / ratio
+        wanted = one.value * one.factor / ratio
         yield robot_codes.SKID_STEERING.diagnostic(
             message=f"the wheels slide when the robot turns, so it turns at {ratio:.0%} of the "
             "commanded rate",
