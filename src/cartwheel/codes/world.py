@@ -92,3 +92,9 @@ SLIDING_SOFTENED = Code(
 INERTIA_RAISED = Code(
     "CW629", "inertia-raised", "info", "a moment of inertia is raised to a positive value"
 )
+FRICTION_LIMITED = Code(
+    "CW630",
+    "friction-limited",
+    "info",
+    "the friction of a part that a base must slide on the ground is limited",
+)

@@ -19,6 +19,7 @@ Addition = Literal[
     "chain-drag",
     "round-tyres",
     "soft-sliding",
+    "limited-friction",
     "minimum-inertia",
     "raised-efforts",
     "slow-separation",
@@ -28,6 +29,7 @@ Addition = Literal[
 - ``chain-drag``: drag on the hinges of chains, which removes the energy that the integration adds.
 - ``round-tyres``: wheels collide as ellipsoids.
 - ``soft-sliding``: friction stops sliding bodies within 30 ms, and dragged casters within 0.4 s.
+- ``limited-friction``: parts that a base must slide on the ground have a largest coefficient.
 - ``minimum-inertia``: moments of inertia that are 0 or almost 0 are raised.
 - ``raised-efforts``: a joint with position commands may exceed an effort limit with which it could
   not hold its own weight.
@@ -82,6 +84,13 @@ _REPORTS: dict[Addition, _Report] = {
         text="friction on fixed surfaces is softer than the contact, so that sliding does not lift "
         "the body",
         size="times",  # s, in which friction stops slow sliding
+    ),
+    "limited-friction": _Report(
+        code=world_codes.FRICTION_LIMITED,
+        elements="collisions",
+        text="the friction coefficient is limited, because the base must slide this part on the "
+        "ground to drive or turn",
+        size="coefficients",
     ),
     "minimum-inertia": _Report(
         code=world_codes.INERTIA_RAISED,

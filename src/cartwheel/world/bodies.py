@@ -28,7 +28,7 @@ from cartwheel.world.entry import SHIFT, TURN, TYRE, ModelEntry, part_name, scop
 from cartwheel.world.inertials import set_inertial
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets, pose_arguments, solids
-from cartwheel.world.tyres import Axle, axle_of, lowest, tread_of, tyre
+from cartwheel.world.tyres import Axle, axle_of, is_upright, lowest, tread_of, tyre
 from cartwheel.world.visuals import add_visual
 
 COLLISION_GROUP = 4
@@ -53,6 +53,8 @@ class _Branch:
     """Whether it is connected to a free root only by fixed joints."""
     axle: Axle | None = None
     """The parent body's axle, if the parent is a wheel."""
+    steered: bool = False
+    """Whether a joint above it rotates about the vertical."""
 
 
 class BodyBuilder:
@@ -158,19 +160,21 @@ class BodyBuilder:
         # A tyre may be fixed to a hub.
         held = joint is not None and joint.type == "fixed" and axle is not None
         axle = axle.seen_from(branch.pose) if held and axle is not None else axle_of(joint)
-        self._fill(entry, body, link, axle, moves=moves, trunk=trunk)
-        return replace(branch, parent=body, moves=moves, axle=axle, trunk=trunk)
+        self._fill(entry, body, branch, axle, moves=moves, trunk=trunk)
+        steered = branch.steered or (joint is not None and _steers(link, joint))
+        return replace(branch, parent=body, moves=moves, axle=axle, trunk=trunk, steered=steered)
 
     def _fill(
         self,
         entry: ModelEntry,
         body: Any,
-        link: Link,
+        branch: _Branch,
         axle: Axle | None,
         *,
         moves: bool,
         trunk: bool,
     ) -> None:
+        link = branch.link
         if link.inertial is not None:
             self._set_inertial(entry, body, link.name, link.inertial, moves=moves)
         if not link.gravity:
@@ -187,7 +191,8 @@ class BodyBuilder:
             there = link.pose @ place
             tread = None
             if axle is not None:
-                tread = tread_of(shape, there, axle.seen_from(link.pose.inverse()))
+                along = axle.seen_from(link.pose.inverse())
+                tread = tread_of(shape, there, along, steered=branch.steered)
             bottom = lowest(shape, there) if trunk else None
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
@@ -328,6 +333,13 @@ def _add_tyre(entry: ModelEntry, wheel: Any, link: Link, axle: Axle) -> Any:
         # Set at run time; the engine requires a nonzero value here.
         made.damping = [1.0, 0, 0]
     return tyre
+
+
+def _steers(link: Link, joint: Joint) -> bool:
+    """Whether a joint turns what is below its child link about the vertical."""
+    if joint.type not in ("revolute", "continuous"):
+        return joint.type in ("ball", "universal", "planar", "floating")
+    return is_upright(rotate((link.pose @ joint.pose).orientation, joint.axis.xyz))
 
 
 def _direction(entry: ModelEntry, link: Link, collision: Collision) -> tuple[str, Vec3] | None:

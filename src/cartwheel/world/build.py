@@ -13,11 +13,11 @@ import numpy as np
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Origin, WorldError
-from cartwheel.world import chains, contact, joints, pairs
+from cartwheel.world import chains, contact, dragging, joints, pairs
 from cartwheel.world.actuation import ROTOR_INERTIA
 from cartwheel.world.additions import Added, Addition
 from cartwheel.world.bodies import BodyBuilder
-from cartwheel.world.entry import ModelEntry, collision_of, scoped
+from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets
 
@@ -109,25 +109,19 @@ def _built(
     }
     for name in (name for entry in entries for name in entry.attachments):
         joints.add_attachment(spec, name)
-    ranks = contact.priorities(surface.friction[0] for surface in bodies.surfaces)
-    for surface in bodies.surfaces:
+    surfaces, added = dragging.limited(bodies.surfaces, limit="limited-friction" not in without)
+    ranks = contact.priorities(surface.friction[0] for surface in surfaces)
+    for surface in surfaces:
         surface.geom.priority = ranks[surface.friction[0]]
     alignments = []
-    added = bodies.added
     soft = "soft-sliding" not in without
-    softened: dict[str, Added] = {}
-    for pair in pairs.stated_pairs(bodies.surfaces, joined, soft_sliding=soft):
+    softened: dict[tuple[str, str], Added] = {}
+    for pair in pairs.stated_pairs(surfaces, joined, soft_sliding=soft):
         spec.add_pair(**pair.arguments())
         if pair.friction_time is not None and pair.friction[0] > 0:
             sliding = pair.second
-            name = collision_of(sliding.name)
-            softened[name] = Added(
-                addition="soft-sliding",
-                model=sliding.model,
-                element=name.removeprefix(scoped(sliding.model, "")),
-                value=pair.friction_time,
-                origin=sliding.origin,
-            )
+            found = sliding.added("soft-sliding", pair.friction_time)
+            softened[sliding.model, found.element] = found
         if pair.alignment is not None:
             alignments.append(pair.alignment)
     try:
@@ -150,10 +144,10 @@ def _built(
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     _judge_without_rotors(model)
     _divide_floors(model)
-    added = [*added, *softened.values()]
+    added = [*bodies.added, *softened.values(), *added]
     if "chain-drag" not in without:
         added += _drag(spec, model, entries)
-    bounces = (contact.bounce(surface.name, surface.surface) for surface in bodies.surfaces)
+    bounces = (contact.bounce(surface.name, surface.surface) for surface in surfaces)
     return Build(
         model=model,
         alignments=tuple(alignments),

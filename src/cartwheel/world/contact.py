@@ -19,6 +19,8 @@ from typing import Any
 from cartwheel.description.model import Surface
 from cartwheel.errors import Origin
 from cartwheel.geometry import Vec3
+from cartwheel.world.additions import Added, Addition
+from cartwheel.world.entry import collision_of, scoped
 from cartwheel.world.tyres import Tread
 
 DEFAULT_MU = 1.0
@@ -71,6 +73,19 @@ class BuiltSurface:
     origin: Origin
     direction: tuple[str, Vec3] | None = None
     """The direction in which mu1 applies, in a body's axes; None if the description states none."""
+    trails: bool = False
+    """Whether the robot drags it on the ground of its wheels; see `dragging`."""
+
+    def added(self, addition: Addition, value: float) -> Added:
+        """An addition to the collision of this geom."""
+        name = collision_of(self.name)
+        return Added(
+            addition=addition,
+            model=self.model,
+            element=name.removeprefix(scoped(self.model, "")),
+            value=value,
+            origin=self.origin,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

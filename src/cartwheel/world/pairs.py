@@ -7,7 +7,7 @@ pair: softer friction for a sliding body, direction-dependent friction, and tors
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,6 @@ import mujoco
 from cartwheel.geometry import Vec3
 from cartwheel.world import contact
 from cartwheel.world.contact import BuiltSurface
-from cartwheel.world.tyres import Tread
 
 MOST_PAIRS = 500
 """Maximum number of explicit pairs; each costs 6 ns per step."""
@@ -100,10 +99,6 @@ def stated_pairs(
     special = any(map(_special, surfaces))
     if not special and not soft_sliding:
         return
-    treads: dict[str, list[Tread]] = {}
-    for each in surfaces:
-        if each.tread is not None:
-            treads.setdefault(each.model, []).append(each.tread)
     movers = [each for each in surfaces if each.moves and (special or not each.rolls)]
     standing = [each for each in surfaces if not each.moves]
     if movers and len(movers) * len(standing) > MOST_PAIRS:
@@ -114,8 +109,9 @@ def stated_pairs(
         for still in standing:
             time = None
             if soft_sliding and not mover.rolls:
-                trails = _trails(mover, treads.get(mover.model, ()))
-                time = contact.TRAILING_TIME_CONSTANT if trails else contact.FRICTION_TIME_CONSTANT
+                time = contact.FRICTION_TIME_CONSTANT
+                if mover.trails:
+                    time = contact.TRAILING_TIME_CONSTANT
             if (pair := _pair(still, mover, joined, time)) is not None:
                 count += 1
                 yield pair
@@ -128,12 +124,6 @@ def stated_pairs(
                 if pair is not None:
                     count += 1
                     yield pair
-
-
-def _trails(mover: BuiltSurface, treads: Sequence[Tread]) -> bool:
-    """Whether a geom touches the ground beside wheels, at about the same height."""
-    bottom = mover.bottom
-    return bottom is not None and any(abs(bottom - each.bottom) < each.radius for each in treads)
 
 
 def _special(surface: BuiltSurface) -> bool:

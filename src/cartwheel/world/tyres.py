@@ -87,17 +87,35 @@ def tyre(collision: Collision, axle: Axle | None) -> tuple[Shape, Pose]:
 class Tread:
     """Where a wheel may touch the ground, in its model; m."""
 
-    bottom: float
+    centre: Vec3
     radius: float
+    axis: Vec3
+    """Unit vector along the axle."""
+    steered: bool
+    """Whether a joint above the wheel turns its axle about the vertical."""
+
+    @property
+    def bottom(self) -> float:
+        """Height of the lowest point."""
+        return self.centre[2] - self.radius
+
+    def scrubs_beside(self, other: Tread) -> bool:
+        """Whether one of two wheels must slip sideways in a turn: their axles are not in line."""
+        if self.steered or other.steered:
+            return False
+        x, y, _ = (a - b for a, b in zip(other.centre, self.centre, strict=True))
+        u, v, _ = self.axis
+        return abs(x * v - y * u) > _CENTRED * self.radius * math.hypot(u, v)
 
 
-def tread_of(shape: Shape, pose: Pose, axle: Axle) -> Tread | None:
+def tread_of(shape: Shape, pose: Pose, axle: Axle, *, steered: bool) -> Tread | None:
     """A wheel's tread; None for rotating bodies that do not roll.
 
     Args:
         shape: Collision shape, as returned by `tyre`.
         pose: Pose in the model, in which the axle is also given.
         axle: The axle.
+        steered: Whether a joint above the wheel turns its axle about the vertical.
     """
     match shape:
         case Ellipsoid(radii=radii):
@@ -106,9 +124,14 @@ def tread_of(shape: Shape, pose: Pose, axle: Axle) -> Tread | None:
             pass
         case _:
             return None
-    if abs(axle.axis[2]) > _LEVEL:
+    if is_upright(axle.axis):
         return None
-    return Tread(pose.position[2] - radius, radius)
+    return Tread(pose.position, radius, axle.axis, steered)
+
+
+def is_upright(axis: Vec3) -> bool:
+    """Whether a rotation about this axis of the model steers rather than rolls."""
+    return abs(axis[2]) > _LEVEL
 
 
 def lowest(shape: Shape, pose: Pose) -> float:

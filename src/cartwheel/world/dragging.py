@@ -1,0 +1,74 @@
+"""Finds the parts that a base must slide over the ground, and limits their friction.
+
+When a base drives, its fixed casters slide. When it turns, the wheels of two axles that are not
+steered slide sideways. Descriptions often state coefficients of 100 or more for such parts. By
+Coulomb's law, their friction then exceeds what any motor can overcome. Gazebo's bases creep on,
+because ODE stops its iterations before the friction has its full value.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from cartwheel.world import contact
+from cartwheel.world.additions import Added
+from cartwheel.world.contact import BuiltSurface
+from cartwheel.world.tyres import Tread
+
+LARGEST_MU = 1.0
+"""Maximum friction coefficient of parts that must slide: Gazebo's default, and that of rubber."""
+
+
+def limited(
+    surfaces: Iterable[BuiltSurface], *, limit: bool
+) -> tuple[list[BuiltSurface], list[Added]]:
+    """The surfaces, with dragged parts marked and the friction of sliding parts limited.
+
+    Args:
+        surfaces: Surfaces of all models. The friction of their geoms is changed.
+        limit: Whether to limit the friction.
+
+    Returns:
+        The surfaces, and the collisions whose friction is reduced.
+    """
+    surfaces = list(surfaces)
+    treads: dict[str, list[Tread]] = {}
+    for each in surfaces:
+        if each.tread is not None:
+            treads.setdefault(each.model, []).append(each.tread)
+    made: list[BuiltSurface] = []
+    added: dict[tuple[str, str], Added] = {}
+    for each in surfaces:
+        beside = treads.get(each.model, ())
+        each = replace(each, trails=_trails(each, beside))
+        largest = _largest(each, beside) if limit else math.inf
+        if max(contact.coefficients(each.surface)) > largest:
+            each = _limited(each, largest)
+            found = each.added("limited-friction", largest)
+            added[each.model, found.element] = found
+        made.append(each)
+    return made, list(added.values())
+
+
+def _largest(surface: BuiltSurface, treads: Sequence[Tread]) -> float:
+    """Maximum friction coefficient of a surface."""
+    tread = surface.tread
+    if surface.trails or (tread is not None and any(map(tread.scrubs_beside, treads))):
+        return LARGEST_MU
+    return math.inf
+
+
+def _limited(surface: BuiltSurface, largest: float) -> BuiltSurface:
+    mu1, mu2 = contact.coefficients(surface.surface)
+    changed = replace(surface.surface, mu1=min(mu1, largest), mu2=min(mu2, largest))
+    friction = contact.friction(changed)
+    surface.geom.friction = list(friction)
+    return replace(surface, surface=changed, friction=friction)
+
+
+def _trails(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
+    """Whether a geom touches the ground beside wheels, at about the same height."""
+    bottom = surface.bottom
+    return bottom is not None and any(abs(bottom - each.bottom) < each.radius for each in treads)
