@@ -28,7 +28,7 @@ from cartwheel.world.entry import SHIFT, TURN, TYRE, ModelEntry, part_name, scop
 from cartwheel.world.inertials import set_inertial
 from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets, pose_arguments, solids
-from cartwheel.world.tyres import Axle, axle_of, is_upright, lowest, tread_of, tyre
+from cartwheel.world.tyres import Axle, Steering, axle_of, is_upright, lowest, tread_of, tyre
 from cartwheel.world.visuals import add_visual
 
 COLLISION_GROUP = 4
@@ -53,8 +53,8 @@ class _Branch:
     """Whether it is connected to a free root only by fixed joints."""
     axle: Axle | None = None
     """The parent body's axle, if the parent is a wheel."""
-    steered: bool = False
-    """Whether a joint above it rotates about the vertical."""
+    steered: Steering = "not"
+    """Whether the joints above it rotate about the vertical."""
 
 
 class BodyBuilder:
@@ -161,7 +161,9 @@ class BodyBuilder:
         held = joint is not None and joint.type == "fixed" and axle is not None
         axle = axle.seen_from(branch.pose) if held and axle is not None else axle_of(joint)
         self._fill(entry, body, branch, axle, moves=moves, trunk=trunk)
-        steered = branch.steered or (joint is not None and _steers(link, joint))
+        steered = branch.steered
+        if joint is not None and _steers(link, joint) and steered != "by motors":
+            steered = "by motors" if joint.name in entry.motors else "freely"
         return replace(branch, parent=body, moves=moves, axle=axle, trunk=trunk, steered=steered)
 
     def _fill(

@@ -1,9 +1,10 @@
 """Finds the parts that a base must slide over the ground, and limits their friction.
 
 When a base drives, its fixed casters slide. When it turns, the wheels of two axles that are not
-steered slide sideways. Descriptions often state coefficients of 100 or more for such parts. By
-Coulomb's law, their friction then exceeds what any motor can overcome. Gazebo's bases creep on,
-because ODE stops its iterations before the friction has its full value.
+steered slide sideways. A steered wheel beside its steering axis slides, unless it rolls around this
+axis. Descriptions often state coefficients of 100 or more for such parts. By Coulomb's law, their
+friction then exceeds what the motors can overcome. Gazebo's bases move, because ODE stops its
+iterations before the friction has its full value.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from cartwheel.world.tyres import Tread
 
 LARGEST_MU = 1.0
 """Maximum friction coefficient of parts that must slide: Gazebo's default, and that of rubber."""
+LARGEST_STEERED_MU = 2.0
+"""The same for wheels that motors steer. They also need grip, for turns at high speed."""
 
 
 def limited(
@@ -57,6 +60,8 @@ def _largest(surface: BuiltSurface, treads: Sequence[Tread]) -> float:
     tread = surface.tread
     if surface.trails or (tread is not None and any(map(tread.scrubs_beside, treads))):
         return LARGEST_MU
+    if tread is not None and tread.steered == "by motors":
+        return LARGEST_STEERED_MU
     return math.inf
 
 

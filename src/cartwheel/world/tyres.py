@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -83,6 +84,10 @@ def tyre(collision: Collision, axle: Axle | None) -> tuple[Shape, Pose]:
     return shape, pose
 
 
+Steering = Literal["not", "freely", "by motors"]
+"""Whether a wheel's axle turns about the vertical, and whether a motor turns it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Tread:
     """Where a wheel may touch the ground, in its model; m."""
@@ -91,8 +96,8 @@ class Tread:
     radius: float
     axis: Vec3
     """Unit vector along the axle."""
-    steered: bool
-    """Whether a joint above the wheel turns its axle about the vertical."""
+    steered: Steering
+    """Whether joints above the wheel turn its axle about the vertical."""
 
     @property
     def bottom(self) -> float:
@@ -101,21 +106,21 @@ class Tread:
 
     def scrubs_beside(self, other: Tread) -> bool:
         """Whether one of two wheels must slip sideways in a turn: their axles are not in line."""
-        if self.steered or other.steered:
+        if self.steered != "not" or other.steered != "not":
             return False
         x, y, _ = (a - b for a, b in zip(other.centre, self.centre, strict=True))
         u, v, _ = self.axis
         return abs(x * v - y * u) > _CENTRED * self.radius * math.hypot(u, v)
 
 
-def tread_of(shape: Shape, pose: Pose, axle: Axle, *, steered: bool) -> Tread | None:
+def tread_of(shape: Shape, pose: Pose, axle: Axle, *, steered: Steering) -> Tread | None:
     """A wheel's tread; None for rotating bodies that do not roll.
 
     Args:
         shape: Collision shape, as returned by `tyre`.
         pose: Pose in the model, in which the axle is also given.
         axle: The axle.
-        steered: Whether a joint above the wheel turns its axle about the vertical.
+        steered: Whether joints above the wheel turn its axle about the vertical.
     """
     match shape:
         case Ellipsoid(radii=radii):
