@@ -45,13 +45,13 @@ def limited(
     added: dict[tuple[str, str], Added] = {}
     for each in surfaces:
         beside = treads.get(each.model, ())
-        each = replace(each, trails=_trails(each, beside))
-        largest = _largest(each, beside) if limit else math.inf
-        if max(contact.coefficients(each.surface)) > largest:
-            each = _limited(each, largest)
-            found = each.added("limited-friction", largest)
-            added[each.model, found.element] = found
-        made.append(each)
+        surface = replace(each, trails=_trails(each, beside))
+        largest = _largest(surface, beside) if limit else math.inf
+        if max(contact.coefficients(surface.surface)) > largest:
+            surface = _limited(surface, largest)
+            found = surface.added("limited-friction", largest)
+            added[surface.model, found.element] = found
+        made.append(surface)
     return made, list(added.values())
 
 

@@ -261,17 +261,19 @@ def test_a_command_that_is_no_number_is_told_and_ignored(make, rosbots):
     assert coded(world, running.COMMAND_NOT_SIMULATED)
 
 
-def test_torque_is_read_under_its_older_name(make, rosbots):
-    """<torque> alone limits the wheels, and the user is told what Gazebo 11 would make of it."""
+@pytest.mark.parametrize(("stated", "used"), [("20", 20), ("0.1", 5)])
+def test_torque_is_read_under_its_older_name(make, rosbots, stated, used):
+    """<torque> alone sets the torque of the wheels, but to no less than the 5 N m of Gazebo 11."""
     import dataclasses
 
+    rosbots = make.with_parameters(rosbots, PLUGIN, torque=stated)
     (tag,) = (tag for tag in rosbots.plugins if tag.name == PLUGIN)
     kept = tuple(c for c in tag.element.children if c.tag != "wheelTorque")
     old = dataclasses.replace(tag, element=dataclasses.replace(tag.element, children=kept))
     plugins = tuple(old if other is tag else other for other in rosbots.plugins)
     world = place(make, dataclasses.replace(rosbots, plugins=plugins))
-    assert world.session.simulation.model.tendon_frictionloss.tolist() == [20, 20]
-    (note,) = coded(world, devices.PLUGIN_PARAMETER_OBSOLETE, parameter="torque")
+    assert world.session.simulation.model.tendon_frictionloss.tolist() == [used, used]
+    (note,) = coded(world, devices.PLUGIN_PARAMETER_OBSOLETE, parameter="torque", torque=used)
     assert note.severity == "info"
 
 

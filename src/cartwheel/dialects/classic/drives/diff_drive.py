@@ -67,7 +67,8 @@ class DiffDriveParameters:
         role="wheel_torque",
         obsolete=("torque",),
         least=SMALLEST,
-        doc="Maximum motor torque of each wheel. Gazebo 11 ignores the spelling `<torque>`.",
+        doc="Maximum motor torque of each wheel. Gazebo 11 ignores the spelling `<torque>`, so a "
+        f"value below {_TORQUE:g} N m has no effect in this spelling.",
     )
     wheel_acceleration: float = tag(
         "wheelAcceleration",
@@ -187,13 +188,17 @@ class DiffDrive(Plugin[DiffDriveParameters]):
     def configure(self) -> None:
         config = self.config
         element = self.tag.element
-        if element.find("torque") and not element.find("wheelTorque"):
+        torque = config.wheel_torque
+        if element.find("torque") and not any(
+            map(element.find, ("wheelTorque", "max_wheel_torque"))
+        ):
+            torque = max(torque, _TORQUE)
             self.warn(
                 devices.PLUGIN_PARAMETER_OBSOLETE,
-                f"<torque> is read as <wheelTorque>; Gazebo 11 ignores <torque> and uses "
-                f"{_TORQUE:g} N m",
+                f"Gazebo 11 ignores <torque> and uses {_TORQUE:g} N m; here, the wheel torque is "
+                f"the larger value, {torque:g} N m",
                 severity="info",
-                values={"parameter": "torque"},
+                values={"parameter": "torque", "torque": torque},
             )
         pairs = self._wheel_pairs()
         # The ROS 2 plugin of the same name publishes only on request, without the model's name.
@@ -227,7 +232,7 @@ class DiffDrive(Plugin[DiffDriveParameters]):
                 self.scope,
                 DifferentialDriveConfig(
                     pairs=pairs,
-                    max_torque=config.wheel_torque,
+                    max_torque=torque,
                     acceleration=config.wheel_acceleration,
                     reverse=config.legacy_mode,
                     odometry="positions" if encoder else "ground truth",
