@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +100,7 @@ class Make:
         ground: float | None = 100.0,
         gravity: float = GRAVITY,
         seed: int = 0,
+        without: Sequence[str] = (),
         **more: Any,
     ) -> cw.World:
         """A world of models on a ground of friction `ground`; None is without ground."""
@@ -111,7 +112,7 @@ class Make:
             physics=Physics(max_step_size=step),
             **more,
         )
-        world = cw.World(description, seed=seed)
+        world = cw.World(description, seed=seed, without=without)
         self._worlds.append(world)
         return world
 

@@ -42,6 +42,13 @@ TRAILING_TIME_CONSTANT = 0.4
 
 The wheels prevent creep, and friction that stops such a part at once would throw it up.
 """
+SCRUBBING_TIME_CONSTANT = 0.12
+"""The same for wheels that slide sideways when their robot turns, such as those of skid steers, s.
+"""
+SCRUBBING_IMPEDANCE = (0.5, 0.5, 0.0005, 0.5, 2.0)
+"""MuJoCo's solimp for these wheels. They sink by g T² / 2, with the time constant T of the contact,
+which is more than the sliding friction lifts them.
+"""
 TORSION = 0.005
 """m; MuJoCo's default, which contacts with three dimensions do not use."""
 NO_BOUNCE = 1e5
@@ -75,6 +82,22 @@ class BuiltSurface:
     """The direction in which mu1 applies, in a body's axes; None if the description states none."""
     trails: bool = False
     """Whether the robot drags it on the ground of its wheels; see `dragging`."""
+    scrubs: bool = False
+    """Whether it is a wheel that slides sideways when its robot turns."""
+
+    @property
+    def slides(self) -> bool:
+        """Whether it slides on the ground in ordinary motion."""
+        return self.scrubs or not self.rolls
+
+    @property
+    def friction_time(self) -> float | None:
+        """Time constant for the decay of slip on fixed surfaces, s; None for the contact's own."""
+        if self.trails:
+            return TRAILING_TIME_CONSTANT
+        if self.scrubs:
+            return SCRUBBING_TIME_CONSTANT
+        return None if self.rolls else FRICTION_TIME_CONSTANT
 
     def added(self, addition: Addition, value: float) -> Added:
         """An addition to the collision of this geom."""

@@ -20,7 +20,7 @@ from cartwheel.world.tyres import Tread
 
 LARGEST_MU = 1.0
 """Maximum friction coefficient of parts that must slide: Gazebo's default, and that of rubber."""
-LARGEST_STEERED_MU = 2.0
+LARGEST_STEERED_MU = 1.5
 """The same for wheels that motors steer. They also need grip, for turns at high speed."""
 
 
@@ -45,8 +45,8 @@ def limited(
     added: dict[tuple[str, str], Added] = {}
     for each in surfaces:
         beside = treads.get(each.model, ())
-        surface = replace(each, trails=_trails(each, beside))
-        largest = _largest(surface, beside) if limit else math.inf
+        surface = replace(each, trails=_trails(each, beside), scrubs=_scrubs(each, beside))
+        largest = _largest(surface) if limit else math.inf
         if max(contact.coefficients(surface.surface)) > largest:
             surface = _limited(surface, largest)
             found = surface.added("limited-friction", largest)
@@ -55,12 +55,11 @@ def limited(
     return made, list(added.values())
 
 
-def _largest(surface: BuiltSurface, treads: Sequence[Tread]) -> float:
+def _largest(surface: BuiltSurface) -> float:
     """Maximum friction coefficient of a surface."""
-    tread = surface.tread
-    if surface.trails or (tread is not None and any(map(tread.scrubs_beside, treads))):
+    if surface.trails or surface.scrubs:
         return LARGEST_MU
-    if tread is not None and tread.steered == "by motors":
+    if surface.tread is not None and surface.tread.steered == "by motors":
         return LARGEST_STEERED_MU
     return math.inf
 
@@ -77,3 +76,11 @@ def _trails(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
     """Whether a geom touches the ground beside wheels, at about the same height."""
     bottom = surface.bottom
     return bottom is not None and any(abs(bottom - each.bottom) < each.radius for each in treads)
+
+
+def _scrubs(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
+    """Whether a wheel slides sideways in a turn. Mecanum wheels roll in each direction."""
+    mu1, mu2 = contact.coefficients(surface.surface)
+    if surface.tread is None or (surface.surface.fdir1_frame is not None and mu1 != mu2):
+        return False
+    return any(map(surface.tread.scrubs_beside, treads))

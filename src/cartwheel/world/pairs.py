@@ -54,6 +54,7 @@ class Pair:
     reference: tuple[float, float]
     friction_time: float | None
     """Decay time of slip, s; None for the contact's stiffness."""
+    impedance: tuple[float, ...]
     alignment: Alignment | None = None
 
     def arguments(self) -> dict[str, Any]:
@@ -65,7 +66,7 @@ class Pair:
             "condim": 4 if self.torsion else 3,
             "friction": [*self.friction, self.torsion or contact.TORSION, rolling, rolling],
             "solref": list(self.reference),
-            "solimp": list(contact.IMPEDANCE),
+            "solimp": list(self.impedance),
         }
         if self.friction_time is not None:
             found["solreffriction"] = [self.friction_time, 1.0]
@@ -83,8 +84,9 @@ def stated_pairs(
     In MuJoCo's convex contact model, a sliding body is lifted: at speed v, it hovers at mu v b/k,
     with the damping b of friction and the stiffness k of the normal direction, and skips. Only an
     explicit pair can have a separate b, so sliding bodies get pairs with fixed bodies. A wheel
-    keeps the stiff value, because it slips sideways by ω v/b in a turn at rate ω. Parts of a
-    robot's trunk that are dragged where its wheels roll are guided by the wheels and are softer
+    keeps the stiff value, because it slips sideways by ω v/b in a turn at rate ω. Wheels that slide
+    in each turn are softer, also in the normal direction, so that they stay on the ground. Parts of
+    a robot's trunk that are dragged where its wheels roll are guided by the wheels and are softer
     still.
 
     Each pair is tested in every step, near or far. In a world with more than `MOST_PAIRS`, only the
@@ -99,7 +101,7 @@ def stated_pairs(
     special = any(map(_special, surfaces))
     if not special and not soft_sliding:
         return
-    movers = [each for each in surfaces if each.moves and (special or not each.rolls)]
+    movers = [each for each in surfaces if each.moves and (special or each.slides)]
     standing = [each for each in surfaces if not each.moves]
     if movers and len(movers) * len(standing) > MOST_PAIRS:
         standing.sort(key=_floor_area, reverse=True)
@@ -107,11 +109,7 @@ def stated_pairs(
     count = 0
     for mover in movers:
         for still in standing:
-            time = None
-            if soft_sliding and not mover.rolls:
-                time = contact.FRICTION_TIME_CONSTANT
-                if mover.trails:
-                    time = contact.TRAILING_TIME_CONSTANT
+            time = mover.friction_time if soft_sliding else None
             if (pair := _pair(still, mover, joined, time)) is not None:
                 count += 1
                 yield pair
@@ -150,6 +148,7 @@ def _pair(
     torsion *= _PATCH * max(s.patch_radius or 0.0 for s in (a, b))
     if mu1 == mu2 and not torsion and friction_time is None:
         return None
+    scrubs = second.scrubs and friction_time is not None
     return Pair(
         first=first,
         second=second,
@@ -157,6 +156,7 @@ def _pair(
         torsion=torsion,
         reference=rules.reference,
         friction_time=friction_time,
+        impedance=contact.SCRUBBING_IMPEDANCE if scrubs else contact.IMPEDANCE,
         alignment=_alignment(first, second, across=mu2 > mu1) if mu1 != mu2 else None,
     )
 
