@@ -10,6 +10,7 @@ from cartwheel.codes.devices import (
     PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
 )
+from cartwheel.codes.files import INCLUDE_ABSENT
 from cartwheel.codes.robot import (
     DUPLICATE_NAME,
     UNBALANCED,
@@ -287,6 +288,20 @@ def test_an_unsupported_plugin_with_gains_or_motors_is_a_fault(tried, tag):
     (fault,) = verdict.faults
     assert (fault.test, fault.subject) == ("plugin", "own_thing")
     assert verdict.should_move
+
+
+def test_wheels_whose_drive_was_in_an_absent_file_are_a_fault(tmp_path):
+    path = tmp_path / "cart.xacro"
+    include = '<xacro:include filename="drive.xacro"/>'
+    wheels = cart(0.1).replace(DRIVE.format(diameter=0.1), include)
+    head = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
+    path.write_text(f"{head}{wheels}</robot>")
+    verdict = try_robot(path, standing=1.0)
+    assert verdict.loaded
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("plugin", INCLUDE_ABSENT, "file")
+    assert verdict.should_move
+    assert not verdict.moves
 
 
 def test_a_manager_without_controllers_is_a_fault(tried):

@@ -125,6 +125,10 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
             yield Fault(test="controller", subject=name, reason=refused[name])
     if verdict.drives or verdict.reaches or verdict.spins:
         return
+    wheels = any(joint.type == "continuous" for joint in description.joints)
+    lost = _coded(said, frozenset({files.INCLUDE_ABSENT}))
+    if lost is not None and wheels and not verdict.movers:
+        yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
     for tag in managers(description):
         reason = _coded(said, frozenset({devices.HARDWARE_NOT_SIMULATED}))
         reason = (

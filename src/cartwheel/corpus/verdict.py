@@ -217,7 +217,7 @@ class Verdict:
     @property
     def should_move(self) -> bool:
         """Whether a plugin or controller should move the robot or its joints."""
-        return bool(self.movers)
+        return bool(self.movers) or any(fault.test in MOTION for fault in self.faults)
 
     @property
     def moves(self) -> bool:

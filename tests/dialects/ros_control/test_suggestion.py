@@ -54,6 +54,17 @@ def test_a_robot_of_ros_control_gets_the_file_of_its_joints(workspace):
     assert names(workspace, text) == ["one.yaml"]
 
 
+def test_a_joint_after_an_argument_of_the_launch_file_is_one_of_the_robots(workspace):
+    with_argument = ROS1_FILE.replace("beam_joint", "$(arg prefix)_joint")
+    (workspace / "arm_bringup" / "config" / "one.yaml").write_text(with_argument)
+    text = robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1)
+    assert names(workspace, text) == ["one.yaml"]
+    # The name after the argument must end the name of a joint.
+    other = with_argument.replace("_joint", "_hinge")
+    (workspace / "arm_bringup" / "config" / "one.yaml").write_text(other)
+    assert names(workspace, text) == []
+
+
 @pytest.mark.parametrize("own", ["", "gone.yaml"])
 def test_so_does_one_of_ros2_control_that_names_no_file_or_one_that_is_not_there(workspace, own):
     body = beam("beam", "world") + system(ros2_joint("beam_joint"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from cartwheel.dialects.tags import roles_of
 from cartwheel.errors import CartwheelError
 
 _ROS2_CONTROL = "gz_ros2_control-system"
+_ARGUMENT = re.compile(r"\$\((?:arg|var)\s+[^()]*\)")
 _LEVELS = 4
 """Number of folders above the robot's file that are searched for its package."""
 _MOST = 400
@@ -95,7 +97,7 @@ def with_controllers(
         if not ros2:
             values.append(content.get(PARAMETERS, {}))
         words = {word for each in values for word in _words(each)}
-        named = any(joint in word for joint in joints for word in words)
+        named = any(_names(word, joint) for joint in joints for word in words)
         broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
         if named or broadcasts:
             files.append(path)
@@ -137,6 +139,12 @@ def _candidates(robot: Path) -> Iterator[Path]:
             if seen > _MOST:
                 return
             yield path
+
+
+def _names(word: str, joint: str) -> bool:
+    """Whether a word contains a joint's name, or ends like it after ``$(arg prefix)``."""
+    rest = _ARGUMENT.sub("", word)
+    return joint in word or (rest != word and len(rest) > 1 and joint.endswith(rest))
 
 
 def _words(values: Any) -> Iterator[str]:
