@@ -315,7 +315,7 @@ def test_refusals(make, gazebo):
     message = api.refused("apply_body_wrench", body_name="bar", wrench={"torque": {"z": 1e300}})
     assert "wrench.torque.z" in message
     assert '"hinge"' in api.refused("apply_joint_effort", joint_name="hing", effort=1.0)
-    assert "cannot be moved by an effort" in api.refused(
+    assert "cannot be moved by a force" in api.refused(
         "apply_joint_effort", joint_name="fix", effort=1.0
     )
     assert "effort must be a finite number (got inf)" in api.refused(
