@@ -7,7 +7,6 @@ import pytest
 from cartwheel.api import World
 from cartwheel.codes.devices import (
     CONTROLLERS_NOT_FOUND,
-    PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
 )
 from cartwheel.codes.files import INCLUDE_ABSENT
@@ -134,11 +133,11 @@ def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tr
     assert verdict.drives[0].follows
     (fault,) = verdict.faults
     assert (fault.test, fault.code) == ("turn", WHEELS_SWAPPED)
-    # Less torque than the friction of the casters and of the tyres' contact can be overcome with.
-    weak = swapped.replace("</plugin>", "<torque>0.0001</torque></plugin>")
+    # With too little torque, it stands still, which the swapped wheels do not explain.
+    weak = swapped.replace("</plugin>", "<wheelTorque>0.0001</wheelTorque></plugin>")
     faults = tried(weak).faults
     assert {fault.test for fault in faults} == {"drive", "turn"}
-    assert {fault.code for fault in faults} == {PLUGIN_PARAMETER_OBSOLETE}
+    assert {fault.code for fault in faults} == {None}
     assert {fault.source for fault in faults} == {"unknown"}
 
 

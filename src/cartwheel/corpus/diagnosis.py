@@ -27,7 +27,6 @@ _DRIVING = frozenset(
         robot.UNBALANCED,
         robot.EFFORT_ZERO,
         robot.OVERLAPPING_COLLISIONS,
-        devices.PLUGIN_PARAMETER_OBSOLETE,
         running.PLUGIN_LEFT_OUT,
         running.JOINT_DRIVEN_TWICE,
     }
@@ -193,12 +192,7 @@ def _of_drive(
         if min(expected) < ratio < max(expected):
             return next(iter(factors.values()))[0]
     codes = _TURNING if turning else _DRIVING
-    return _first(
-        each
-        for each in found
-        if each.code in codes
-        and (each.code is not devices.PLUGIN_PARAMETER_OBSOLETE or _limits_torque(each))
-    )
+    return _first(each for each in found if each.code in codes)
 
 
 def _factor(finding: Diagnostic, turning: bool) -> float | None:
@@ -217,11 +211,6 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
     if turning and finding.code in (robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_BASE_MISMATCH):
         return stated / measured
     return None
-
-
-def _limits_torque(each: Diagnostic) -> bool:
-    """Whether an obsolete parameter, which Gazebo 11 ignores, limits the wheels' torque."""
-    return any("orque" in str(value) for value in each.values.values())
 
 
 def _explains_fall(each: Diagnostic) -> bool:

@@ -40,7 +40,6 @@ _OURS = frozenset(
         UNCLASSIFIED,
         command.INTERNAL_FAULT,
         command.SYSTEM_LIMIT,
-        devices.PLUGIN_PARAMETER_OBSOLETE,
         devices.PLUGIN_UNKNOWN,
         devices.PLUGIN_PARAMETER_UNSUPPORTED,
         devices.HARDWARE_NOT_SIMULATED,
