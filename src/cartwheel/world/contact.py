@@ -84,6 +84,8 @@ class BuiltSurface:
     """Whether the robot drags it on the ground of its wheels; see `dragging`."""
     scrubs: bool = False
     """Whether it is a wheel that slides sideways when its robot turns."""
+    pulls: bool = False
+    """Whether it is a wheel of a robot that also drags parts, for which it needs stiff friction."""
 
     @property
     def slides(self) -> bool:
@@ -95,7 +97,7 @@ class BuiltSurface:
         """Time constant for the decay of slip on fixed surfaces, s; None for the contact's own."""
         if self.trails:
             return TRAILING_TIME_CONSTANT
-        if self.scrubs:
+        if self.scrubs and not self.pulls:
             return SCRUBBING_TIME_CONSTANT
         return None if self.rolls else FRICTION_TIME_CONSTANT
 

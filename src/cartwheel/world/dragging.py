@@ -20,6 +20,8 @@ from cartwheel.world.tyres import Tread
 
 LARGEST_MU = 1.0
 """Maximum friction coefficient of parts that must slide: Gazebo's default, and that of rubber."""
+_TOUCHES = 0.02
+"""Maximum height of a part that touches the ground, relative to the radius of the wheels."""
 LARGEST_STEERED_MU = 1.5
 """The same for wheels that motors steer. They also need grip, for turns at high speed."""
 
@@ -52,6 +54,8 @@ def limited(
             found = surface.added("limited-friction", largest)
             added[surface.model, found.element] = found
         made.append(surface)
+    dragging = {each.model for each in made if _drags(each, treads.get(each.model, ()))}
+    made = [replace(each, pulls=each.rolls and each.model in dragging) for each in made]
     return made, list(added.values())
 
 
@@ -70,6 +74,13 @@ def _limited(surface: BuiltSurface, largest: float) -> BuiltSurface:
     friction = contact.friction(changed)
     surface.geom.friction = list(friction)
     return replace(surface, surface=changed, friction=friction)
+
+
+def _drags(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
+    """Whether a geom with friction touches level ground together with wheels."""
+    if surface.bottom is None or not any(contact.coefficients(surface.surface)):
+        return False
+    return any(surface.bottom - each.bottom < _TOUCHES * each.radius for each in treads)
 
 
 def _trails(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:
