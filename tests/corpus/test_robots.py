@@ -61,7 +61,8 @@ ROBOTS = {
     "gazebo_ros_demos/rrbot_description/urdf/rrbot.xacro": Expected(reaches=2),
     f"{TUTORIAL}10-firsttransmission.urdf.xacro": Expected(reaches=1),
     f"{TUTORIAL}12-gripper.urdf.xacro": Expected(reaches=4),
-    f"{TUTORIAL}13-diffdrive.urdf.xacro": Expected(drives=1.0, turns=1.0, reaches=4),
+    # Four wheels that slide sideways turn it by Coulomb's law. Gazebo 11.1: 0.97 and 0.93.
+    f"{TUTORIAL}13-diffdrive.urdf.xacro": Expected(drives=1.0, turns=0.744, reaches=4),
 }
 
 

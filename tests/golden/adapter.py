@@ -8,7 +8,7 @@ from typing import Any
 
 import cartwheel
 from cartwheel import CartwheelError, Pose, World, check
-from cartwheel.corpus import robots_in
+from cartwheel.corpus import survey
 from cartwheel.description import load_robot
 from cartwheel.messages import encode_cdr, message_class, service_classes, to_dict, zero
 
@@ -40,6 +40,12 @@ __all__ = [
     "tree",
     "zero",
 ]
+
+
+def robots_in(folder: Path) -> list[Path]:
+    """The robots in a folder and its subfolders, and the models without plugins and sensors."""
+    found = survey(folder)
+    return sorted([*found.robots, *(path for path, kind in found.skipped if kind == "scenery")])
 
 
 def tree() -> Path:

@@ -143,7 +143,8 @@ def test_a_scale_feels_what_lies_on_it_for_as_long_as_it_lies(  # noqa: PLR0917
     box = make.box("box", (0.3, 0.3, 0.3), mass=5, pose=Pose((0, 0, 2.4)))
     world = make.world(make.sdf(PLATE.format(plugin=ft(tags), **stands)), box)
     world.run(5.0)
-    assert not world.diagnostics
+    # The box's own contact parameters are softened, which is a note.
+    assert all(each.severity == "info" for each in world.diagnostics)
     messages = read(world, "/ft", 0.1)
     assert messages
     for message in messages:
