@@ -96,7 +96,6 @@ def test_a_closed_world_refuses_everything_but_its_results(make, rosbots):
         lambda: world.run(0.1),
         lambda: world.spin(0.1),
         lambda: world.spawn(rosbots),
-        lambda: world.model(cart.name),
         lambda: world.publish("/part2_cmr/cmd_vel"),
         lambda: cart.publish("/part2_cmr/cmd_vel"),
         lambda: world.subscribe("/clock", print),

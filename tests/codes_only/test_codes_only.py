@@ -17,6 +17,7 @@ REPRESENTATIVE = {
     "component": "tests/component/test_component.py",
     "control": "tests/control/test_registry.py",
     "description": "tests/description/test_loading.py",
+    "corpus": "tests/corpus/test_finding.py",
     "devices": "tests/devices/cameras/test_camera_services.py",
     "dialects": "tests/dialects/sdf/test_scan.py",
     "gate": "tests/gate/test_frames.py",

@@ -215,10 +215,8 @@ class World(RunningWorld):
 
         Raises:
             UnknownNameError: No model has this name.
-            SimulationError: The world is closed.
         """
         with self.lock:
-            self.check_open()
             self.session.simulation.pose(name)
         return Model(self, name)
 

@@ -240,6 +240,7 @@ class BodyBuilder:
                         surface=collision.surface,
                         origin=collision.origin,
                         direction=_direction(entry, link, collision),
+                        slips=link.name in entry.slips,
                     )
                 )
 

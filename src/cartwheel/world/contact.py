@@ -86,6 +86,8 @@ class BuiltSurface:
     """Whether it is a wheel that slides sideways when its robot turns."""
     pulls: bool = False
     """Whether it is a wheel of a robot that also drags parts, for which it needs stiff friction."""
+    slips: bool = False
+    """Whether it is a wheel whose slip a plugin controls, so that its contact must not add any."""
 
     @property
     def slides(self) -> bool:
@@ -93,11 +95,16 @@ class BuiltSurface:
         return self.scrubs or not self.rolls
 
     @property
+    def scrubs_softly(self) -> bool:
+        """Whether it is a wheel with the soft contact of skid steers."""
+        return self.scrubs and not (self.pulls or self.slips)
+
+    @property
     def friction_time(self) -> float | None:
         """Time constant for the decay of slip on fixed surfaces, s; None for the contact's own."""
         if self.trails:
             return TRAILING_TIME_CONSTANT
-        if self.scrubs and not self.pulls:
+        if self.scrubs_softly:
             return SCRUBBING_TIME_CONSTANT
         return None if self.rolls else FRICTION_TIME_CONSTANT
 

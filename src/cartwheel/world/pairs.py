@@ -148,7 +148,7 @@ def _pair(
     torsion *= _PATCH * max(s.patch_radius or 0.0 for s in (a, b))
     if mu1 == mu2 and not torsion and friction_time is None:
         return None
-    scrubs = second.scrubs and not second.pulls and friction_time is not None
+    scrubs = second.scrubs_softly and friction_time is not None
     return Pair(
         first=first,
         second=second,
