@@ -54,8 +54,8 @@ class World(RunningWorld):
         allow_origin: Origins of further web pages that may connect to them.
         package_path: Folders to search for the packages of message types first.
         without: Physics that Cartwheel adds to descriptions and that is to be omitted:
-            ``chain-drag``, ``round-tyres``, ``soft-sliding``, ``minimum-inertia``,
-            ``raised-efforts``, ``slow-separation`` or ``all``.
+            ``chain-drag``, ``round-tyres``, ``soft-sliding``, ``limited-friction``,
+            ``minimum-inertia``, ``raised-efforts``, ``slow-separation`` or ``all``.
 
     Raises:
         DescriptionError: The world's file cannot be used.
