@@ -13,6 +13,7 @@ from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveCon
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.dialects.classic.drives import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -131,18 +132,9 @@ class AckermannParameters:
         doc="Whether to publish the mean steering angle of the front wheels, in rad, on "
         "`steerangle`.",
     )
-    covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of the x position in the odometry."
-    )
-    covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of the y position in the odometry."
-    )
-    covariance_yaw: float = tag(
-        "covariance_yaw",
-        default=1e-3,
-        unit="rad²",
-        doc="Variance of the yaw angle in the odometry.",
-    )
+    covariance_x: float = odometry_tags.position_variance("x", 1e-5)
+    covariance_y: float = odometry_tags.position_variance("y", 1e-5)
+    covariance_yaw: float = odometry_tags.yaw_variance(1e-3)
 
 
 class ClassicAckermannDrive(Plugin[AckermannParameters]):

@@ -14,6 +14,7 @@ from cartwheel.devices.drives.differential import (
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
 from cartwheel.devices.joints.states import JointStatesConfig
+from cartwheel.dialects.classic.drives import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -79,27 +80,10 @@ class DiffDriveParameters:
         doc="Maximum acceleration of the wheel rims; it limits how fast the commanded wheel "
         "speeds change. If 0, there is no limit.",
     )
-    command_topic: str = tag(
-        "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
-    )
-    odometry_topic: str = tag(
-        "odometryTopic",
-        "odometry_topic",
-        default="odom",
-        role="topic",
-        doc="Topic of the odometry.",
-    )
-    odometry_frame: str = tag(
-        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
-    )
-    base_frame: str = tag(
-        "robotBaseFrame",
-        "robot_base_frame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
+    command_topic: str = odometry_tags.command_topic()
+    odometry_topic: str = odometry_tags.odometry_topic()
+    odometry_frame: str = odometry_tags.odometry_frame()
+    base_frame: str = odometry_tags.base_frame("base_footprint")
     update_rate: float = tag(
         "updateRate",
         "update_rate",
@@ -148,18 +132,9 @@ class DiffDriveParameters:
         doc="Whether to publish the positions and velocities of the wheel joints on "
         "`joint_states`.",
     )
-    covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of the x position in the odometry."
-    )
-    covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of the y position in the odometry."
-    )
-    covariance_yaw: float = tag(
-        "covariance_yaw",
-        default=1e-3,
-        unit="rad²",
-        doc="Variance of the yaw angle in the odometry.",
-    )
+    covariance_x: float = odometry_tags.position_variance("x", 1e-5)
+    covariance_y: float = odometry_tags.position_variance("y", 1e-5)
+    covariance_yaw: float = odometry_tags.yaw_variance(1e-3)
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,

@@ -7,33 +7,17 @@ from typing import ClassVar
 
 from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
 from cartwheel.devices.drives.planar import PlanarDrive, PlanarDriveConfig
+from cartwheel.dialects.classic.drives import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlanarMoveParameters:
-    command_topic: str = tag(
-        "commandTopic", "command_topic", default="cmd_vel", doc="Topic of the Twist commands."
-    )
-    odometry_topic: str = tag(
-        "odometryTopic",
-        "odometry_topic",
-        default="odom",
-        role="topic",
-        doc="Topic of the odometry.",
-    )
-    odometry_frame: str = tag(
-        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
-    )
-    base_frame: str = tag(
-        "robotBaseFrame",
-        "robot_base_frame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
+    command_topic: str = odometry_tags.command_topic()
+    odometry_topic: str = odometry_tags.odometry_topic()
+    odometry_frame: str = odometry_tags.odometry_frame()
+    base_frame: str = odometry_tags.base_frame("base_footprint")
     rate: float = tag(
         "odometryRate",
         "publish_rate",
@@ -64,18 +48,9 @@ class PlanarMoveParameters:
         default=True,
         doc="Whether to publish the odometry as a transform on `/tf`.",
     )
-    covariance_x: float = tag(
-        "covariance_x", default=1e-5, unit="m²", doc="Variance of the x position in the odometry."
-    )
-    covariance_y: float = tag(
-        "covariance_y", default=1e-5, unit="m²", doc="Variance of the y position in the odometry."
-    )
-    covariance_yaw: float = tag(
-        "covariance_yaw",
-        default=1e-3,
-        unit="rad²",
-        doc="Variance of the yaw angle in the odometry.",
-    )
+    covariance_x: float = odometry_tags.position_variance("x", 1e-5)
+    covariance_y: float = odometry_tags.position_variance("y", 1e-5)
+    covariance_yaw: float = odometry_tags.yaw_variance(1e-3)
 
 
 class PlanarMove(Plugin[PlanarMoveParameters]):

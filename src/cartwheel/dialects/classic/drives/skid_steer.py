@@ -8,6 +8,7 @@ from typing import ClassVar
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.dialects.classic.drives import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -87,18 +88,9 @@ class SkidSteerParameters:
     broadcast_tf: bool = tag(
         "broadcastTF", default=False, doc="Whether to publish the odometry as a transform on `/tf`."
     )
-    covariance_x: float = tag(
-        "covariance_x", default=1e-4, unit="m²", doc="Variance of the x position in the odometry."
-    )
-    covariance_y: float = tag(
-        "covariance_y", default=1e-4, unit="m²", doc="Variance of the y position in the odometry."
-    )
-    covariance_yaw: float = tag(
-        "covariance_yaw",
-        default=1e-2,
-        unit="rad²",
-        doc="Variance of the yaw angle in the odometry.",
-    )
+    covariance_x: float = odometry_tags.position_variance("x", 1e-4)
+    covariance_y: float = odometry_tags.position_variance("y", 1e-4)
+    covariance_yaw: float = odometry_tags.yaw_variance(1e-2)
 
 
 class SkidSteerDrive(Plugin[SkidSteerParameters]):

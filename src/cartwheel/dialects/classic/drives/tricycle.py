@@ -9,6 +9,7 @@ from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.devices.drives.tricycle import TricycleDrive, TricycleDriveConfig
 from cartwheel.devices.joints.states import JointStatesConfig
+from cartwheel.dialects.classic.drives import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag, tags_of
 from cartwheel.simulation.limits import FARTHEST
@@ -129,17 +130,8 @@ class TricycleParameters:
         "m/s, and `angular.z` is its steering angle in rad.",
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = tag(
-        "odometryFrame", "odometry_frame", default="odom", doc="Frame ID of the odometry."
-    )
-    base_frame: str = tag(
-        "robotBaseFrame",
-        "robot_base_frame",
-        default="base_link",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
+    odometry_frame: str = odometry_tags.odometry_frame()
+    base_frame: str = odometry_tags.base_frame("base_link")
     update_rate: float = tag(
         "updateRate",
         "update_rate",
