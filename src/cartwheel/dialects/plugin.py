@@ -61,7 +61,7 @@ class Plugin(Component, Generic[C]):
 
     def __init__(self, part: Part, shared: Shared, tag: PluginTag, sensor: Sensor | None) -> None:
         self.tag = tag
-        self.sensor = sensor
+        self.sensor: Sensor | None = sensor
         super().__init__(self._scope(part, shared, tag))
         self.config: C
         self.config, diagnostics = read(self.parameters, tag.element)
@@ -200,6 +200,13 @@ class Plugin(Component, Generic[C]):
                 written = (each for each in tags if self.tag.element.find(each) is not None)
                 tag = next(written, tags[0])
                 raise invalid(tag, float(least), "at least 0", self.place_of(tag))
+
+
+class SensorPlugin(Plugin[C]):
+    """Base class of plugins that belong inside a ``<sensor>``."""
+
+    for_sensor: ClassVar[bool] = True
+    sensor: Sensor
 
 
 def _remappings(tag: PluginTag) -> dict[str, str]:

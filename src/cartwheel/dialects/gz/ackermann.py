@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveConfig
+from cartwheel.dialects.common_tags import joint_tag, joints_tag, size_tag
 from cartwheel.dialects.gz.drive_tags import (
     GzLimitedParameters,
     gz_drive,
@@ -20,58 +21,37 @@ from cartwheel.simulation.limits import FARTHEST
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzAckermannParameters(GzLimitedParameters):
-    left_joint: tuple[str, ...] = tag(
-        "left_joint",
-        default=("left_joint",),
-        role="joint",
-        doc="Joint of a driven left wheel. Repeat the tag for each wheel.",
+    left_joint: tuple[str, ...] = joints_tag(
+        "left_joint", doc="Joint of a driven left wheel. Repeat the tag for each wheel."
     )
-    right_joint: tuple[str, ...] = tag(
-        "right_joint",
-        default=("right_joint",),
-        role="joint",
-        doc="Joint of a driven right wheel. Repeat the tag for each wheel.",
+    right_joint: tuple[str, ...] = joints_tag(
+        "right_joint", doc="Joint of a driven right wheel. Repeat the tag for each wheel."
     )
-    steer_left: str = tag(
-        "left_steering_joint",
-        default="left_steering_joint",
-        role="joint",
-        doc="Joint that steers the front left wheel.",
+    steer_left: str = joint_tag(
+        "left_steering_joint", doc="Joint that steers the front left wheel."
     )
-    steer_right: str = tag(
-        "right_steering_joint",
-        default="right_steering_joint",
-        role="joint",
-        doc="Joint that steers the front right wheel.",
+    steer_right: str = joint_tag(
+        "right_steering_joint", doc="Joint that steers the front right wheel."
     )
-    wheel_separation: float = tag(
+    wheel_separation: float = size_tag(
         "wheel_separation",
         default=1.0,
-        unit="m",
         role="wheel_separation",
         wheels=("left_joint", "right_joint"),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Distance between the left and right wheels.",
     )
-    kingpin_width: float = tag(
+    kingpin_width: float = size_tag(
         "kingpin_width",
         default=0.8,
-        unit="m",
         role="wheel_separation",
         wheels=("steer_left", "steer_right"),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Distance between the steering axes.",
     )
-    wheel_base: float = tag(
+    wheel_base: float = size_tag(
         "wheel_base",
         default=1.0,
-        unit="m",
         role="wheel_base",
         wheels=("steer_left", "left_joint"),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Distance between the front and rear axles.",
     )
     steering_limit: float = tag(
@@ -82,14 +62,11 @@ class GzAckermannParameters(GzLimitedParameters):
         most=FARTHEST,
         doc="Maximum steering angle.",
     )
-    wheel_radius: float = tag(
+    wheel_radius: float = size_tag(
         "wheel_radius",
         default=0.2,
-        unit="m",
         role="wheel_radius",
         wheels=("left_joint",),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Radius of all wheels.",
     )
     steer_gain: float = tag(

@@ -5,26 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.noise import VectorNoiseConfig
 from cartwheel.devices.position import altimeter
-from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
-from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.sdf.noise import read_noise
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.gz.sensor_tags import GzSensor, frame_tag, topic_tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AltimeterParameters:
-    topic: str = tag(
-        "topic",
-        default="",
-        doc="Topic of the Altimeter messages. Default: "
-        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/altimeter`.",
-    )
+    topic: str = topic_tag("Altimeter", "altimeter")
     frame: str = frame_tag()
 
 
-class Altimeter(Plugin[AltimeterParameters]):
+class Altimeter(GzSensor[AltimeterParameters]):
     """Publishes a sensor's height above its initial position, and its vertical velocity.
 
     Heights are in m and velocities in m/s. The message field ``vertical_reference`` is the sensor's
@@ -35,28 +26,19 @@ class Altimeter(Plugin[AltimeterParameters]):
     ros_gz_bridge.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = AltimeterParameters
-    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("altimeter",)
 
     def configure(self) -> None:
-        sensor, part = self.sensor, self.part
-        assert sensor is not None
-        height, velocity = (
-            read_noise(sensor.element.find(f"altimeter/{name}/noise"), part.report)
-            for name in ("vertical_position", "vertical_velocity")
-        )
+        sensor = self.sensor
         device = altimeter.AltimeterConfig(
             link=sensor.link,
             mount=sensor.pose.position,
-            topic=self.config.topic or default_topic(part, sensor, "altimeter"),
-            frame=self.config.frame or sensor.link,
+            topic=self.topic("altimeter"),
+            frame=self.frame_id,
             rate=sensor.update_rate,
-            error=VectorNoiseConfig(
-                name=f"altimeter {sensor.link} {sensor.name}",
-                noises=(height, velocity),
-                rate=sensor.update_rate,
+            error=self.noise(
+                "altimeter", "altimeter/vertical_position", "altimeter/vertical_velocity"
             ),
         )
         self.add(altimeter.Altimeter(self.scope, device))

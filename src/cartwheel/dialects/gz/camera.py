@@ -11,8 +11,7 @@ from cartwheel.devices.cameras.camera import Camera, CameraConfig
 from cartwheel.devices.cameras.depth_camera import DepthConfig
 from cartwheel.devices.cameras.imager import ImagerConfig
 from cartwheel.devices.cameras.info import CalibrationConfig
-from cartwheel.dialects.gz.sensor_tags import default_topic
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.gz.sensor_tags import GzSensor
 from cartwheel.dialects.sdf.camera import read_camera, read_lens
 from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag
@@ -67,7 +66,7 @@ class GzCameraParameters:
     )
 
 
-class GzCamera(Plugin[GzCameraParameters]):
+class GzCamera(GzSensor[GzCameraParameters]):
     """Publishes images, depth images and point clouds of gz-sim's camera sensors.
 
     A ``camera`` sensor publishes images on ``<topic>``. A ``depth_camera`` sensor publishes depth
@@ -82,18 +81,15 @@ class GzCamera(Plugin[GzCameraParameters]):
     gz-sensors. The message types are the same as in ros_gz_bridge.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzCameraParameters
     empty_is_model: ClassVar[bool] = True
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "camera"
     serves: ClassVar[tuple[str, ...]] = ("camera", "rgbd_camera", *_DEPTHS)
 
     def configure(self) -> None:
-        assert self.sensor is not None
         config, sensor = self.config, read_camera(self, self.sensor)
         last = {"camera": "image", "rgbd_camera": ""}.get(sensor.type, "depth_image")
-        topic = config.topic or default_topic(self.part, sensor, last).rstrip("/")
+        topic = self.topic(last)
         trigger = config.trigger_topic or f"{topic}/trigger"
         device = CameraConfig(
             name=sensor.name,
@@ -114,7 +110,7 @@ class GzCamera(Plugin[GzCameraParameters]):
             distortion=distortion,
             format=image_format,
             calibration=CalibrationConfig(centre=(lens.width / 2, lens.height / 2)),
-            frame=self.config.frame or sensor.link,
+            frame=self.frame_id,
             image_topic={"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, ""),
             info_topic=self.config.info_topic
             or (f"{around}/camera_info" if around else "camera_info"),

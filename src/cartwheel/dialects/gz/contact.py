@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.contact.bumper import Bumper, BumperConfig
-from cartwheel.dialects.gz.sensor_tags import default_topic
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.gz.sensor_tags import GzSensor
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.tags import tag
 
@@ -22,22 +21,19 @@ class GzContactParameters:
     )
 
 
-class GzContact(Plugin[GzContactParameters]):
+class GzContact(GzSensor[GzContactParameters]):
     """Publishes the contacts of a sensor's collisions as gazebo_msgs/ContactsState messages.
 
     Messages are also published while there is no contact. Their field ``states`` is then empty.
     Original plugin: ``Contact`` in gz-sim.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzContactParameters
-    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("contact",)
 
     def configure(self) -> None:
         sensor = self.sensor
-        assert sensor is not None
-        topic = self.config.topic or sensor.topic or default_topic(self.part, sensor, "contact")
+        topic = self.config.topic or sensor.topic or self.topic("contact")
         device = BumperConfig(
             collisions=read_collisions(self, sensor),
             topic="/" + topic.lstrip("/"),

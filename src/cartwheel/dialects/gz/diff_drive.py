@@ -8,6 +8,7 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.dialects.common_tags import joints_tag
 from cartwheel.dialects.gz.drive_tags import (
     GzLimitedParameters,
     gz_name,
@@ -26,15 +27,11 @@ CONTROL_RATE = 100.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzDiffDriveParameters(GzLimitedParameters):
-    left_joint: tuple[str, ...] = tag(
-        "left_joint",
-        default=("left_joint",),
-        role="left_wheel",
-        doc="Joint of a left wheel. Repeat the tag for each wheel.",
+    left_joint: tuple[str, ...] = joints_tag(
+        "left_joint", role="left_wheel", doc="Joint of a left wheel. Repeat the tag for each wheel."
     )
-    right_joint: tuple[str, ...] = tag(
+    right_joint: tuple[str, ...] = joints_tag(
         "right_joint",
-        default=("right_joint",),
         role="right_wheel",
         doc="Joint of a right wheel. Repeat the tag for each wheel.",
     )

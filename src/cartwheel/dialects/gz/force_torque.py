@@ -7,8 +7,7 @@ from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.devices.contact.wrench import WrenchSensor, WrenchSensorConfig
-from cartwheel.dialects.gz.sensor_tags import frame_tag
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.gz.sensor_tags import GzSensor, frame_tag
 from cartwheel.dialects.sdf.force_torque import read_joint_load
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -23,10 +22,10 @@ class GzForceTorqueParameters:
         doc="Topic of the WrenchStamped messages. Default: "
         "`/world/<world>/model/<model>/joint/<joint>/sensor/<sensor>/forcetorque`.",
     )
-    frame: str = frame_tag("Frame ID of the messages. Default: the link selected by `<frame>`.")
+    frame: str = frame_tag(default="the link selected by `<frame>`")
 
 
-class GzForceTorque(Plugin[GzForceTorqueParameters]):
+class GzForceTorque(GzSensor[GzForceTorqueParameters]):
     """Publishes the force and torque in the joint that contains a ``force_torque`` sensor.
 
     These tags of the sensor's ``<force_torque>`` are supported: ``<frame>`` selects the frame in
@@ -39,14 +38,11 @@ class GzForceTorque(Plugin[GzForceTorqueParameters]):
     sensor: ``ForceTorqueSensor`` in gz-sensors.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzForceTorqueParameters
-    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("force_torque",)
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         if sensor.joint is None:
             raise PluginError(
                 f'sensor "{sensor.name}" measures a joint, but is not inside a <joint>',

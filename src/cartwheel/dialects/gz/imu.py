@@ -6,24 +6,17 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
-from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.gz.sensor_tags import GzSensor, frame_tag, topic_tag
 from cartwheel.dialects.sdf.imu import read_inertial_unit
-from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzImuParameters:
-    topic: str = tag(
-        "topic",
-        default="",
-        doc="Topic of the Imu messages. Default: "
-        "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/imu`.",
-    )
+    topic: str = topic_tag("Imu", "imu")
     frame: str = frame_tag()
 
 
-class GzImu(Plugin[GzImuParameters]):
+class GzImu(GzSensor[GzImuParameters]):
     """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
     The orientation is relative to the world, or to ``<orientation_reference_frame>`` if this tag is
@@ -33,18 +26,15 @@ class GzImu(Plugin[GzImuParameters]):
     The sensor corresponds to ``ImuSensor`` in gz-sensors. See also REP 145.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzImuParameters
-    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("imu",)
 
     def configure(self) -> None:
-        sensor, config = self.sensor, self.config
-        assert sensor is not None
+        sensor = self.sensor
         device = ImuConfig(
             unit=read_inertial_unit(self.part, sensor),
-            topic=config.topic or default_topic(self.part, sensor, "imu"),
-            frame=config.frame or sensor.link,
+            topic=self.topic("imu"),
+            frame=self.frame_id,
             rate=sensor.update_rate,
         )
         self.add(Imu(self.scope, device))

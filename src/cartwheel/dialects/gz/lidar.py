@@ -9,8 +9,7 @@ import numpy as np
 
 from cartwheel.devices.rays.lidar import Lidar, LidarConfig
 from cartwheel.devices.rays.outputs import LaserScanOutput, PointCloud2Output
-from cartwheel.dialects.gz.sensor_tags import default_topic
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.gz.sensor_tags import GzSensor, frame_tag
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 
@@ -34,16 +33,10 @@ class GzLidarParameters:
         "`<topic>/points`. Default: "
         "`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/scan`.",
     )
-    frame: str = tag(
-        "gz_frame_id",
-        "ignition_frame_id",
-        "frame_id",
-        default="",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = frame_tag("frame_id")
 
 
-class GzLidar(Plugin[GzLidarParameters]):
+class GzLidar(GzSensor[GzLidarParameters]):
     """Publishes a lidar's middle row of rays as a LaserScan, and all rows as a PointCloud2.
 
     The point cloud is organised: it has one row of points for each row of rays, starting with the
@@ -56,19 +49,16 @@ class GzLidar(Plugin[GzLidarParameters]):
     ros_gz_bridge.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = GzLidarParameters
-    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("gpu_lidar", "lidar", "gpu_ray", "ray")
 
     def configure(self) -> None:
-        sensor, config = self.sensor, self.config
-        assert sensor is not None
+        sensor = self.sensor
         scanner = read_scanner(sensor, self.part.report)
-        topic = config.topic or default_topic(self.part, sensor, "scan")
+        topic = self.topic("scan")
         device = LidarConfig(
             scanner=scanner,
-            frame=config.frame or sensor.link,
+            frame=self.frame_id,
             outputs=(
                 LaserScanOutput(topic=topic),
                 PointCloud2Output(topic=f"{topic}/points", layout=_POINT, missing="inf"),

@@ -9,20 +9,14 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.cameras.logical_camera import LogicalCamera as LogicalCameraDevice
 from cartwheel.devices.cameras.logical_camera import LogicalCameraConfig
-from cartwheel.dialects.gz.sensor_tags import default_topic, frame_tag
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.gz.sensor_tags import GzSensor, frame_tag, topic_tag
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.errors import PluginError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LogicalCameraParameters:
-    topic: str = tag(
-        "topic",
-        default="",
-        doc="Topic of the LogicalCameraImage messages. "
-        "Default: `/world/<world>/model/<model>/link/<link>/sensor/<sensor>/logical_camera`.",
-    )
+    topic: str = topic_tag("LogicalCameraImage", "logical_camera")
     frame: str = frame_tag()
     near: float = tag(
         "logical_camera/near",
@@ -47,7 +41,7 @@ class LogicalCameraParameters:
     )
 
 
-class LogicalCamera(Plugin[LogicalCameraParameters]):
+class LogicalCamera(GzSensor[LogicalCameraParameters]):
     """Publishes the names of the models in view, and their poses relative to the sensor.
 
     The sensor looks along its x axis. A model is in view if the origin of its model frame is in
@@ -56,14 +50,11 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
     the same as in ros_gz_bridge.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type] = LogicalCameraParameters
-    for_sensor: ClassVar[bool] = True
     serves: ClassVar[tuple[str, ...]] = ("logical_camera",)
 
     def configure(self) -> None:
-        sensor, part, config = self.sensor, self.part, self.config
-        assert sensor is not None
+        sensor, config = self.sensor, self.config
         if not (0 <= config.near < config.far and 0 < config.view < math.pi):
             raise PluginError(
                 "the clip distances and field of view must satisfy 0 <= <near> < <far> and "
@@ -79,8 +70,8 @@ class LogicalCamera(Plugin[LogicalCameraParameters]):
             far=config.far,
             horizontal_fov=config.view,
             aspect_ratio=config.aspect,
-            topic=config.topic or default_topic(part, sensor, "logical_camera"),
-            frame=config.frame or sensor.link,
+            topic=self.topic("logical_camera"),
+            frame=self.frame_id,
             rate=sensor.update_rate,
         )
         self.add(LogicalCameraDevice(self.scope, device))

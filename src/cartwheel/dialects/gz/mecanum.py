@@ -10,6 +10,7 @@ from cartwheel.devices.drives.mecanum import (
     MecanumDriveConfig,
     MecanumWheelsConfig,
 )
+from cartwheel.dialects.common_tags import joints_tag, size_tag
 from cartwheel.dialects.gz.drive_tags import (
     GzCommonLimits,
     common_limits,
@@ -17,64 +18,44 @@ from cartwheel.dialects.gz.drive_tags import (
     report_limits,
 )
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MecanumParameters(GzCommonLimits):
-    front_left: tuple[str, ...] = tag(
+    front_left: tuple[str, ...] = joints_tag(
         "front_left_joint",
-        default=("front_left_joint",),
-        role="joint",
         doc="Joint of the front left wheel. Repeat the tag for additional wheels.",
     )
-    front_right: tuple[str, ...] = tag(
+    front_right: tuple[str, ...] = joints_tag(
         "front_right_joint",
-        default=("front_right_joint",),
-        role="joint",
         doc="Joint of the front right wheel. Repeat the tag for additional wheels.",
     )
-    back_left: tuple[str, ...] = tag(
-        "back_left_joint",
-        default=("back_left_joint",),
-        role="joint",
-        doc="Joint of the back left wheel. Repeat the tag for additional wheels.",
+    back_left: tuple[str, ...] = joints_tag(
+        "back_left_joint", doc="Joint of the back left wheel. Repeat the tag for additional wheels."
     )
-    back_right: tuple[str, ...] = tag(
+    back_right: tuple[str, ...] = joints_tag(
         "back_right_joint",
-        default=("back_right_joint",),
-        role="joint",
         doc="Joint of the back right wheel. Repeat the tag for additional wheels.",
     )
-    wheel_base: float = tag(
+    wheel_base: float = size_tag(
         "wheelbase",
         default=1.0,
-        unit="m",
         role="wheel_base",
         wheels=("front_left", "back_left"),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Distance between the front and back axles.",
     )
-    wheel_separation: float = tag(
+    wheel_separation: float = size_tag(
         "wheel_separation",
         default=1.0,
-        unit="m",
         role="wheel_separation",
         wheels=("front_left", "front_right"),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Distance between the left and right wheels.",
     )
-    wheel_radius: float = tag(
+    wheel_radius: float = size_tag(
         "wheel_radius",
         default=0.2,
-        unit="m",
         role="wheel_radius",
         wheels=("front_left",),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Radius of all wheels.",
     )
 

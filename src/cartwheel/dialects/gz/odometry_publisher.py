@@ -9,6 +9,12 @@ import numpy as np
 
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.position.truth import BaseTruth, BaseTruthConfig
+from cartwheel.dialects.common_tags import (
+    deviation_tag,
+    position_tag,
+    publish_rate_tag,
+    rotation_tag,
+)
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -26,13 +32,7 @@ class OdometryPublisherParameters:
         role="frame",
         doc="Child frame ID of the messages. Default: `<model>/base_footprint`.",
     )
-    rate: float = tag(
-        "odom_publish_frequency",
-        default=50.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate of all topics. If 0, messages are published at every simulation step.",
-    )
+    rate: float = publish_rate_tag("odom_publish_frequency", default=50.0, of="all topics")
     topic: str = tag(
         "odom_topic",
         default="",
@@ -55,24 +55,14 @@ class OdometryPublisherParameters:
         doc="With `2`, the pose and the twist are planar (x, y, yaw). With `3`, they are "
         "three-dimensional.",
     )
-    xyz_offset: tuple[float, float, float] = tag(
-        "xyz_offset",
-        default=(0.0, 0.0, 0.0),
-        unit="m",
-        doc="Position of the base frame in the model frame.",
+    xyz_offset: tuple[float, float, float] = position_tag(
+        "xyz_offset", of="the base frame in the model frame"
     )
-    rpy_offset: tuple[float, float, float] = tag(
-        "rpy_offset",
-        default=(0.0, 0.0, 0.0),
-        unit="rad",
-        doc="Roll, pitch and yaw of the base frame in the model frame.",
+    rpy_offset: tuple[float, float, float] = rotation_tag(
+        "rpy_offset", of="the base frame in the model frame"
     )
-    noise: float = tag(
-        "gaussian_noise",
-        default=0.0,
-        unit="m/s and rad/s",
-        least=0.0,
-        doc="Standard deviation of the noise on the twist.",
+    noise: float = deviation_tag(
+        "gaussian_noise", unit="m/s and rad/s", of="the noise on the twist"
     )
 
 

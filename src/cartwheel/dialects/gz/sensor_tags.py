@@ -1,15 +1,19 @@
-"""Sensors without a plugin, which gz-sim's systems publish by type."""
+"""Sensors without a plugin, which gz-sim's systems publish by type, and their tags."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, ClassVar, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.devices.noise import VectorNoiseConfig
 from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.plugin import SensorPlugin
+from cartwheel.dialects.sdf.noise import read_vector_noise
 from cartwheel.dialects.tags import tag
-from cartwheel.simulation import Part
+
+C = TypeVar("C")
 
 SYSTEMS = {
     "gz-sim-sensors-system": (
@@ -56,13 +60,24 @@ _NEW_TYPES = {
 _NEW_TAGS = ("topic", "gz_frame_id", "ignition_frame_id")
 
 
-def frame_tag(doc: str = "Frame ID of the messages. Default: the sensor's link.") -> Any:
-    """Returns the field for the frame ID of gz-sim's sensors."""
+def topic_tag(message: str, last: str) -> Any:
+    """Returns the field for the topic of a sensor's messages; `last` ends the default topic."""
+    return tag(
+        "topic",
+        default="",
+        doc=f"Topic of the {message} messages. Default: "
+        f"`/world/<world>/model/<model>/link/<link>/sensor/<sensor>/{last}`.",
+    )
+
+
+def frame_tag(*more: str, default: str = "the sensor's link") -> Any:
+    """Returns the field for the frame ID of gz-sim's sensors, with `more` spellings of the tag."""
     return tag(
         "gz_frame_id",
         "ignition_frame_id",
+        *more,
         default="",
-        doc=doc,
+        doc=f"Frame ID of the messages. Default: {default}.",
     )
 
 
@@ -116,7 +131,41 @@ def _spelt(topic: str) -> str:
     return spelt if topic.startswith("/") else spelt.removeprefix("/")
 
 
-def default_topic(part: Part, sensor: Sensor, last: str) -> str:
-    """Returns the default topic of a sensor: Gazebo's scoped name, ending in `last`."""
-    scope = ("world", part.world.name, "model", part.name, "link", sensor.link)
-    return gz_topic("/".join((*scope, "sensor", sensor.name, last)))
+class GzSensor(SensorPlugin[C]):
+    """Base class of the plugins that serve sensors without a ``<plugin>``.
+
+    The parameters have the fields `topic` and `frame`.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+
+    def topic(self, last: str) -> str:
+        """Returns the topic; by default Gazebo's scoped name, ending in `last`."""
+        part, sensor = self.part, self.sensor
+        scope = ("world", part.world.name, "model", part.name, "link", sensor.link)
+        default = gz_topic("/".join((*scope, "sensor", sensor.name, last)))
+        config: Any = self.config
+        return config.topic or default
+
+    @property
+    def frame_id(self) -> str:
+        """The frame ID of the messages; by default the sensor's link."""
+        config: Any = self.config
+        return config.frame or self.sensor.link
+
+    def noise(self, what: str, *paths: str) -> VectorNoiseConfig:
+        """Returns the noise of a measurement.
+
+        Args:
+            what: Name of the measurement, for the random sequence.
+            paths: Element of each quantity, below which is its ``<noise>``.
+
+        Raises:
+            PluginError: A type or a number is not allowed.
+        """
+        return read_vector_noise(
+            self.part,
+            self.sensor,
+            f"{what} {self.sensor.link} {self.sensor.name}",
+            [self.sensor.element.find(f"{path}/noise") for path in paths],
+        )

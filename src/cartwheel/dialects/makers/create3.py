@@ -18,7 +18,8 @@ from cartwheel.devices.bases.hazards import (
 from cartwheel.devices.bases.infrared import IrIntensity, IrIntensityConfig
 from cartwheel.devices.bases.mouse import Mouse, MouseConfig
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import sensor_frame_tag
+from cartwheel.dialects.plugin import Plugin, SensorPlugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
@@ -36,7 +37,7 @@ class Create3BumperParameters:
     pass
 
 
-class Create3Bumper(Plugin[Create3BumperParameters]):
+class Create3Bumper(SensorPlugin[Create3BumperParameters]):
     """Publishes a HazardDetection of type BUMP while the bumper is pressed.
 
     The bumper has five zones. The frame ID of a message is the name of the pressed zone, such as
@@ -47,11 +48,9 @@ class Create3Bumper(Plugin[Create3BumperParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
     parameters: ClassVar[type] = Create3BumperParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
-        assert self.sensor is not None
         device = BumperZonesConfig(
             collisions=read_collisions(self, self.sensor),
             topic=out_topic(self),
@@ -71,7 +70,7 @@ class Create3CliffParameters:
     frame: str = tag("frame_id", default="", doc="Frame ID of the messages. Default: empty.")
 
 
-class Create3Cliff(Plugin[Create3CliffParameters]):
+class Create3Cliff(SensorPlugin[Create3CliffParameters]):
     """Publishes a HazardDetection of type CLIFF while the floor is too far below a ray sensor.
 
     The distance to the floor is the smallest range that the sensor measures. Original plugin:
@@ -80,11 +79,9 @@ class Create3Cliff(Plugin[Create3CliffParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_cliff_sensor.so",)
     parameters: ClassVar[type] = Create3CliffParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
-        assert self.sensor is not None
         device = CliffSensorConfig(
             scanner=read_scanner(self.sensor, self.part.report),
             threshold=self.config.threshold,
@@ -97,15 +94,10 @@ class Create3Cliff(Plugin[Create3CliffParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3IntensityParameters:
-    frame: str = tag(
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frame_name")
 
 
-class Create3Intensity(Plugin[Create3IntensityParameters]):
+class Create3Intensity(SensorPlugin[Create3IntensityParameters]):
     """Publishes the intensity of the infrared light that the nearest obstacle reflects.
 
     The intensity is ``3500 exp(-2 e d / max)``, where e is Euler's number, d is the distance to the
@@ -115,12 +107,10 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
     parameters: ClassVar[type] = Create3IntensityParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         sensor = self.sensor
-        assert sensor is not None
         scanner = read_scanner(sensor, self.part.report)
         if math.isinf(scanner.pattern.maximum):
             raise PluginError(
@@ -139,15 +129,10 @@ class Create3Intensity(Plugin[Create3IntensityParameters]):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Create3ImuParameters:
-    frame: str = tag(
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frame_name")
 
 
-class Create3Imu(Plugin[Create3ImuParameters]):
+class Create3Imu(SensorPlugin[Create3ImuParameters]):
     """Publishes the measurements of an IMU sensor. The acceleration does not include gravity.
 
     Original plugin: ``gazebo_ros_imu`` in the package ``irobot_create_gazebo_plugins``, which does
@@ -156,12 +141,10 @@ class Create3Imu(Plugin[Create3ImuParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
     parameters: ClassVar[type] = Create3ImuParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "imu"
 
     def configure(self) -> None:
         sensor = self.sensor
-        assert sensor is not None
         device = ImuConfig(
             unit=read_inertial_unit(self.part, sensor),
             topic=out_topic(self),

@@ -8,34 +8,19 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.drives.force_based import ForceBasedDrive, ForceBasedDriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
+from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceBasedMoveParameters:
-    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    command_topic: str = odometry_tags.command_topic("commandTopic")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
-    base_frame: str = tag(
-        "robotBaseFrame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
-    rate: float = tag(
-        "odometryRate",
-        default=20.0,
-        unit="Hz",
-        doc="Publish rate of the odometry and its transform. If 0 or negative, neither is "
-        "published.",
-    )
-    publish_tf: bool = tag(
-        "publishOdometryTf",
-        default=True,
-        doc="Whether to publish the odometry as a transform on `/tf`.",
-    )
+    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
+    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
+    rate: float = odometry_tags.odometry_rate("odometryRate")
+    publish_tf: bool = odometry_tags.publish_transform("publishOdometryTf", default=True)
     timeout: float = tag(
         "cmdVelTimeOut",
         "commandWatchdog",

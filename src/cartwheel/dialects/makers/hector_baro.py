@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.noise import DriftingErrorConfig
 from cartwheel.devices.position.barometer import BarometricAltimeter, BarometricAltimeterConfig
+from cartwheel.dialects.common_tags import deviation_tag, link_frame_tag, publish_rate_tag
+from cartwheel.dialects.drift_tags import drifting_error, frequency_tag, offset_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
@@ -26,37 +27,16 @@ class HectorBaroParameters:
         default="altimeter",
         doc="Topic of the Altimeter messages. Not published if empty.",
     )
-    frame: str = tag(
-        "frameId",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    frame: str = link_frame_tag("frameId")
+    update_rate: float = publish_rate_tag("updateRate")
     elevation: float = tag(
         "elevation", default=0.0, unit="m", doc="Altitude of the world's origin above sea level."
     )
     qnh: float = tag("qnh", default=1013.25, unit="hPa", doc="Pressure at sea level.")
-    offset: float = tag("offset", default=0.0, unit="m", doc="Constant error of the z position.")
-    drift: float = tag(
-        "drift", default=0.0, unit="m", least=0.0, doc="Standard deviation of the drift."
-    )
-    frequency: float = tag(
-        "driftFrequency",
-        default=1 / 3600.0,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the drift's time constant.",
-    )
-    noise: float = tag(
-        "gaussianNoise", default=0.0, unit="m", least=0.0, doc="Standard deviation of the noise."
-    )
+    offset: float = offset_tag("offset", unit="m", of="the z position")
+    drift: float = deviation_tag("drift", unit="m", of="the drift")
+    frequency: float = frequency_tag("driftFrequency")
+    noise: float = deviation_tag("gaussianNoise", unit="m", of="the noise")
     scale: float = tag("scaleError", default=1.0, doc="Scale factor on the z position.")
 
 
@@ -86,15 +66,7 @@ class HectorBaro(Plugin[HectorBaroParameters]):
                     altitude_topic=config.altimeter_topic or None,
                     frame=config.frame or link,
                     rate=config.update_rate,
-                    error=DriftingErrorConfig(
-                        name=f"baro {config.topic} {config.altimeter_topic}",
-                        rate=config.update_rate,
-                        offset=[config.offset],
-                        drift=[config.drift],
-                        frequency=[config.frequency],
-                        noise=[config.noise],
-                        scale=[config.scale],
-                    ),
+                    error=drifting_error(self, f"baro {config.topic} {config.altimeter_topic}"),
                 ),
             )
         )

@@ -8,15 +8,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from cartwheel.devices.noise import DriftingErrorConfig
 from cartwheel.devices.position.geodesy import Datum, FlatDatum
 from cartwheel.devices.position.gps import Gps, GpsConfig
+from cartwheel.dialects.common_tags import ZEROS, deviation_tag, publish_rate_tag
+from cartwheel.dialects.drift_tags import (
+    HOURS,
+    UNSCALED,
+    drifting_error,
+    frequency_tag,
+    offset_tag,
+)
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.spherical_coordinates import read_datum
 from cartwheel.dialects.tags import tag
-
-_NONE = (0.0, 0.0, 0.0)
-_HOUR = (1 / 3600.0,) * 3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,13 +35,7 @@ class HectorGpsParameters:
         doc="Topic of the velocity (Vector3Stamped). Its components are north, west and up.",
     )
     frame: str = tag("frameId", default="/world", role="frame", doc="Frame ID of the messages.")
-    update_rate: float = tag(
-        "updateRate",
-        default=4.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    update_rate: float = publish_rate_tag("updateRate", default=4.0)
     use_world: bool = tag(
         "useWorldSphericalCoordinates",
         default=False,
@@ -75,59 +73,35 @@ class HectorGpsParameters:
     )
     status: int = tag("status", default=0, doc="Value of the field `status` in NavSatStatus.")
     service: int = tag("service", default=0, doc="Value of the field `service` in NavSatStatus.")
-    offset: tuple[float, float, float] = tag(
-        "offset", default=_NONE, unit="m", doc="Constant error of the position."
+    offset: tuple[float, float, float] = offset_tag(
+        "offset", default=ZEROS, unit="m", of="the position"
     )
-    drift: tuple[float, float, float] = tag(
-        "drift",
-        default=_NONE,
-        unit="m",
-        least=0.0,
-        doc="Standard deviation of the position's drift.",
+    drift: tuple[float, float, float] = deviation_tag(
+        "drift", default=ZEROS, unit="m", of="the position's drift"
     )
-    frequency: tuple[float, float, float] = tag(
-        "driftFrequency",
-        default=_HOUR,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the time constant of the position's drift.",
+    frequency: tuple[float, float, float] = frequency_tag(
+        "driftFrequency", default=HOURS, of="the position's drift"
     )
-    noise: tuple[float, float, float] = tag(
-        "gaussianNoise",
-        default=_NONE,
-        unit="m",
-        least=0.0,
-        doc="Standard deviation of the position's noise.",
+    noise: tuple[float, float, float] = deviation_tag(
+        "gaussianNoise", default=ZEROS, unit="m", of="the position's noise"
     )
     scale: tuple[float, float, float] = tag(
-        "scaleError", default=(1.0,) * 3, doc="Scale factor of the position."
+        "scaleError", default=UNSCALED, doc="Scale factor of the position."
     )
-    velocity_offset: tuple[float, float, float] = tag(
-        "velocityOffset", default=_NONE, unit="m/s", doc="Constant error of the velocity."
+    velocity_offset: tuple[float, float, float] = offset_tag(
+        "velocityOffset", default=ZEROS, unit="m/s", of="the velocity"
     )
-    velocity_drift: tuple[float, float, float] = tag(
-        "velocityDrift",
-        default=_NONE,
-        unit="m/s",
-        least=0.0,
-        doc="Standard deviation of the velocity's drift.",
+    velocity_drift: tuple[float, float, float] = deviation_tag(
+        "velocityDrift", default=ZEROS, unit="m/s", of="the velocity's drift"
     )
-    velocity_frequency: tuple[float, float, float] = tag(
-        "velocityDriftFrequency",
-        default=_HOUR,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the time constant of the velocity's drift.",
+    velocity_frequency: tuple[float, float, float] = frequency_tag(
+        "velocityDriftFrequency", default=HOURS, of="the velocity's drift"
     )
-    velocity_noise: tuple[float, float, float] = tag(
-        "velocityGaussianNoise",
-        default=_NONE,
-        unit="m/s",
-        least=0.0,
-        doc="Standard deviation of the velocity's noise.",
+    velocity_noise: tuple[float, float, float] = deviation_tag(
+        "velocityGaussianNoise", default=ZEROS, unit="m/s", of="the velocity's noise"
     )
     velocity_scale: tuple[float, float, float] = tag(
-        "velocityScaleError", default=(1.0,) * 3, doc="Scale factor of the velocity."
+        "velocityScaleError", default=UNSCALED, doc="Scale factor of the velocity."
     )
 
 
@@ -156,21 +130,9 @@ class HectorGps(Plugin[HectorGpsParameters]):
                     velocity_topic=config.velocity_topic,
                     frame=config.frame,
                     rate=config.update_rate,
-                    error=self._error(
-                        "position",
-                        config.offset,
-                        config.drift,
-                        config.frequency,
-                        config.noise,
-                        config.scale,
-                    ),
-                    velocity_error=self._error(
-                        "velocity",
-                        config.velocity_offset,
-                        config.velocity_drift,
-                        config.velocity_frequency,
-                        config.velocity_noise,
-                        config.velocity_scale,
+                    error=drifting_error(self, f"gps {config.topic} position"),
+                    velocity_error=drifting_error(
+                        self, f"gps {config.topic} velocity", prefix="velocity_"
                     ),
                     velocity_error_axes="world",
                     # As in the original plugin, it includes the drift.
@@ -193,16 +155,4 @@ class HectorGps(Plugin[HectorGpsParameters]):
             longitude=longitude if config.longitude is None else config.longitude,
             height=altitude if config.altitude is None else config.altitude,
             heading=math.radians(heading if config.heading is None else config.heading),
-        )
-
-    def _error(self, name: str, *numbers: tuple[float, float, float]) -> DriftingErrorConfig:
-        offset, drift, frequency, noise, scale = numbers
-        return DriftingErrorConfig(
-            name=f"gps {self.config.topic} {name}",
-            rate=self.config.update_rate,
-            offset=offset,
-            drift=drift,
-            frequency=frequency,
-            noise=noise,
-            scale=scale,
         )

@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
 from cartwheel.devices.inertial.unit import InertialUnitConfig
 from cartwheel.devices.noise import DriftingErrorConfig
+from cartwheel.dialects.common_tags import (
+    ZEROS,
+    deviation_tag,
+    link_frame_tag,
+    position_tag,
+    publish_rate_tag,
+)
+from cartwheel.dialects.drift_tags import (
+    HOURS,
+    UNSCALED,
+    drifting_error,
+    frequency_tag,
+    offset_tag,
+)
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import Pose, quat_from_rpy
-
-_NONE = (0.0, 0.0, 0.0)
-_HOUR = 1 / 3600.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,30 +45,15 @@ class HectorImuParameters:
         doc="Name of a service of type Empty that removes the drift of the angular velocity. "
         "Default: `<topic>/calibrate`.",
     )
-    frame: str = tag(
-        "frameId",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
-    xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset",
-        "xyzOffsets",
-        default=_NONE,
-        unit="m",
-        doc="Position of the IMU in the link frame.",
+    frame: str = link_frame_tag("frameId")
+    update_rate: float = publish_rate_tag("updateRate")
+    xyz_offset: tuple[float, float, float] = position_tag(
+        "xyzOffset", "xyzOffsets", of="the IMU in the link frame"
     )
     rpy_offset: tuple[float, float, float] = tag(
         "rpyOffset",
         "rpyOffsets",
-        default=_NONE,
+        default=ZEROS,
         unit="rad",
         doc="Orientation of the IMU in the link frame, as roll, pitch, yaw.",
     )
@@ -69,86 +64,43 @@ class HectorImuParameters:
         doc="Standard deviation of the noise on angular velocity and acceleration. If positive, "
         "it overrides `<accelGaussianNoise>` and `<rateGaussianNoise>`.",
     )
-    accel_offset: tuple[float, float, float] = tag(
-        "accelOffset", default=_NONE, unit="m/s²", doc="Constant error of the acceleration."
+    accel_offset: tuple[float, float, float] = offset_tag(
+        "accelOffset", default=ZEROS, unit="m/s²", of="the acceleration"
     )
-    accel_drift: tuple[float, float, float] = tag(
-        "accelDrift",
-        default=_NONE,
-        unit="m/s²",
-        least=0.0,
-        doc="Standard deviation of the acceleration's drift.",
+    accel_drift: tuple[float, float, float] = deviation_tag(
+        "accelDrift", default=ZEROS, unit="m/s²", of="the acceleration's drift"
     )
-    accel_frequency: tuple[float, float, float] = tag(
-        "accelDriftFrequency",
-        default=(_HOUR,) * 3,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the time constant of the acceleration's drift.",
+    accel_frequency: tuple[float, float, float] = frequency_tag(
+        "accelDriftFrequency", default=HOURS, of="the acceleration's drift"
     )
-    accel_noise: tuple[float, float, float] = tag(
-        "accelGaussianNoise",
-        default=_NONE,
-        unit="m/s²",
-        least=0.0,
-        doc="Standard deviation of the acceleration's noise.",
+    accel_noise: tuple[float, float, float] = deviation_tag(
+        "accelGaussianNoise", default=ZEROS, unit="m/s²", of="the acceleration's noise"
     )
     accel_scale: tuple[float, float, float] = tag(
-        "accelScaleError", default=(1.0,) * 3, doc="Scale factor on the acceleration."
+        "accelScaleError", default=UNSCALED, doc="Scale factor on the acceleration."
     )
-    rate_offset: tuple[float, float, float] = tag(
-        "rateOffset", default=_NONE, unit="rad/s", doc="Constant error of the angular velocity."
+    rate_offset: tuple[float, float, float] = offset_tag(
+        "rateOffset", default=ZEROS, unit="rad/s", of="the angular velocity"
     )
-    rate_drift: tuple[float, float, float] = tag(
-        "rateDrift",
-        default=_NONE,
-        unit="rad/s",
-        least=0.0,
-        doc="Standard deviation of the angular velocity's drift.",
+    rate_drift: tuple[float, float, float] = deviation_tag(
+        "rateDrift", default=ZEROS, unit="rad/s", of="the angular velocity's drift"
     )
-    rate_frequency: tuple[float, float, float] = tag(
-        "rateDriftFrequency",
-        default=(_HOUR,) * 3,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the time constant of the angular velocity's drift.",
+    rate_frequency: tuple[float, float, float] = frequency_tag(
+        "rateDriftFrequency", default=HOURS, of="the angular velocity's drift"
     )
-    rate_noise: tuple[float, float, float] = tag(
-        "rateGaussianNoise",
-        default=_NONE,
-        unit="rad/s",
-        least=0.0,
-        doc="Standard deviation of the angular velocity's noise.",
+    rate_noise: tuple[float, float, float] = deviation_tag(
+        "rateGaussianNoise", default=ZEROS, unit="rad/s", of="the angular velocity's noise"
     )
     rate_scale: tuple[float, float, float] = tag(
-        "rateScaleError", default=(1.0,) * 3, doc="Scale factor on the angular velocity."
+        "rateScaleError", default=UNSCALED, doc="Scale factor on the angular velocity."
     )
-    yaw_offset: float = tag(
-        "yawOffset", "headingOffset", default=0.0, unit="rad", doc="Constant error of the yaw."
+    yaw_offset: float = offset_tag("yawOffset", "headingOffset", unit="rad", of="the yaw")
+    yaw_drift: float = deviation_tag("yawDrift", "headingDrift", unit="rad", of="the yaw's drift")
+    yaw_frequency: float = frequency_tag(
+        "yawDriftFrequency", "headingDriftFrequency", of="the yaw's drift"
     )
-    yaw_drift: float = tag(
-        "yawDrift",
-        "headingDrift",
-        default=0.0,
-        unit="rad",
-        least=0.0,
-        doc="Standard deviation of the yaw's drift.",
-    )
-    yaw_frequency: float = tag(
-        "yawDriftFrequency",
-        "headingDriftFrequency",
-        default=_HOUR,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the time constant of the yaw's drift.",
-    )
-    yaw_noise: float = tag(
-        "yawGaussianNoise",
-        "headingGaussianNoise",
-        default=0.0,
-        unit="rad",
-        least=0.0,
-        doc="Standard deviation of the yaw's noise.",
+    yaw_noise: float = deviation_tag(
+        "yawGaussianNoise", "headingGaussianNoise", unit="rad", of="the yaw's noise"
     )
     yaw_scale: float = tag(
         "yawScaleError",
@@ -183,6 +135,7 @@ class HectorImu(Plugin[HectorImuParameters]):
         link = config.body or self.part.description.canonical_link
         mount = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
         topic = config.topic
+        override = {"noise": (config.noise,) * 3} if config.noise > 0 else {}
         self.add(
             Imu(
                 self.scope,
@@ -191,24 +144,10 @@ class HectorImu(Plugin[HectorImuParameters]):
                     topic=topic,
                     frame=config.frame or link,
                     rate=config.update_rate,
-                    acceleration_error=self._error(
-                        "accel",
-                        (config.accel_offset, config.accel_drift, config.accel_frequency),
-                        (config.noise,) * 3 if config.noise > 0 else config.accel_noise,
-                        config.accel_scale,
-                    ),
-                    rate_error=self._error(
-                        "rate",
-                        (config.rate_offset, config.rate_drift, config.rate_frequency),
-                        (config.noise,) * 3 if config.noise > 0 else config.rate_noise,
-                        config.rate_scale,
-                    ),
-                    yaw_error=self._error(
-                        "yaw",
-                        ((config.yaw_offset,), (config.yaw_drift,), (config.yaw_frequency,)),
-                        (config.yaw_noise,),
-                        (1.0,),
-                    ),
+                    acceleration_error=self._error("accel", **override),
+                    rate_error=self._error("rate", **override),
+                    # The scale factor of the yaw has no effect.
+                    yaw_error=self._error("yaw", scale=1.0),
                     bias_topic=_or(config.bias_topic, f"{topic}/bias"),
                     calibration_service=_or(config.service, f"{topic}/calibrate"),
                     acceleration_bias_service=f"{topic}/set_accel_bias",
@@ -217,24 +156,10 @@ class HectorImu(Plugin[HectorImuParameters]):
             )
         )
 
-    def _error(
-        self,
-        name: str,
-        drift: tuple[Sequence[float], Sequence[float], Sequence[float]],
-        noise: Sequence[float],
-        scale: Sequence[float],
-    ) -> DriftingErrorConfig:
-        offset, deviation, frequency = drift
+    def _error(self, kind: str, **instead: Any) -> DriftingErrorConfig:
         # In the original plugin, the standard deviation of the drift depends on the step length.
-        return DriftingErrorConfig(
-            name=f"imu {self.config.topic} {name}",
-            rate=self.config.update_rate,
-            offset=offset,
-            drift=deviation,
-            frequency=frequency,
-            noise=noise,
-            scale=scale,
-        )
+        name = f"imu {self.config.topic} {kind}"
+        return drifting_error(self, name, prefix=f"{kind}_", **instead)
 
 
 def _or(stated: str | None, default: str) -> str:

@@ -6,18 +6,23 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.noise import DriftingErrorConfig
 from cartwheel.devices.position.magnetometer import (
     Magnetometer,
     MagnetometerConfig,
     dipole_field,
 )
+from cartwheel.dialects.common_tags import ZEROS, deviation_tag, link_frame_tag, publish_rate_tag
+from cartwheel.dialects.drift_tags import (
+    HOURS,
+    UNSCALED,
+    drifting_error,
+    frequency_tag,
+    offset_tag,
+)
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.spherical_coordinates import read_datum
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import Vec3
-
-_NONE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -33,19 +38,8 @@ class HectorMagneticParameters:
         default="magnetic",
         doc="Topic of the Vector3Stamped or MagneticField messages.",
     )
-    frame: str = tag(
-        "frameId",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    frame: str = link_frame_tag("frameId")
+    update_rate: float = publish_rate_tag("updateRate")
     magnitude: float = tag(
         "magnitude",
         default=1.0,
@@ -81,24 +75,16 @@ class HectorMagneticParameters:
         default=False,
         doc="Whether to publish MagneticField messages instead of Vector3Stamped messages.",
     )
-    offset: tuple[float, float, float] = tag(
-        "offset", default=_NONE, doc="Constant error of the measured field."
+    offset: tuple[float, float, float] = offset_tag(
+        "offset", default=ZEROS, of="the measured field"
     )
-    drift: tuple[float, float, float] = tag(
-        "drift", default=_NONE, least=0.0, doc="Standard deviation of the drift."
-    )
-    frequency: tuple[float, float, float] = tag(
-        "driftFrequency",
-        default=(1 / 3600.0,) * 3,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the drift's time constant.",
-    )
-    noise: tuple[float, float, float] = tag(
-        "gaussianNoise", default=_NONE, least=0.0, doc="Standard deviation of the noise."
+    drift: tuple[float, float, float] = deviation_tag("drift", default=ZEROS, of="the drift")
+    frequency: tuple[float, float, float] = frequency_tag("driftFrequency", default=HOURS)
+    noise: tuple[float, float, float] = deviation_tag(
+        "gaussianNoise", default=ZEROS, of="the noise"
     )
     scale: tuple[float, float, float] = tag(
-        "scaleError", default=(1.0,) * 3, doc="Scale factor on the measured field."
+        "scaleError", default=UNSCALED, doc="Scale factor on the measured field."
     )
 
 
@@ -125,15 +111,7 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
                     topic=config.topic,
                     frame=config.frame or link,
                     rate=config.update_rate,
-                    error=DriftingErrorConfig(
-                        name=f"magnetic {config.topic}",
-                        rate=config.update_rate,
-                        offset=config.offset,
-                        drift=config.drift,
-                        frequency=config.frequency,
-                        noise=config.noise,
-                        scale=config.scale,
-                    ),
+                    error=drifting_error(self, f"magnetic {config.topic}"),
                     as_vector=not config.as_field,
                 ),
             )

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.rays.range import RangeFinder, RangeFinderConfig
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import deviation_tag, sensor_frame_tag, sensor_rate_tag
+from cartwheel.dialects.drift_tags import frequency_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
@@ -15,13 +17,7 @@ from cartwheel.dialects.tags import tag
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SonarParameters:
     topic: str = tag("topicName", default="sonar", doc="Topic of the Range messages.")
-    frame: str = tag(
-        "frameId",
-        "frameName",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frameId", "frameName")
     noise: float | None = tag(
         "gaussianNoise",
         default=None,
@@ -30,27 +26,12 @@ class SonarParameters:
         doc="Standard deviation of the noise. Default: the sensor's `<noise>`.",
     )
     offset: float = tag("offset", default=0.0, unit="m", doc="Offset added to each range.")
-    drift: float = tag(
-        "drift", default=0.0, unit="m", least=0.0, doc="Standard deviation of a slow drift."
-    )
-    drift_frequency: float = tag(
-        "driftFrequency",
-        default=0.0,
-        unit="1/s",
-        least=0.0,
-        doc="Inverse of the drift's time constant.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
-        "applies.",
-    )
+    drift: float = deviation_tag("drift", unit="m", of="a slow drift")
+    drift_frequency: float = frequency_tag("driftFrequency", default=0.0)
+    update_rate: float = sensor_rate_tag("updateRate", least=0.0)
 
 
-class HectorSonar(Plugin[SonarParameters]):
+class HectorSonar(SensorPlugin[SonarParameters]):
     """Publishes the smallest range that a ray sensor measures, as an ultrasound Range message.
 
     If no ray hits an object, the maximum range is published. Original plugin: ``gazebo_ros_sonar``
@@ -59,12 +40,10 @@ class HectorSonar(Plugin[SonarParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)
     parameters: ClassVar[type] = SonarParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         scanner = read_scanner(sensor, self.part.report)
         device = RangeFinderConfig(
             scanner=scanner,

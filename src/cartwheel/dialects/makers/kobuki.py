@@ -14,6 +14,8 @@ from cartwheel.devices.drives.differential import DifferentialDrive, Differentia
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.joints.states import JointStatesConfig
+from cartwheel.dialects import odometry_tags
+from cartwheel.dialects.common_tags import publish_rate_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
@@ -75,16 +77,8 @@ class KobukiParameters:
         "reported.",
     )
     imu: str = tag("imu_name", doc="Name of the imu sensor.")
-    publish_tf: bool = tag(
-        "publish_tf", default=False, doc="Whether to publish the odometry as a transform on `/tf`."
-    )
-    rate: float = tag(
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate of all topics. If 0, messages are published at every simulation step.",
-    )
+    publish_tf: bool = odometry_tags.publish_transform("publish_tf", default=False)
+    rate: float = publish_rate_tag("update_rate", of="all topics")
 
 
 class Kobuki(Plugin[KobukiParameters]):

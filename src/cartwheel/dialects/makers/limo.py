@@ -11,9 +11,10 @@ from cartwheel.devices.drives.steering_commands import (
     SteeringCommandsConfig,
     SteeringCommandsDrive,
 )
+from cartwheel.dialects import odometry_tags
+from cartwheel.dialects.common_tags import size_tag
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.simulation.limits import FARTHEST
+from cartwheel.dialects.tags import tag
 
 _BASE, _TRACK, _MAX_ANGLE = 0.2, 0.172, 0.523598767
 """Wheel base and track of the LIMO, m, and its maximum steering angle, rad; in the original, they
@@ -61,14 +62,7 @@ class LimoParameters:
     separation: float = tag(
         "wheelSeparation", default=0.4, unit="m", doc="No effect: the distance is 0.172 m."
     )
-    diameter: float = tag(
-        "wheelDiameter",
-        default=0.15,
-        unit="m",
-        least=SMALLEST,
-        most=FARTHEST,
-        doc="Diameter of all wheels.",
-    )
+    diameter: float = size_tag("wheelDiameter", default=0.15, doc="Diameter of all wheels.")
     torque: float = tag(
         "torque",
         default=5.0,
@@ -77,43 +71,14 @@ class LimoParameters:
         role="wheel_torque",
         doc="Maximum torque of each motor.",
     )
-    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    command_topic: str = odometry_tags.command_topic("commandTopic")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
-    base_frame: str = tag(
-        "robotBaseFrame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
-    rate: float = tag(
-        "updateRate",
-        default=100.0,
-        unit="Hz",
-        least=0.0,
-        doc="Rate at which commands are applied and messages are published. If 0, both happen "
-        "at every simulation step.",
-    )
-    publish_tf: bool = tag(
-        "broadcastTF",
-        default=False,
-        doc="Whether to publish the odometry as a transform on `/tf`.",
-    )
-    covariance_x: float = tag(
-        "covariance_x",
-        default=1e-4,
-        unit="m²",
-        least=0.0,
-        doc="Variance of the x position in the odometry.",
-    )
-    covariance_y: float = tag(
-        "covariance_y",
-        default=1e-4,
-        unit="m²",
-        least=0.0,
-        doc="Variance of the y position in the odometry.",
-    )
+    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
+    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
+    rate: float = odometry_tags.control_rate("updateRate")
+    publish_tf: bool = odometry_tags.publish_transform("broadcastTF", default=False)
+    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-4, least=0.0)
+    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-4, least=0.0)
     covariance_yaw: float = tag(
         "covariance_yaw",
         default=0.01,

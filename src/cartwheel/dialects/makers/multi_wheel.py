@@ -10,6 +10,7 @@ from cartwheel.codes import devices
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -47,32 +48,13 @@ class MultiWheelParameters:
     torque: float = tag(
         "torque", default=5.0, unit="N m", role="wheel_torque", doc="Maximum torque of each motor."
     )
-    command_topic: str = tag("commandTopic", default="cmd_vel", doc="Topic of the Twist commands.")
+    command_topic: str = odometry_tags.command_topic("commandTopic")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
-    base_frame: str = tag(
-        "robotBaseFrame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
-    rate: float = tag(
-        "updateRate",
-        default=100.0,
-        unit="Hz",
-        least=0.0,
-        doc="Rate at which commands are applied and messages are published. If 0, both happen "
-        "at every simulation step.",
-    )
-    publish_tf: bool = tag(
-        "publishOdometryTf",
-        default=True,
-        doc="Whether to publish the odometry as a transform on `/tf`.",
-    )
-    publish_message: bool = tag(
-        "publishOdometryMsg", default=True, doc="Whether to publish the odometry as messages."
-    )
+    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
+    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
+    rate: float = odometry_tags.control_rate("updateRate")
+    publish_tf: bool = odometry_tags.publish_transform("publishOdometryTf", default=True)
+    publish_message: bool = odometry_tags.publish_odometry("publishOdometryMsg")
 
 
 class MultiWheelDrive(Plugin[MultiWheelParameters]):

@@ -11,6 +11,7 @@ from cartwheel.devices.cameras.camera import Camera, CameraConfig
 from cartwheel.devices.cameras.depth_camera import DepthConfig
 from cartwheel.devices.cameras.imager import ImagerConfig, topic_in
 from cartwheel.devices.cameras.info import CalibrationConfig
+from cartwheel.dialects.common_tags import sensor_rate_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.camera import read_camera, read_lens
 from cartwheel.dialects.sdf.rates import slowest
@@ -53,27 +54,9 @@ class RealSenseParameters:
         default="",
         doc="Frame ID of the depth images and points. Default: the sensor's link.",
     )
-    color_rate: float = tag(
-        "colorUpdateRate",
-        default=0.0,
-        unit="Hz",
-        doc="Rate of the colour images, limited to the sensor's `<update_rate>`. If 0, the "
-        "sensor's rate applies.",
-    )
-    infrared_rate: float = tag(
-        "infraredUpdateRate",
-        default=0.0,
-        unit="Hz",
-        doc="Rate of the infrared images, limited to the sensor's `<update_rate>`. If 0, the "
-        "sensor's rate applies.",
-    )
-    depth_rate: float = tag(
-        "depthUpdateRate",
-        default=0.0,
-        unit="Hz",
-        doc="Rate of the depth images, limited to the sensor's `<update_rate>`. If 0, the "
-        "sensor's rate applies.",
-    )
+    color_rate: float = sensor_rate_tag("colorUpdateRate", what="Rate of the colour images")
+    infrared_rate: float = sensor_rate_tag("infraredUpdateRate", what="Rate of the infrared images")
+    depth_rate: float = sensor_rate_tag("depthUpdateRate", what="Rate of the depth images")
     nearest: float = tag(
         "rangeMinDepth",
         default=0.0,

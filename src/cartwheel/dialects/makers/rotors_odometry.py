@@ -9,11 +9,10 @@ import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.devices.air.pose_sensor import PoseSensor, PoseSensorConfig
+from cartwheel.dialects.common_tags import ZEROS, deviation_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.errors import PluginError
-
-_NONE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,58 +49,48 @@ class RotorsOdometryParameters:
     unknown_delay: float = tag(
         "unknownDelay", default=0.0, unit="s", doc="Delay that is added to the header stamps."
     )
-    normal_position: tuple[float, float, float] = tag(
-        "noiseNormalPosition",
-        default=_NONE,
-        unit="m",
-        least=0.0,
-        doc="Standard deviation of Gaussian noise on the position.",
+    normal_position: tuple[float, float, float] = deviation_tag(
+        "noiseNormalPosition", default=ZEROS, unit="m", of="Gaussian noise on the position"
     )
-    normal_turn: tuple[float, float, float] = tag(
-        "noiseNormalQuaternion",
-        default=_NONE,
-        unit="rad",
-        least=0.0,
-        doc="Standard deviation of Gaussian noise on the orientation.",
+    normal_turn: tuple[float, float, float] = deviation_tag(
+        "noiseNormalQuaternion", default=ZEROS, unit="rad", of="Gaussian noise on the orientation"
     )
-    normal_linear: tuple[float, float, float] = tag(
+    normal_linear: tuple[float, float, float] = deviation_tag(
         "noiseNormalLinearVelocity",
-        default=_NONE,
+        default=ZEROS,
         unit="m/s",
-        least=0.0,
-        doc="Standard deviation of Gaussian noise on the linear velocity.",
+        of="Gaussian noise on the linear velocity",
     )
-    normal_angular: tuple[float, float, float] = tag(
+    normal_angular: tuple[float, float, float] = deviation_tag(
         "noiseNormalAngularVelocity",
-        default=_NONE,
+        default=ZEROS,
         unit="rad/s",
-        least=0.0,
-        doc="Standard deviation of Gaussian noise on the angular velocity.",
+        of="Gaussian noise on the angular velocity",
     )
     uniform_position: tuple[float, float, float] = tag(
         "noiseUniformPosition",
-        default=_NONE,
+        default=ZEROS,
         unit="m",
         least=0.0,
         doc="Maximum absolute value of uniform noise on the position.",
     )
     uniform_turn: tuple[float, float, float] = tag(
         "noiseUniformQuaternion",
-        default=_NONE,
+        default=ZEROS,
         unit="rad",
         least=0.0,
         doc="Maximum absolute value of uniform noise on the orientation.",
     )
     uniform_linear: tuple[float, float, float] = tag(
         "noiseUniformLinearVelocity",
-        default=_NONE,
+        default=ZEROS,
         unit="m/s",
         least=0.0,
         doc="Maximum absolute value of uniform noise on the linear velocity.",
     )
     uniform_angular: tuple[float, float, float] = tag(
         "noiseUniformAngularVelocity",
-        default=_NONE,
+        default=ZEROS,
         unit="rad/s",
         least=0.0,
         doc="Maximum absolute value of uniform noise on the angular velocity.",

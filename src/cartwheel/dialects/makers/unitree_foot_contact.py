@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from cartwheel.devices.contact.loads import ContactForceConfig
 from cartwheel.devices.contact.wrench import WrenchSensor, WrenchSensorConfig
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.contact import read_collisions
 
 
@@ -16,7 +16,7 @@ class FootContactParameters:
     pass
 
 
-class FootContact(Plugin[FootContactParameters]):
+class FootContact(SensorPlugin[FootContactParameters]):
     """Publishes the contact force on a robot's foot, in the frame of the foot's link.
 
     The topic is ``/visual/<sensor>/the_force``. The force is the sum over all contacts of the
@@ -26,12 +26,10 @@ class FootContact(Plugin[FootContactParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)
     parameters: ClassVar[type] = FootContactParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
         sensor = self.sensor
-        assert sensor is not None
         device = WrenchSensorConfig(
             load=ContactForceConfig(link=sensor.link, collisions=read_collisions(self, sensor)),
             topic=f"/visual/{sensor.name}/the_force",

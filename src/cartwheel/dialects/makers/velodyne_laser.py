@@ -11,7 +11,8 @@ import numpy as np
 from cartwheel.codes import devices
 from cartwheel.devices.rays.lidar import Lidar, LidarConfig
 from cartwheel.devices.rays.outputs import PointCloud2Output
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import idle_rate_tag, sensor_frame_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -37,13 +38,7 @@ class VelodyneParameters:
         default="/points",
         doc="Topic of the PointCloud2 messages. A `<remapping>` of `~/out` takes precedence.",
     )
-    frame: str = tag(
-        "frameName",
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frameName", "frame_name")
     organize: bool = tag(
         "organize_cloud",
         default=False,
@@ -67,16 +62,10 @@ class VelodyneParameters:
         least=0.0,
         doc="Standard deviation of the noise on ranges. It is added to the sensor's own noise.",
     )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        doc="No effect: the sensor's `<update_rate>` applies.",
-    )
+    update_rate: float = idle_rate_tag("updateRate", "update_rate")
 
 
-class VelodyneLaser(Plugin[VelodyneParameters]):
+class VelodyneLaser(SensorPlugin[VelodyneParameters]):
     """Publishes the points that a ray sensor hits as PointCloud2, with intensity and ring number.
 
     Ring 0 is the lowest ring. Points are ordered column by column. All points are measured at the
@@ -90,13 +79,11 @@ class VelodyneLaser(Plugin[VelodyneParameters]):
         "libgazebo_ros_velodyne_gpu_laser.so",
     )
     parameters: ClassVar[type] = VelodyneParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
     prefixes_by_namespace: ClassVar[bool] = True
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         scanner = read_scanner(sensor, self.part.report)
         nearest = max(config.min_range, scanner.pattern.minimum)
         furthest = min(config.max_range, scanner.pattern.maximum)

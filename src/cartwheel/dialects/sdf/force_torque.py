@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from cartwheel.description.model import Element, Sensor
 from cartwheel.devices.contact.loads import Axes, JointLoadConfig
-from cartwheel.devices.noise import VectorNoiseConfig
-from cartwheel.dialects.sdf.noise import read_noise
+from cartwheel.dialects.sdf.noise import read_vector_noise
 from cartwheel.dialects.tags import invalid
 from cartwheel.simulation import Part
 
@@ -26,20 +25,18 @@ def read_joint_load(part: Part, sensor: Sensor, joint: str) -> JointLoadConfig:
     element = sensor.element.find("force_torque") or sensor.element
     axes = _AXES[_choice(element, "frame", _AXES)]
     direction = _choice(element, "measure_direction", ("child_to_parent", "parent_to_child"))
-    noises = tuple(
-        read_noise(element.find(f"{quantity}/{axis}/noise"), part.report)
+    noises = [
+        element.find(f"{quantity}/{axis}/noise")
         for quantity in ("force", "torque")
         for axis in "xyz"
-    )
+    ]
     return JointLoadConfig(
         joint=joint,
         axes=axes,
         # The sensor's pose is relative to the child link.
         rotation=sensor.pose.orientation,
         parent_to_child=direction == 1,
-        noise=VectorNoiseConfig(
-            name=f"force {joint} {sensor.name}", noises=noises, rate=sensor.update_rate
-        ),
+        noise=read_vector_noise(part, sensor, f"force {joint} {sensor.name}", noises),
     )
 
 

@@ -7,7 +7,7 @@ from cartwheel.description.model import Sensor
 from cartwheel.devices.noise import VectorNoiseConfig
 from cartwheel.devices.position.geodesy import Datum
 from cartwheel.devices.position.gps import GpsConfig
-from cartwheel.dialects.sdf.noise import read_noise
+from cartwheel.dialects.sdf.noise import read_vector_noise
 from cartwheel.dialects.sdf.spherical_coordinates import read_datum
 from cartwheel.simulation import Part
 
@@ -62,11 +62,8 @@ def _noise(part: Part, sensor: Sensor, element: str, name: str) -> VectorNoiseCo
     """Returns the noise along three axes, of which the third is vertical."""
     parent = sensor.element.find(f"{element}/{name}")
     horizontal, vertical = (
-        read_noise(parent.find(f"{axis}/noise") if parent is not None else None, part.report)
+        parent.find(f"{axis}/noise") if parent is not None else None
         for axis in ("horizontal", "vertical")
     )
-    return VectorNoiseConfig(
-        name=f"gps {sensor.link} {sensor.name} {name}",
-        noises=(horizontal, horizontal, vertical),
-        rate=sensor.update_rate,
-    )
+    elements = [horizontal, horizontal, vertical]
+    return read_vector_noise(part, sensor, f"gps {sensor.link} {sensor.name} {name}", elements)

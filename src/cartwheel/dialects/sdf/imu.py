@@ -8,7 +8,7 @@ from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
 from cartwheel.devices.inertial.unit import InertialUnitConfig
 from cartwheel.devices.noise import VectorNoiseConfig
-from cartwheel.dialects.sdf.noise import read_noise
+from cartwheel.dialects.sdf.noise import read_vector_noise
 from cartwheel.dialects.sdf.spherical_coordinates import read_datum
 from cartwheel.dialects.tags import invalid, vector
 from cartwheel.geometry import (
@@ -76,15 +76,11 @@ def read_inertial_unit(
 def _noise(
     part: Part, sensor: Sensor, element: Element, name: str, older: str
 ) -> VectorNoiseConfig:
-    x, y, z = (read_noise(element.find(f"{name}/{axis}/noise"), part.report) for axis in "xyz")
-    if element.find(f"noise/{older}") is not None and element.find(name) is None:
+    elements = [element.find(f"{name}/{axis}/noise") for axis in "xyz"]
+    if element.find(name) is None:
         # SDF 1.4: one noise for all axes.
-        x = y = z = read_noise(element.find(f"noise/{older}"), part.report)
-    return VectorNoiseConfig(
-        name=f"imu {sensor.link} {sensor.name} {name}",
-        noises=(x, y, z),
-        rate=sensor.update_rate,
-    )
+        elements = [element.find(f"noise/{older}")] * 3
+    return read_vector_noise(part, sensor, f"imu {sensor.link} {sensor.name} {name}", elements)
 
 
 def _reference(part: Part, frame: Element) -> Quat:

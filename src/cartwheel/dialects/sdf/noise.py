@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import LARGEST
-from cartwheel.description.model import Element
-from cartwheel.devices.noise import Noise
+from cartwheel.description.model import Element, Sensor
+from cartwheel.devices.noise import Noise, VectorNoiseConfig
 from cartwheel.dialects.tags import number
 from cartwheel.errors import Diagnostic, PluginError
+from cartwheel.simulation import Part
 
 _SIGNED = ("mean", "bias_mean")
 
@@ -55,3 +56,21 @@ def read_noise(element: Element | None, report: Callable[[Diagnostic], None]) ->
     if idle:
         report(devices.SENSOR_SETTING_IGNORED.diagnostic(idle, origin=element.origin))
     return noise
+
+
+def read_vector_noise(
+    part: Part, sensor: Sensor, name: str, elements: Sequence[Element | None]
+) -> VectorNoiseConfig:
+    """Reads the ``<noise>`` of each quantity that a sensor measures; see `read_noise`.
+
+    Args:
+        part: Receives the diagnostics.
+        sensor: The sensor, whose rate applies.
+        name: Name of the random sequence.
+        elements: The elements; None: no noise.
+    """
+    # An element that describes several quantities is read once, so that it is reported once.
+    distinct = {id(element): element for element in elements}
+    read = {key: read_noise(element, part.report) for key, element in distinct.items()}
+    noises = tuple(read[id(element)] for element in elements)
+    return VectorNoiseConfig(name=name, noises=noises, rate=sensor.update_rate)

@@ -13,7 +13,8 @@ from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveCon
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
-from cartwheel.dialects.classic.drives import odometry_tags
+from cartwheel.dialects import odometry_tags
+from cartwheel.dialects.common_tags import joint_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -21,47 +22,19 @@ from cartwheel.errors import PluginError
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AckermannParameters:
-    front_left: str = tag(
-        "front_left_joint",
-        default="front_left_joint",
-        role="joint",
-        doc="Joint of the front left wheel.",
+    front_left: str = joint_tag("front_left_joint", doc="Joint of the front left wheel.")
+    front_right: str = joint_tag("front_right_joint", doc="Joint of the front right wheel.")
+    rear_left: str = joint_tag("rear_left_joint", doc="Joint of the driven rear left wheel.")
+    rear_right: str = joint_tag("rear_right_joint", doc="Joint of the driven rear right wheel.")
+    steer_left: str = joint_tag(
+        "left_steering_joint", doc="Joint that steers the front left wheel."
     )
-    front_right: str = tag(
-        "front_right_joint",
-        default="front_right_joint",
-        role="joint",
-        doc="Joint of the front right wheel.",
+    steer_right: str = joint_tag(
+        "right_steering_joint", doc="Joint that steers the front right wheel."
     )
-    rear_left: str = tag(
-        "rear_left_joint",
-        default="rear_left_joint",
-        role="joint",
-        doc="Joint of the driven rear left wheel.",
-    )
-    rear_right: str = tag(
-        "rear_right_joint",
-        default="rear_right_joint",
-        role="joint",
-        doc="Joint of the driven rear right wheel.",
-    )
-    steer_left: str = tag(
-        "left_steering_joint",
-        default="left_steering_joint",
-        role="joint",
-        doc="Joint that steers the front left wheel.",
-    )
-    steer_right: str = tag(
-        "right_steering_joint",
-        default="right_steering_joint",
-        role="joint",
-        doc="Joint that steers the front right wheel.",
-    )
-    steering_wheel: str = tag(
+    steering_wheel: str = joint_tag(
         "steering_wheel_joint",
-        default="steering_wheel_joint",
         optional=True,
-        role="joint",
         doc="Joint of the steering wheel, which turns in proportion to the steering angle. "
         "Ignored if the model has no joint with this name.",
     )
@@ -93,21 +66,9 @@ class AckermannParameters:
     speed_range: tuple[float, float] | None = tag(
         "linear_velocity_i_range", default=None, doc="No effect: velocity servos drive the wheels."
     )
-    update_rate: float = tag(
-        "update_rate",
-        default=100.0,
-        unit="Hz",
-        doc="Rate at which commands are applied and messages are published. If 0, both happen "
-        "at every simulation step.",
-    )
-    odometry_frame: str = tag("odometry_frame", default="odom", doc="Frame ID of the odometry.")
-    base_frame: str = tag(
-        "robot_base_frame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
+    update_rate: float = odometry_tags.control_rate("update_rate", least=None)
+    odometry_frame: str = odometry_tags.odometry_frame("odometry_frame")
+    base_frame: str = odometry_tags.base_frame("robot_base_frame")
     publish_odom: bool = tag(
         "publish_odom", default=False, doc="Whether to publish the odometry on `odom`."
     )
@@ -132,9 +93,9 @@ class AckermannParameters:
         doc="Whether to publish the mean steering angle of the front wheels, in rad, on "
         "`steerangle`.",
     )
-    covariance_x: float = odometry_tags.position_variance("x", 1e-5)
-    covariance_y: float = odometry_tags.position_variance("y", 1e-5)
-    covariance_yaw: float = odometry_tags.yaw_variance(1e-3)
+    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-5)
+    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-5)
+    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-3)
 
 
 class ClassicAckermannDrive(Plugin[AckermannParameters]):

@@ -14,7 +14,7 @@ from cartwheel.devices.drives.differential import (
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
 from cartwheel.devices.joints.states import JointStatesConfig
-from cartwheel.dialects.classic.drives import odometry_tags
+from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -80,19 +80,11 @@ class DiffDriveParameters:
         doc="Maximum acceleration of the wheel rims; it limits how fast the commanded wheel "
         "speeds change. If 0, there is no limit.",
     )
-    command_topic: str = odometry_tags.command_topic()
-    odometry_topic: str = odometry_tags.odometry_topic()
-    odometry_frame: str = odometry_tags.odometry_frame()
-    base_frame: str = odometry_tags.base_frame("base_footprint")
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=100.0,
-        unit="Hz",
-        least=0.0,
-        doc="Rate at which commands are applied and messages are published. If 0, both happen "
-        "at every simulation step.",
-    )
+    command_topic: str = odometry_tags.command_topic("commandTopic", "command_topic")
+    odometry_topic: str = odometry_tags.odometry_topic("odometryTopic", "odometry_topic")
+    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame", "odometry_frame")
+    base_frame: str = odometry_tags.base_frame("robotBaseFrame", "robot_base_frame")
+    update_rate: float = odometry_tags.control_rate("updateRate", "update_rate")
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",
@@ -132,9 +124,9 @@ class DiffDriveParameters:
         doc="Whether to publish the positions and velocities of the wheel joints on "
         "`joint_states`.",
     )
-    covariance_x: float = odometry_tags.position_variance("x", 1e-5)
-    covariance_y: float = odometry_tags.position_variance("y", 1e-5)
-    covariance_yaw: float = odometry_tags.yaw_variance(1e-3)
+    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-5)
+    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-5)
+    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-3)
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,

@@ -8,7 +8,7 @@ from typing import ClassVar
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
-from cartwheel.dialects.classic.drives import odometry_tags
+from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -63,34 +63,15 @@ class SkidSteerParameters:
         least=SMALLEST,
         doc="Maximum torque of each motor.",
     )
-    command_topic: str = tag(
-        "commandTopic", "topicName", default="cmd_vel", doc="Topic of the Twist commands."
-    )
-    odometry_topic: str = tag(
-        "odometryTopic", default="odom", role="topic", doc="Topic of the odometry."
-    )
-    odometry_frame: str = tag("odometryFrame", default="odom", doc="Frame ID of the odometry.")
-    base_frame: str = tag(
-        "robotBaseFrame",
-        default="base_footprint",
-        role="frame",
-        doc="Link whose pose is published as odometry. If no link has this name, the root link "
-        "is used.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        default=100.0,
-        unit="Hz",
-        least=0.0,
-        doc="Rate at which commands are applied and messages are published. If 0, both happen "
-        "at every simulation step.",
-    )
-    broadcast_tf: bool = tag(
-        "broadcastTF", default=False, doc="Whether to publish the odometry as a transform on `/tf`."
-    )
-    covariance_x: float = odometry_tags.position_variance("x", 1e-4)
-    covariance_y: float = odometry_tags.position_variance("y", 1e-4)
-    covariance_yaw: float = odometry_tags.yaw_variance(1e-2)
+    command_topic: str = odometry_tags.command_topic("commandTopic", "topicName")
+    odometry_topic: str = odometry_tags.odometry_topic("odometryTopic")
+    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
+    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
+    update_rate: float = odometry_tags.control_rate("updateRate")
+    broadcast_tf: bool = odometry_tags.publish_transform("broadcastTF", default=False)
+    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-4)
+    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-4)
+    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-2)
 
 
 class SkidSteerDrive(Plugin[SkidSteerParameters]):

@@ -9,10 +9,10 @@ from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.devices.drives.tricycle import TricycleDrive, TricycleDriveConfig
 from cartwheel.devices.joints.states import JointStatesConfig
-from cartwheel.dialects.classic.drives import odometry_tags
+from cartwheel.dialects import odometry_tags
+from cartwheel.dialects.common_tags import size_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag, tags_of
-from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,37 +45,28 @@ class TricycleParameters:
         role="joint",
         doc="Joint of the right passive wheel.",
     )
-    wheel_diameter: float = tag(
+    wheel_diameter: float = size_tag(
         "actuatedWheelDiameter",
         "actuated_wheel_diameter",
         default=0.15,
-        unit="m",
         role="wheel_diameter",
         wheels=("wheel_joint",),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Diameter of the driven wheel.",
     )
-    encoder_diameter: float = tag(
+    encoder_diameter: float = size_tag(
         "encoderWheelDiameter",
         "encoder_wheel_diameter",
         default=0.15,
-        unit="m",
         role="wheel_diameter",
         wheels=("left_joint",),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Diameter of the passive wheels.",
     )
-    encoder_separation: float = tag(
+    encoder_separation: float = size_tag(
         "encoderWheelSeparation",
         "wheel_separation",
         default=0.5,
-        unit="m",
         role="wheel_separation",
         wheels=("left_joint", "right_joint"),
-        least=SMALLEST,
-        most=FARTHEST,
         doc="Distance between the passive wheels.",
     )
     wheel_torque: float | None = tag(
@@ -130,16 +121,11 @@ class TricycleParameters:
         "m/s, and `angular.z` is its steering angle in rad.",
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = odometry_tags.odometry_frame()
-    base_frame: str = odometry_tags.base_frame("base_link")
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=100.0,
-        unit="Hz",
-        doc="Rate at which commands are applied and messages are published. If 0, both happen "
-        "at every simulation step.",
+    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame", "odometry_frame")
+    base_frame: str = odometry_tags.base_frame(
+        "robotBaseFrame", "robot_base_frame", default="base_link"
     )
+    update_rate: float = odometry_tags.control_rate("updateRate", "update_rate", least=None)
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",

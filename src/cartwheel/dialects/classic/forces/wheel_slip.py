@@ -12,6 +12,7 @@ from cartwheel.devices.mechanisms.wheel_slip import (
     WheelSlip,
     WheelSlipConfig,
 )
+from cartwheel.dialects.common_tags import publish_rate_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import number, tag
 from cartwheel.errors import PluginError
@@ -36,13 +37,7 @@ class WheelSlipParameters:
         unit="m/s",
         doc="Rim speed below which the published slip is 0.",
     )
-    rate: float = tag(
-        "publisher_update_rate",
-        default=100.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate of `wheel_slip`. If 0, messages are published at every simulation step.",
-    )
+    rate: float = publish_rate_tag("publisher_update_rate", default=100.0, of="`wheel_slip`")
 
 
 class WheelSlipPlugin(Plugin[WheelSlipParameters]):

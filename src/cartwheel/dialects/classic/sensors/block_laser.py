@@ -7,7 +7,8 @@ from typing import ClassVar
 
 from cartwheel.devices.rays.lidar import Lidar, LidarConfig
 from cartwheel.devices.rays.outputs import PointCloudOutput
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import deviation_tag, idle_rate_tag, sensor_frame_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 
@@ -21,35 +22,17 @@ class BlockLaserParameters:
         role="topic",
         doc="Topic of the PointCloud messages.",
     )
-    frame: str = tag(
-        "frameName",
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
-    noise: float = tag(
-        "gaussianNoise",
-        default=0.0,
-        unit="m",
-        least=0.0,
-        doc="Standard deviation of the noise on each coordinate.",
-    )
+    frame: str = sensor_frame_tag("frameName", "frame_name")
+    noise: float = deviation_tag("gaussianNoise", unit="m", of="the noise on each coordinate")
     least_intensity: float = tag(
         "hokuyoMinIntensity",
         default=101.0,
         doc="No effect, as in Gazebo.",
     )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        doc="No effect: the sensor's `<update_rate>` applies.",
-    )
+    update_rate: float = idle_rate_tag("updateRate", "update_rate")
 
 
-class BlockLaser(Plugin[BlockLaserParameters]):
+class BlockLaser(SensorPlugin[BlockLaserParameters]):
     """Publishes the points that the rays of a ray sensor hit, as PointCloud messages.
 
     In the sensor's frame, x points forward, y left and z up. A ray without a hit adds no point to
@@ -58,11 +41,9 @@ class BlockLaser(Plugin[BlockLaserParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)
     parameters: ClassVar[type] = BlockLaserParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
-        assert self.sensor is not None
         config = LidarConfig(
             scanner=read_scanner(self.sensor, self.part.report),
             frame=self.config.frame or self.sensor.link,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.contact import bumper
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.tags import tag
 
@@ -36,7 +36,7 @@ class BumperParameters:
     )
 
 
-class Bumper(Plugin[BumperParameters]):
+class Bumper(SensorPlugin[BumperParameters]):
     """Publishes the contacts of a sensor's collisions as ContactsState messages.
 
     Messages are also published while there is no contact. Their field ``states`` is then empty.
@@ -45,12 +45,10 @@ class Bumper(Plugin[BumperParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)
     parameters: ClassVar[type] = BumperParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         device = bumper.BumperConfig(
             collisions=read_collisions(self, sensor),
             topic=config.topic,

@@ -16,7 +16,8 @@ from cartwheel.devices.cameras.depth_camera import DepthConfig
 from cartwheel.devices.cameras.imager import ImagerConfig, topic_in
 from cartwheel.devices.cameras.info import CalibrationConfig, Rectified
 from cartwheel.devices.cameras.lens import Distortion
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import sensor_frame_tag, sensor_rate_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.camera import read_camera, read_lens
 from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag, vector
@@ -40,20 +41,8 @@ class CameraParameters:
     info_topic: str = tag(
         "cameraInfoTopicName", default="camera_info", doc="Topic of the CameraInfo messages."
     )
-    frame: str = tag(
-        "frameName",
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        doc="Frame rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate applies.",
-    )
+    frame: str = sensor_frame_tag("frameName", "frame_name")
+    update_rate: float = sensor_rate_tag("updateRate", "update_rate", what="Frame rate")
     hack_baseline: float = tag(
         "hackBaseline",
         "hack_baseline",
@@ -180,17 +169,15 @@ class CameraParameters:
 P = TypeVar("P", bound=CameraParameters)
 
 
-class RosCamera(Plugin[P]):
+class RosCamera(SensorPlugin[P]):
     """Base class of the camera plugins in gazebo_plugins."""
 
     empty_is_model: ClassVar[bool] = True
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "camera"
     always_triggered: ClassVar[bool] = False
     """Whether images are triggered without the tag ``<triggered>``."""
 
     def configure(self) -> None:
-        assert self.sensor is not None
         self.sensor = sensor = read_camera(self, self.sensor)
         device = CameraConfig(
             name=sensor.name,
@@ -217,7 +204,6 @@ class RosCamera(Plugin[P]):
 
     def _base(self) -> str:
         """Namespace of all topics. Default: the sensor's name in ROS 2, none in ROS 1."""
-        assert self.sensor is not None
         if self.config.camera_name:
             return self.config.camera_name
         written_for_ros1 = not self.is_ros2 and any(
@@ -227,7 +213,6 @@ class RosCamera(Plugin[P]):
 
     def _lenses(self) -> Sequence[tuple[CameraIntrinsics, str]]:
         """Returns each lens with the namespace of its topics."""
-        assert self.sensor is not None
         base = self._base()
         if self.sensor.type not in ("multicamera", "multi_camera"):
             return [(self.sensor.cameras[0], base)]
@@ -336,7 +321,6 @@ class Camera(RosCamera[DepthByTypeParameters]):
     parameters: ClassVar[type] = DepthByTypeParameters
 
     def _depth(self) -> DepthConfig | None:
-        assert self.sensor is not None
         if self.sensor.type not in ("depth", "depth_camera", "rgbd_camera"):
             return None
         base, config = self._base(), self.config

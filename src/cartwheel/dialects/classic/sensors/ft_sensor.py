@@ -8,6 +8,7 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.contact.loads import JointReactionConfig, LinkLoadConfig
 from cartwheel.devices.contact.wrench import WrenchSensor, WrenchSensorConfig
+from cartwheel.dialects.common_tags import deviation_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -42,13 +43,8 @@ class FtSensorParameters:
         "effect: as in Gazebo, the frame is that of the joint's child link. Default: "
         "`world`.",
     )
-    noise: float = tag(
-        "gaussianNoise",
-        "gaussian_noise",
-        default=0.0,
-        unit="N and N m",
-        least=0.0,
-        doc="Standard deviation of the noise.",
+    noise: float = deviation_tag(
+        "gaussianNoise", "gaussian_noise", unit="N and N m", of="the noise"
     )
     update_rate: float = tag(
         "updateRate",

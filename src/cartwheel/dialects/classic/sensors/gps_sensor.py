@@ -6,22 +6,17 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.position.gps import Gps
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import sensor_frame_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.gps import read_gps
-from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GpsSensorParameters:
-    frame: str = tag(
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frame_name")
 
 
-class GpsSensor(Plugin[GpsSensorParameters]):
+class GpsSensor(SensorPlugin[GpsSensorParameters]):
     """Publishes the latitude, longitude, altitude and velocity that a ``gps`` sensor measures.
 
     The position is published on ``~/out`` (NavSatFix). The velocity is published on ``~/vel``
@@ -33,12 +28,10 @@ class GpsSensor(Plugin[GpsSensorParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
     parameters: ClassVar[type] = GpsSensorParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "gps"
 
     def configure(self) -> None:
         sensor = self.sensor
-        assert sensor is not None
         name = self.tag.name or "gps"
         device = read_gps(
             self.part,

@@ -7,6 +7,13 @@ from typing import ClassVar
 
 from cartwheel.devices.inertial import imu as inertial
 from cartwheel.devices.inertial.unit import InertialUnitConfig
+from cartwheel.dialects.common_tags import (
+    deviation_tag,
+    link_frame_tag,
+    position_tag,
+    publish_rate_tag,
+    rotation_tag,
+)
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import Pose, quat_from_rpy
@@ -23,41 +30,17 @@ class ImuParameters:
         default="imu_service",
         doc="Name of a service of type Empty. Calls succeed but have no effect.",
     )
-    frame: str = tag(
-        "frameName",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the link in `<bodyName>`.",
+    frame: str = link_frame_tag("frameName")
+    noise: float = deviation_tag(
+        "gaussianNoise", unit="rad/s and m/s²", of="the noise on angular velocity and acceleration"
     )
-    noise: float = tag(
-        "gaussianNoise",
-        default=0.0,
-        unit="rad/s and m/s²",
-        least=0.0,
-        doc="Standard deviation of the noise on angular velocity and acceleration.",
+    rpy_offset: tuple[float, float, float] = rotation_tag(
+        "rpyOffsets", "rpyOffset", of="the IMU in the link frame"
     )
-    rpy_offset: tuple[float, float, float] = tag(
-        "rpyOffsets",
-        "rpyOffset",
-        default=(0.0, 0.0, 0.0),
-        unit="rad",
-        doc="Roll, pitch and yaw of the IMU in the link frame.",
+    xyz_offset: tuple[float, float, float] = position_tag(
+        "xyzOffset", "xyzOffsets", of="the IMU in the link frame"
     )
-    xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset",
-        "xyzOffsets",
-        default=(0.0, 0.0, 0.0),
-        unit="m",
-        doc="Position of the IMU in the link frame.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    update_rate: float = publish_rate_tag("updateRate", "update_rate")
 
 
 class Imu(Plugin[ImuParameters]):

@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import (
+    deviation_tag,
+    position_tag,
+    rotation_tag,
+    sensor_frame_tag,
+    sensor_rate_tag,
+)
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag
@@ -21,43 +28,17 @@ class ImuSensorParameters:
     body: str = tag(
         "bodyName", default="", role="link", doc="No effect: the IMU is on the sensor's link."
     )
-    frame: str = tag(
-        "frameName",
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
+    frame: str = sensor_frame_tag("frameName", "frame_name")
+    noise: float = deviation_tag(
+        "gaussianNoise", unit="rad/s and m/s²", of="the noise on angular velocity and acceleration"
     )
-    noise: float = tag(
-        "gaussianNoise",
-        default=0.0,
-        unit="rad/s and m/s²",
-        least=0.0,
-        doc="Standard deviation of the noise on angular velocity and acceleration.",
+    rpy_offset: tuple[float, float, float] = rotation_tag(
+        "rpyOffset", "rpyOffsets", of="the IMU relative to the sensor's pose"
     )
-    rpy_offset: tuple[float, float, float] = tag(
-        "rpyOffset",
-        "rpyOffsets",
-        default=(0.0, 0.0, 0.0),
-        unit="rad",
-        doc="Roll, pitch and yaw of the IMU relative to the sensor's pose.",
+    xyz_offset: tuple[float, float, float] = position_tag(
+        "xyzOffset", "xyzOffsets", of="the IMU relative to the sensor's pose"
     )
-    xyz_offset: tuple[float, float, float] = tag(
-        "xyzOffset",
-        "xyzOffsets",
-        default=(0.0, 0.0, 0.0),
-        unit="m",
-        doc="Position of the IMU relative to the sensor's pose.",
-    )
-    update_rate: float = tag(
-        "updateRateHZ",
-        "updateRate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
-        "applies.",
-    )
+    update_rate: float = sensor_rate_tag("updateRateHZ", "updateRate", least=0.0)
     initial_orientation: bool = tag(
         "initialOrientationAsReference",
         "initial_orientation_as_reference",
@@ -68,7 +49,7 @@ class ImuSensorParameters:
     )
 
 
-class ImuSensor(Plugin[ImuSensorParameters]):
+class ImuSensor(SensorPlugin[ImuSensorParameters]):
     """Publishes the measurements of an ``imu`` sensor, with the noise specified in its ``<imu>``.
 
     If the ``<plugin>`` contains ``<ros>``, it is treated as written for ROS 2: the default topic is
@@ -84,12 +65,10 @@ class ImuSensor(Plugin[ImuSensorParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
     parameters: ClassVar[type] = ImuSensorParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "imu"
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         self.under_model()
         offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
         unit = read_inertial_unit(

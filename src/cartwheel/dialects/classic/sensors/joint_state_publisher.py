@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from cartwheel.codes import running
 from cartwheel.devices.joints.states import JointStates, JointStatesConfig
+from cartwheel.dialects.common_tags import publish_rate_tag
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -41,14 +42,7 @@ class JointStatePublisherParameters:
         role="joint",
         doc="Joints to publish, separated by commas. Default: all movable joints.",
     )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=100.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    update_rate: float = publish_rate_tag("updateRate", "update_rate", default=100.0)
 
 
 class JointStatePublisher(Plugin[JointStatePublisherParameters]):
@@ -98,13 +92,7 @@ class GzJointStatePublisherParameters:
         role="joint",
         doc="Joint to publish. Repeat the tag for each joint. Default: all movable joints.",
     )
-    update_rate: float = tag(
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    update_rate: float = publish_rate_tag("update_rate")
 
 
 class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):

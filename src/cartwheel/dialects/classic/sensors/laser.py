@@ -8,7 +8,8 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.rays.lidar import Lidar, LidarConfig
 from cartwheel.devices.rays.outputs import LaserScanOutput
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import idle_rate_tag, sensor_frame_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
 
@@ -18,23 +19,11 @@ class LaserParameters:
     topic: str = tag(
         "topicName", "topic_name", default="scan", role="topic", doc="Topic of the scans."
     )
-    frame: str = tag(
-        "frameName",
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        doc="No effect: the sensor's `<update_rate>` applies.",
-    )
+    frame: str = sensor_frame_tag("frameName", "frame_name")
+    update_rate: float = idle_rate_tag("updateRate", "update_rate")
 
 
-class Laser(Plugin[LaserParameters]):
+class Laser(SensorPlugin[LaserParameters]):
     """Publishes the ranges that a ray sensor measures, as LaserScan messages.
 
     As in Gazebo, a ``ray`` sensor detects collision shapes, and a ``gpu_ray`` sensor detects visual
@@ -51,12 +40,10 @@ class Laser(Plugin[LaserParameters]):
     )
     parameters: ClassVar[type] = LaserParameters
     empty_is_model: ClassVar[bool] = True
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
     prefixes_by_namespace: ClassVar[bool] = True
 
     def configure(self) -> None:
-        assert self.sensor is not None
         scanner = read_scanner(self.sensor, self.part.report)
         rows = scanner.pattern.vertical.count
         if rows > 1:

@@ -10,6 +10,8 @@ import numpy as np
 from cartwheel.codes import devices
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.position.truth import GroundTruth, GroundTruthConfig
+from cartwheel.dialects import odometry_tags
+from cartwheel.dialects.common_tags import deviation_tag, publish_rate_tag, rotation_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
@@ -19,9 +21,7 @@ _WORLD = {"world", "/world", "map", "/map"}
 @dataclass(frozen=True, kw_only=True, slots=True)
 class P3DParameters:
     body: str = tag("bodyName", "body_name", role="link", doc="Link whose pose is published.")
-    topic: str = tag(
-        "topicName", "topic_name", default="odom", role="topic", doc="Topic of the odometry."
-    )
+    topic: str = odometry_tags.odometry_topic("topicName", "topic_name")
     frame: str = tag(
         "frameName",
         "frame_name",
@@ -38,32 +38,17 @@ class P3DParameters:
         unit="m",
         doc="Offset added to the position, expressed in the reference frame.",
     )
-    rpy_offset: tuple[float, float, float] = tag(
+    rpy_offset: tuple[float, float, float] = rotation_tag(
         "rpyOffset",
         "rpyOffsets",
         "rpy_offset",
         "rpy_offsets",
-        default=(0.0, 0.0, 0.0),
-        unit="rad",
-        doc="Roll, pitch and yaw of a rotation that is applied to the orientation, about the "
-        "axes of the reference frame.",
+        of="a rotation that is applied to the orientation, about the axes of the reference frame",
     )
-    noise: float = tag(
-        "gaussianNoise",
-        "gaussian_noise",
-        default=0.0,
-        unit="m/s and rad/s",
-        least=0.0,
-        doc="Standard deviation of the noise on the twist.",
+    noise: float = deviation_tag(
+        "gaussianNoise", "gaussian_noise", unit="m/s and rad/s", of="the noise on the twist"
     )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate. If 0, messages are published at every simulation step.",
-    )
+    update_rate: float = publish_rate_tag("updateRate", "update_rate")
 
 
 class P3D(Plugin[P3DParameters]):

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from cartwheel.devices.rays.range import RangeFinder, RangeFinderConfig
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import sensor_frame_tag, sensor_rate_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
@@ -21,13 +22,7 @@ class RangeParameters:
         role="topic",
         doc="Topic of the Range messages.",
     )
-    frame: str = tag(
-        "frameName",
-        "frame_name",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frameName", "frame_name")
     fov: float = tag(
         "fov",
         default=0.05,
@@ -44,18 +39,10 @@ class RangeParameters:
         least=0.0,
         doc="Standard deviation of the noise. Default: the sensor's `<noise>`.",
     )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        least=0.0,
-        doc="Publish rate, limited to the sensor's `<update_rate>`. If 0, the sensor's rate "
-        "applies.",
-    )
+    update_rate: float = sensor_rate_tag("updateRate", "update_rate", least=0.0)
 
 
-class Range(Plugin[RangeParameters]):
+class Range(SensorPlugin[RangeParameters]):
     """Publishes the smallest range that a ray sensor measures, as Range messages.
 
     If no ray hits an object, the maximum range is published. Original plugin: ``gazebo_ros_range``
@@ -64,12 +51,10 @@ class Range(Plugin[RangeParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_range.so",)
     parameters: ClassVar[type] = RangeParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         device = RangeFinderConfig(
             scanner=read_scanner(sensor, self.part.report),
             topic=config.topic,

@@ -13,7 +13,8 @@ from cartwheel.devices.rays.outputs import (
     PointCloudOutput,
     RangeOutput,
 )
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.common_tags import idle_rate_tag, sensor_frame_tag
+from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import invalid, tag
 
@@ -36,13 +37,7 @@ class RaySensorParameters:
         doc="Topic of the messages. A `<remapping>` of `~/out` takes precedence. Default: "
         "`<plugin name>/out`.",
     )
-    frame: str = tag(
-        "frame_name",
-        "frameName",
-        default="",
-        role="frame",
-        doc="Frame ID of the messages. Default: the sensor's link.",
-    )
+    frame: str = sensor_frame_tag("frame_name", "frameName")
     radiation: Literal["ultrasound", "infrared", "infared"] = tag(
         "radiation_type",
         "radiationType",
@@ -55,16 +50,10 @@ class RaySensorParameters:
         default=0.0,
         doc="Minimum intensity. Lower intensities are replaced by this value.",
     )
-    update_rate: float = tag(
-        "updateRate",
-        "update_rate",
-        default=0.0,
-        unit="Hz",
-        doc="No effect: the sensor's `<update_rate>` applies.",
-    )
+    update_rate: float = idle_rate_tag("updateRate", "update_rate")
 
 
-class RaySensor(Plugin[RaySensorParameters]):
+class RaySensor(SensorPlugin[RaySensorParameters]):
     """Publishes a ray sensor's ranges as LaserScan, PointCloud, PointCloud2 or Range messages.
 
     A LaserScan contains the middle row of rays. Point clouds contain no points for rays without a
@@ -77,12 +66,10 @@ class RaySensor(Plugin[RaySensorParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ray_sensor.so",)
     parameters: ClassVar[type] = RaySensorParameters
-    for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
         sensor, config = self.sensor, self.config
-        assert sensor is not None
         scanner = read_scanner(sensor, self.part.report)
         device = LidarConfig(
             scanner=scanner, frame=config.frame or sensor.link, outputs=(self._output(),)
