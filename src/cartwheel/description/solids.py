@@ -10,24 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.description.meshes import MeshError, convex_hull_input, load_mesh
-from cartwheel.description.model import (
-    Box,
-    Capsule,
-    Collision,
-    Cone,
-    Cylinder,
-    Ellipsoid,
-    Mesh,
-    Shape,
-    Sphere,
-    Visual,
-)
+from cartwheel.description.model import Collision, Mesh, Shape, Visual
+from cartwheel.description.shapes.triangles import triangles_of
 from cartwheel.geometry import Pose, matrix_from_quat
 
 _ON_PLANE = 1e-6
 """m; tolerance for points on a plane of rays."""
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Ints = NDArray[np.int32]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,35 +77,13 @@ def hull(solid: Solid) -> Solid:
 
 
 def _triangles(shape: Shape) -> tuple[Floats, Ints] | None:
-    # Imported here because the import takes 0.1 s.
-    import trimesh.creation
-
-    make = trimesh.creation
-    match shape:
-        case Mesh():
-            try:
-                vertices, faces = convex_hull_input(load_mesh(shape))
-            except MeshError:
-                return None
-            return vertices.astype(np.float64), faces.astype(np.int64)
-        case Box(size=size):
-            found = make.box(extents=size)
-        case Sphere(radius=r):
-            found = make.uv_sphere(radius=r, count=[24, 24])
-        case Ellipsoid(radii=radii):
-            found = make.uv_sphere(radius=1.0, count=[24, 24])
-            found.vertices *= np.array(radii)
-        case Cylinder(radius=r, length=h):
-            found = make.cylinder(radius=r, height=h, sections=32)
-        case Capsule(radius=r, length=h):
-            found = make.capsule(radius=r, height=h, count=[24, 24])
-            found.vertices -= found.bounds.mean(axis=0)
-        case Cone(radius=r, length=h):
-            found = make.cone(radius=r, height=h, sections=32)
-            found.vertices -= [0.0, 0.0, h / 2]
-        case _:
-            return None
-    return np.asarray(found.vertices, dtype=np.float64), np.asarray(found.faces, dtype=np.int64)
+    if not isinstance(shape, Mesh):
+        return triangles_of(shape)
+    try:
+        vertices, faces = convex_hull_input(load_mesh(shape))
+    except MeshError:
+        return None
+    return vertices.astype(np.float64), faces.astype(np.int32)
 
 
 def first_hits(

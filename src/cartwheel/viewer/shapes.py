@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -15,12 +14,7 @@ from numpy.typing import NDArray
 from cartwheel.description.appearance.images import PictureError, thumbnail
 from cartwheel.description.meshes import load_mesh
 from cartwheel.description.model import (
-    Box,
-    Capsule,
     Collision,
-    Cone,
-    Cylinder,
-    Ellipsoid,
     Heightmap,
     Material,
     Mesh,
@@ -28,13 +22,13 @@ from cartwheel.description.model import (
     Polyline,
     Rgba,
     Shape,
-    Sphere,
     Visual,
 )
 from cartwheel.description.paint import Paint, paint_of
 from cartwheel.description.shapes import outline
 from cartwheel.description.shapes.terrain import heights_of
 from cartwheel.description.shapes.texture_coordinates import scaled, wrapped
+from cartwheel.description.shapes.triangles import triangles_of as primitive
 from cartwheel.geometry import Pose, matrix_from_quat, quat_between
 
 Floats = NDArray[np.float32]
@@ -42,8 +36,6 @@ Ints = NDArray[np.int32]
 
 DEFAULT: Rgba = (0.72, 0.74, 0.76, 1.0)
 """Colour of shapes without a colour."""
-_AROUND = 32
-"""Segments in a circle: smooth enough for a wheel, light enough for many robots."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -185,24 +177,11 @@ def _mean_colour(image: Path | bytes) -> Rgba | None:
 
 @lru_cache(maxsize=256)
 def triangles_of(shape: Shape) -> tuple[Floats, Ints]:
-    """Vertices and faces of a primitive in its own frame; sharp edges share no vertices."""
+    """Vertices and faces of a shape in its own frame; sharp edges share no vertices."""
+    found = primitive(shape)
+    if found is not None:
+        return found[0].astype(np.float32), found[1]
     match shape:
-        case Box(size=size):
-            return _box(size)
-        case Cylinder(radius=radius, length=length):
-            return _lathe([(0, -length / 2), (radius, -length / 2), None,
-                           (radius, -length / 2), (radius, length / 2), None,
-                           (radius, length / 2), (0, length / 2)])  # fmt: skip
-        case Cone(radius=radius, length=length):
-            return _lathe([(0, -length / 2), (radius, -length / 2), None,
-                           (radius, -length / 2), (0, length / 2)])  # fmt: skip
-        case Sphere(radius=radius):
-            return _round(radius, 0.0)
-        case Capsule(radius=radius, length=length):
-            return _round(radius, length)
-        case Ellipsoid(radii=radii):
-            vertices, faces = _round(1.0, 0.0)
-            return vertices * np.asarray(radii, dtype=np.float32), faces
         case Plane(normal=normal, size=size):
             x, y = size[0] / 2, size[1] / 2
             corners = np.array([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], dtype=np.float32)
@@ -213,62 +192,6 @@ def triangles_of(shape: Shape) -> tuple[Floats, Ints]:
         case Polyline():
             return outline.solid(shape)
     raise TypeError(f"{type(shape).__name__} has no triangles")
-
-
-def _box(size: tuple[float, float, float]) -> tuple[Floats, Ints]:
-    vertices: list[NDArray[np.float64]] = []
-    faces: list[tuple[int, int, int]] = []
-    for axis in range(3):
-        for side in (-1.0, 1.0):
-            u, v = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]
-            if side < 0:
-                u, v = v, u
-            middle = side * np.eye(3)[axis]
-            start = len(vertices)
-            vertices += [middle - u - v, middle + u - v, middle + u + v, middle - u + v]
-            faces += [(start, start + 1, start + 2), (start, start + 2, start + 3)]
-    scaled = np.array(vertices) * np.asarray(size) / 2
-    return scaled.astype(np.float32), np.array(faces, dtype=np.int32)
-
-
-def _lathe(profile: list[tuple[float, float] | None]) -> tuple[Floats, Ints]:
-    """A profile of (radius, z), upwards on the outside, rotated about z; None separates pieces."""
-    angles = np.linspace(0, 2 * math.pi, _AROUND, endpoint=False)
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    vertices: list[NDArray[np.float64]] = []
-    faces: list[tuple[int, int, int]] = []
-    count, previous = 0, False
-    for point in profile:
-        if point is None:
-            previous = False
-            continue
-        radius, z = point
-        vertices.append(np.column_stack([circle * radius, np.full(_AROUND, z)]))
-        if previous:
-            for i in range(_AROUND):
-                j = (i + 1) % _AROUND
-                below, above = count - _AROUND, count
-                faces.append((below + i, below + j, above + j))
-                faces.append((below + i, above + j, above + i))
-        previous = True
-        count += _AROUND
-    points = np.concatenate(vertices)
-    triangles = np.array(faces, dtype=np.int32)
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return points.astype(np.float32), triangles[area > 1e-15]
-
-
-def _round(radius: float, length: float) -> tuple[Floats, Ints]:
-    steps = [math.pi * i / 16 - math.pi / 2 for i in range(17)]
-    profile: list[tuple[float, float] | None] = []
-    for angle in steps:
-        shift = length / 2 if angle > 0 else -length / 2
-        if angle == 0 and length:
-            profile.append((radius, -length / 2))
-            shift = length / 2
-        profile.append((radius * math.cos(angle), radius * math.sin(angle) + shift))
-    return _lathe(profile)
 
 
 def _heightmap(shape: Heightmap) -> tuple[Floats, Ints]:

@@ -1,1 +1,1 @@
-"""Polylines, heightmaps and texture coordinates."""
+"""Triangles of shapes, polylines, heightmaps and texture coordinates."""
