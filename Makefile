@@ -6,6 +6,8 @@ FOLDER ?= robots
 MINUTES ?= 5
 WORKERS ?= 2
 export VENV
+# The tests start many hundreds of processes, and each would compile all sources again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test campaign lint format bench corpus catalogue docs ros1 dist clean
 
