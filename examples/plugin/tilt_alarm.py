@@ -20,7 +20,6 @@ class TiltAlarm(Plugin[TiltAlarmParameters]):
     """Publishes true while the root link is tilted by more than a limit."""
 
     filenames = ("libtilt_alarm.so",)
-    parameters = TiltAlarmParameters
 
     def configure(self) -> None:
         self.check_above_zero(limit=self.config.limit)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.devices.drives.odometry import planar_covariance
 from cartwheel.dialects.tags import tag
+from cartwheel.geometry import Array
 
 # The functions return Any, as `tag` does, because a field with a tag can have any type. Each takes
 # the names of the tag, because plugins differ in the spellings that they accept.
@@ -81,3 +83,12 @@ def position_variance(name: str, default: float, *, least: float | None = None) 
 def yaw_variance(name: str, default: float) -> Any:
     """The variance of the yaw angle, rad²."""
     return tag(name, default=default, unit="rad²", doc="Variance of the yaw angle in the odometry.")
+
+
+def covariance(config: Any) -> Array:
+    """Returns the covariance that the three variances describe, shape (36,).
+
+    Args:
+        config: Parameters with the fields `covariance_x`, `covariance_y` and `covariance_yaw`.
+    """
+    return planar_covariance(config.covariance_x, config.covariance_y, config.covariance_yaw)

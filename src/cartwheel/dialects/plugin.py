@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import ClassVar, Generic, TypeVar
+from dataclasses import dataclass, is_dataclass
+from typing import Any, ClassVar, Generic, TypeVar, get_args
 
+from cartwheel.codes import devices
 from cartwheel.component import Component, Scope, Shared
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.dialects.tags import SMALLEST, invalid, read
@@ -42,7 +43,7 @@ class Plugin(Component, Generic[C]):
     filenames: ClassVar[tuple[str, ...]]
     """File names without ``lib`` and ``.so``: ``gazebo_ros_diff_drive``."""
     parameters: ClassVar[type]
-    """A frozen dataclass of `tag` fields."""
+    """A frozen dataclass of `tag` fields. By default, the one in ``Plugin[…]``."""
     for_sensor: ClassVar[bool] = False
     """Whether the plugin belongs inside a ``<sensor>``."""
     sensor_type: ClassVar[str] = ""
@@ -58,6 +59,13 @@ class Plugin(Component, Generic[C]):
 
     The parameters of such a plugin are read from the ``<sensor>`` itself.
     """
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        bases: tuple[Any, ...] = vars(cls).get("__orig_bases__", ())
+        for each in (argument for base in bases for argument in get_args(base)):
+            if isinstance(each, type) and is_dataclass(each) and "parameters" not in vars(cls):
+                cls.parameters = each
 
     def __init__(self, part: Part, shared: Shared, tag: PluginTag, sensor: Sensor | None) -> None:
         self.tag = tag
@@ -170,6 +178,14 @@ class Plugin(Component, Generic[C]):
     def remaps(self, name: str) -> bool:
         """Whether the tag remaps this private name (``out`` for ``~/out``)."""
         return name in self.scope.remappings
+
+    def warn_ignored(self, name: str, reason: str) -> None:
+        """Warns that a tag has no effect; `reason` follows in the message."""
+        self.warn(
+            devices.PLUGIN_PARAMETER_IGNORED,
+            f"<{name}> has no effect: {reason}",
+            values={"parameter": name},
+        )
 
     def check_above_zero(self, **values: float) -> None:
         """Checks that parameters, given by their tags, are positive.

@@ -76,6 +76,17 @@ class PropellerTags:
     )
 
 
+def max_speed_tag() -> Any:
+    """The maximum speed of a propeller, rad/s."""
+    return tag(
+        "maxRotVelocity",
+        default=838.0,
+        unit="rad/s",
+        least=SMALLEST,
+        doc="Maximum speed of the propeller.",
+    )
+
+
 def add_propeller(
     plugin: Plugin[Any],
     *,

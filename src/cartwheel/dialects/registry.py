@@ -20,15 +20,14 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.tags import tags_of
-from cartwheel.dialects.world_plugins import BUILT_IN, failed, left_out
+from cartwheel.dialects.world_plugins import BUILT_IN, Faults, create
 from cartwheel.errors import CartwheelError, StaticModelError
 from cartwheel.similar_names import meant_one
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
 
-_Faults = tuple[type[CartwheelError], ...]
-_ANY: _Faults = (CartwheelError,)
-_HARMLESS: _Faults = (StaticModelError,)
+_ANY: Faults = (CartwheelError,)
+_HARMLESS: Faults = (StaticModelError,)
 """Errors after which a plugin is skipped, with a report."""
 
 
@@ -75,7 +74,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
                 )
             else:
                 forgiven = _ANY if lenient or own_system else _HARMLESS
-                plugins += _create(part, shared, plugin, tag, sensor, forgiven=forgiven)
+                plugins += create(part, shared, plugin, tag, sensor, forgiven=forgiven)
         alone = [
             one
             for one in sensors
@@ -90,28 +89,6 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     return list(plugins)
 
 
-def _create(
-    part: Part,
-    shared: Shared,
-    plugin: type[Plugin[object]],
-    tag: PluginTag,
-    sensor: Sensor | None,
-    *,
-    forgiven: _Faults,
-) -> list[Plugin[object]]:
-    """Returns a list of the plugin; empty, with a report, if it cannot be created."""
-    try:
-        return [part.made(lambda: plugin(part, shared, tag, sensor))]
-    except CartwheelError as error:
-        if not isinstance(error, forgiven):
-            error.origin = error.origin or tag.origin
-            raise
-        part.report(left_out(tag, error))
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
-        part.report(failed(tag, error))
-    return []
-
-
 def _serve(
     part: Part, shared: Shared, sensors: Iterable[Sensor], systems: Collection[str]
 ) -> Iterator[Plugin[object]]:
@@ -121,7 +98,7 @@ def _serve(
         wanted = publishes(sensor, systems)
         if wanted and plugin is not None:
             tag = own_tag(sensor, tags_of(plugin.parameters))
-            yield from _create(part, shared, plugin, tag, sensor, forgiven=_ANY)
+            yield from create(part, shared, plugin, tag, sensor, forgiven=_ANY)
             continue
         if sensor.plugins:
             # The diagnostic about the unsupported plugin also covers the sensor.

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import functools
-
 from cartwheel.calls import raise_exit
 from cartwheel.codes import devices, running
 from cartwheel.component import Shared
-from cartwheel.description.model import PluginTag
+from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.sensor_tags import SYSTEMS
+from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.errors import CartwheelError, Diagnostic, fault
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
+
+Faults = tuple[type[CartwheelError], ...]
 
 BUILT_IN = {
     *SYSTEMS,
@@ -31,7 +32,29 @@ BUILT_IN = {
 """Plugins for physics, spawning, time and sensors, which Cartwheel always provides."""
 
 
-def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
+def create(
+    part: Part,
+    shared: Shared,
+    plugin: type[Plugin[object]],
+    tag: PluginTag,
+    sensor: Sensor | None = None,
+    *,
+    forgiven: Faults = (CartwheelError,),
+) -> list[Plugin[object]]:
+    """Returns a list of the plugin; empty, with a report, if it cannot be created."""
+    try:
+        return [part.made(lambda: plugin(part, shared, tag, sensor))]
+    except CartwheelError as error:
+        if not isinstance(error, forgiven):
+            error.origin = error.origin or tag.origin
+            raise
+        part.report(_left_out(tag, error))
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
+        part.report(_failed(tag, error))
+    return []
+
+
+def _left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     """Returns the diagnostic for a plugin or sensor that cannot be created."""
     return running.PLUGIN_LEFT_OUT.because(
         f"{_title(tag)} is ignored",
@@ -41,7 +64,7 @@ def left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     )
 
 
-def failed(tag: PluginTag, error: BaseException) -> Diagnostic:
+def _failed(tag: PluginTag, error: BaseException) -> Diagnostic:
     """Returns the diagnostic for a plugin or sensor with an unexpected exception at creation."""
     raise_exit(error)
     return fault(
@@ -92,10 +115,5 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
                 )
             )
         else:
-            try:
-                behaviours.append(part.made(functools.partial(plugin, part, shared, tag, None)))
-            except CartwheelError as error:
-                part.report(left_out(tag, error))
-            except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
-                part.report(failed(tag, error))
+            behaviours += create(part, shared, plugin, tag)
     return behaviours

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from cartwheel.description.model import SoftLimits
+from cartwheel.description.model import Joint, SoftLimits
 from cartwheel.devices.elementwise import Number, anywhere, clamp, maximum, minimum, where
 from cartwheel.devices.joints.pid import DampedEffort
 
@@ -24,6 +24,14 @@ class JointLimits:
     """Maximum effort, N m or N."""
     soft: SoftLimits | None = None
     """Limits at which the joint slows down; None: not applied."""
+
+
+def position_range(joint: Joint | None) -> tuple[float, float]:
+    """Returns the lowest and highest position of a joint, rad or m; infinite without a limit."""
+    if joint is None or joint.type == "continuous":
+        return -math.inf, math.inf
+    lower, upper = joint.axis.lower, joint.axis.upper
+    return -math.inf if lower is None else lower, math.inf if upper is None else upper
 
 
 def velocity_bounds(limits: JointLimits, position: Number) -> tuple[Number, Number]:

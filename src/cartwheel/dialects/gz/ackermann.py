@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.codes import devices
 from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveConfig
 from cartwheel.dialects.common_tags import joint_tag, joints_tag, size_tag
 from cartwheel.dialects.gz.drive_tags import (
@@ -95,7 +94,6 @@ class GzAckermannDrive(Plugin[GzAckermannParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)
-    parameters: ClassVar[type] = GzAckermannParameters
 
     def configure(self) -> None:
         config = self.config
@@ -104,11 +102,7 @@ class GzAckermannDrive(Plugin[GzAckermannParameters]):
             (config.actuators, "use_actuator_msg"),
         ):
             if flag:
-                self.warn(
-                    devices.PLUGIN_PARAMETER_IGNORED,
-                    f"<{what}> has no effect: only Twist commands are supported",
-                    values={"parameter": what},
-                )
+                self.warn_ignored(what, "only Twist commands are supported")
         report_limits(self, config)
         topic = f"/model/{self.part.name}/{config.sub_topic}" if config.sub_topic else ""
         self.add(

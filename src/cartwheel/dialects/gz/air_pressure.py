@@ -24,7 +24,6 @@ class AirPressure(GzSensor[AirPressureParameters]):
     sensor corresponds to ``AirPressureSensor`` in gz-sensors.
     """
 
-    parameters: ClassVar[type] = AirPressureParameters
     serves: ClassVar[tuple[str, ...]] = ("air_pressure",)
 
     def configure(self) -> None:

@@ -26,7 +26,6 @@ class Altimeter(GzSensor[AltimeterParameters]):
     ros_gz_bridge.
     """
 
-    parameters: ClassVar[type] = AltimeterParameters
     serves: ClassVar[tuple[str, ...]] = ("altimeter",)
 
     def configure(self) -> None:

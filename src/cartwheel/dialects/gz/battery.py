@@ -113,7 +113,6 @@ class BatteryPlugin(Plugin[BatteryParameters]):
         "gz-sim-linearbatteryplugin-system",
         "gz-sim-linear-battery-plugin-system",
     )
-    parameters: ClassVar[type] = BatteryParameters
 
     def configure(self) -> None:
         config = self.config

@@ -81,7 +81,6 @@ class GzCamera(GzSensor[GzCameraParameters]):
     gz-sensors. The message types are the same as in ros_gz_bridge.
     """
 
-    parameters: ClassVar[type] = GzCameraParameters
     empty_is_model: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "camera"
     serves: ClassVar[tuple[str, ...]] = ("camera", "rgbd_camera", *_DEPTHS)

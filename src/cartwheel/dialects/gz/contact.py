@@ -28,7 +28,6 @@ class GzContact(GzSensor[GzContactParameters]):
     Original plugin: ``Contact`` in gz-sim.
     """
 
-    parameters: ClassVar[type] = GzContactParameters
     serves: ClassVar[tuple[str, ...]] = ("contact",)
 
     def configure(self) -> None:

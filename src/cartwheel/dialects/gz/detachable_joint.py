@@ -62,7 +62,6 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-detachable-joint-system",)
-    parameters: ClassVar[type] = DetachableJointParameters
 
     def configure(self) -> None:
         config, own = self.config, self.part.name

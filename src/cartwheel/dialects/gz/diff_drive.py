@@ -55,7 +55,6 @@ class GzDiffDrive(Plugin[GzDiffDriveParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)
-    parameters: ClassVar[type] = GzDiffDriveParameters
 
     def configure(self) -> None:
         config = self.config

@@ -21,6 +21,12 @@ CONTROL_RATE = 100.0
 
 _Pair = tuple[float | None, float | None]
 """Minimum and maximum; None for no limit."""
+_UNITS = {
+    "velocity": ("m/s", "rad/s"),
+    "acceleration": ("m/s²", "rad/s²"),
+    "jerk": ("m/s³", "rad/s³"),
+}
+"""Units of the limits on linear and on angular motion."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -53,110 +59,53 @@ class GzDriveParameters:
     )
 
 
+def _limit_tag(name: str) -> Any:
+    """A limit on linear or angular motion, or on both, as the words of its name state."""
+    bound, *motion, quantity = name.split("_")
+    word = {"min": "Minimum", "max": "Maximum"}[bound]
+    linear, angular = _UNITS[quantity]
+    unit = angular if motion == ["angular"] else linear
+    if quantity == "jerk":
+        doc = "No effect: jerk is not limited."
+    elif motion:
+        doc = f"{word} {motion[0]} {quantity}. Overrides `<{bound}_{quantity}>`."
+    else:
+        doc = (
+            f"{word} of the linear {quantity} (in {linear}) and of the angular {quantity} (in "
+            f"{angular}). Default: no limit."
+        )
+        unit = f"{linear} or {angular}"
+    return tag(name, default=None, unit=unit, doc=doc)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzCommonLimits(GzDriveParameters):
     """Limits on linear and angular motion."""
 
-    min_velocity: float | None = tag(
-        "min_velocity",
-        default=None,
-        unit="m/s or rad/s",
-        doc="Minimum of the linear velocity (in m/s) and of the angular velocity (in rad/s). "
-        "Default: no limit.",
-    )
-    max_velocity: float | None = tag(
-        "max_velocity",
-        default=None,
-        unit="m/s or rad/s",
-        doc="Maximum of the linear velocity (in m/s) and of the angular velocity (in rad/s). "
-        "Default: no limit.",
-    )
-    min_acceleration: float | None = tag(
-        "min_acceleration",
-        default=None,
-        unit="m/s² or rad/s²",
-        doc="Minimum of the linear acceleration (in m/s²) and of the angular acceleration (in "
-        "rad/s²). Default: no limit.",
-    )
-    max_acceleration: float | None = tag(
-        "max_acceleration",
-        default=None,
-        unit="m/s² or rad/s²",
-        doc="Maximum of the linear acceleration (in m/s²) and of the angular acceleration (in "
-        "rad/s²). Default: no limit.",
-    )
-    min_jerk: float | None = tag(
-        "min_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
-    )
-    max_jerk: float | None = tag(
-        "max_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
-    )
+    min_velocity: float | None = _limit_tag("min_velocity")
+    max_velocity: float | None = _limit_tag("max_velocity")
+    min_acceleration: float | None = _limit_tag("min_acceleration")
+    max_acceleration: float | None = _limit_tag("max_acceleration")
+    min_jerk: float | None = _limit_tag("min_jerk")
+    max_jerk: float | None = _limit_tag("max_jerk")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzLimitedParameters(GzCommonLimits):
     """Separate limits for linear and angular motion, which override the common limits."""
 
-    min_linear_velocity: float | None = tag(
-        "min_linear_velocity",
-        default=None,
-        unit="m/s",
-        doc="Minimum linear velocity. Overrides `<min_velocity>`.",
-    )
-    max_linear_velocity: float | None = tag(
-        "max_linear_velocity",
-        default=None,
-        unit="m/s",
-        doc="Maximum linear velocity. Overrides `<max_velocity>`.",
-    )
-    min_angular_velocity: float | None = tag(
-        "min_angular_velocity",
-        default=None,
-        unit="rad/s",
-        doc="Minimum angular velocity. Overrides `<min_velocity>`.",
-    )
-    max_angular_velocity: float | None = tag(
-        "max_angular_velocity",
-        default=None,
-        unit="rad/s",
-        doc="Maximum angular velocity. Overrides `<max_velocity>`.",
-    )
-    min_linear_acceleration: float | None = tag(
-        "min_linear_acceleration",
-        default=None,
-        unit="m/s²",
-        doc="Minimum linear acceleration. Overrides `<min_acceleration>`.",
-    )
-    max_linear_acceleration: float | None = tag(
-        "max_linear_acceleration",
-        default=None,
-        unit="m/s²",
-        doc="Maximum linear acceleration. Overrides `<max_acceleration>`.",
-    )
-    min_angular_acceleration: float | None = tag(
-        "min_angular_acceleration",
-        default=None,
-        unit="rad/s²",
-        doc="Minimum angular acceleration. Overrides `<min_acceleration>`.",
-    )
-    max_angular_acceleration: float | None = tag(
-        "max_angular_acceleration",
-        default=None,
-        unit="rad/s²",
-        doc="Maximum angular acceleration. Overrides `<max_acceleration>`.",
-    )
-    min_linear_jerk: float | None = tag(
-        "min_linear_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
-    )
-    max_linear_jerk: float | None = tag(
-        "max_linear_jerk", default=None, unit="m/s³", doc="No effect: jerk is not limited."
-    )
-    min_angular_jerk: float | None = tag(
-        "min_angular_jerk", default=None, unit="rad/s³", doc="No effect: jerk is not limited."
-    )
-    max_angular_jerk: float | None = tag(
-        "max_angular_jerk", default=None, unit="rad/s³", doc="No effect: jerk is not limited."
-    )
+    min_linear_velocity: float | None = _limit_tag("min_linear_velocity")
+    max_linear_velocity: float | None = _limit_tag("max_linear_velocity")
+    min_angular_velocity: float | None = _limit_tag("min_angular_velocity")
+    max_angular_velocity: float | None = _limit_tag("max_angular_velocity")
+    min_linear_acceleration: float | None = _limit_tag("min_linear_acceleration")
+    max_linear_acceleration: float | None = _limit_tag("max_linear_acceleration")
+    min_angular_acceleration: float | None = _limit_tag("min_angular_acceleration")
+    max_angular_acceleration: float | None = _limit_tag("max_angular_acceleration")
+    min_linear_jerk: float | None = _limit_tag("min_linear_jerk")
+    max_linear_jerk: float | None = _limit_tag("max_linear_jerk")
+    min_angular_jerk: float | None = _limit_tag("min_angular_jerk")
+    max_angular_jerk: float | None = _limit_tag("max_angular_jerk")
 
 
 def common_limits(limits: GzCommonLimits) -> Limits:
@@ -201,11 +150,7 @@ def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
     for field in dataclasses.fields(limits):
         value = getattr(limits, field.name)
         if value is not None and "jerk" in field.name:
-            plugin.warn(
-                devices.PLUGIN_PARAMETER_IGNORED,
-                f"<{field.name}> has no effect: jerk is not limited",
-                values={"parameter": field.name},
-            )
+            plugin.warn_ignored(field.name, "jerk is not limited")
         if value is not None and field.name.startswith("min_"):
             most = getattr(limits, field.name.replace("min_", "max_"))
             if most is not None and value > most:

@@ -38,7 +38,6 @@ class GzForceTorque(GzSensor[GzForceTorqueParameters]):
     sensor: ``ForceTorqueSensor`` in gz-sensors.
     """
 
-    parameters: ClassVar[type] = GzForceTorqueParameters
     serves: ClassVar[tuple[str, ...]] = ("force_torque",)
 
     def configure(self) -> None:

@@ -26,7 +26,6 @@ class GzImu(GzSensor[GzImuParameters]):
     The sensor corresponds to ``ImuSensor`` in gz-sensors. See also REP 145.
     """
 
-    parameters: ClassVar[type] = GzImuParameters
     serves: ClassVar[tuple[str, ...]] = ("imu",)
 
     def configure(self) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from cartwheel.codes import devices
 from cartwheel.devices.joints.pid import PidGains
@@ -120,13 +121,28 @@ class JointVelocityParameters(_ServoParameters):
     )
 
 
-def _joints(plugin: Plugin[Any]) -> tuple[str, ...]:
-    """Checks the tags, and returns the names of the joints.
+_DEFAULT_TOPICS = {"position": "cmd_pos", "velocity": "cmd_vel"}
+
+
+def _add_servos(
+    plugin: Plugin[Any],
+    quantity: Literal["position", "velocity"],
+    *,
+    by_pid: bool,
+    max_velocity: float = math.inf,
+) -> None:
+    """Checks the tags, and adds the servos of the joints.
+
+    Args:
+        plugin: The plugin.
+        quantity: Quantity of the target.
+        by_pid: Whether PID controllers move the joints.
+        max_velocity: Maximum velocity of joints that move to a position otherwise.
 
     Raises:
         PluginError: There is no joint, or a minimum exceeds its maximum.
     """
-    config: _ServoParameters = plugin.config
+    config = plugin.config
     if not config.joints:
         raise missing("plugin", "joint_name", plugin.tag.origin)
     for what, low, high in (
@@ -141,12 +157,17 @@ def _joints(plugin: Plugin[Any]) -> tuple[str, ...]:
                 values={"parameter": f"{what}_min", "value": low, "most": high},
             )
     if config.actuators:
-        plugin.warn(
-            devices.PLUGIN_PARAMETER_IGNORED,
-            "<use_actuator_msg> has no effect: only Float64 commands are supported",
-            values={"parameter": "use_actuator_msg"},
-        )
-    return tuple(name.strip() for name in config.joints)
+        plugin.warn_ignored("use_actuator_msg", "only Float64 commands are supported")
+    joints = tuple(name.strip() for name in config.joints)
+    device = JointServosConfig(
+        joints=joints,
+        topic=_topic(plugin, joints[0], _DEFAULT_TOPICS[quantity]),
+        quantity=quantity,
+        initial=config.initial,
+        gains=_gains(config) if by_pid else None,
+        max_velocity=max_velocity,
+    )
+    plugin.add(JointServos(plugin.scope, device))
 
 
 def _topic(plugin: Plugin[Any], joint: str, default: str) -> str:
@@ -183,30 +204,12 @@ class JointPositionController(Plugin[JointPositionParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-position-controller-system",)
-    parameters: ClassVar[type] = JointPositionParameters
 
     def configure(self) -> None:
         config = self.config
-        joints = _joints(self)
-        self.add(
-            JointServos(
-                self.scope,
-                JointServosConfig(
-                    joints=joints,
-                    topic=_topic(self, joints[0], "cmd_pos"),
-                    quantity="position",
-                    initial=config.initial,
-                    gains=None if config.velocity else _gains(config),
-                    max_velocity=abs(config.cmd_max),
-                ),
-            )
-        )
+        _add_servos(self, "position", by_pid=not config.velocity, max_velocity=abs(config.cmd_max))
         if config.index and not (config.topic or config.sub_topic):
-            self.warn(
-                devices.PLUGIN_PARAMETER_IGNORED,
-                "<joint_index> has no effect: only the first axis of a joint is controlled",
-                values={"parameter": "joint_index"},
-            )
+            self.warn_ignored("joint_index", "only the first axis of a joint is controlled")
 
 
 class JointController(Plugin[JointVelocityParameters]):
@@ -218,23 +221,9 @@ class JointController(Plugin[JointVelocityParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)
-    parameters: ClassVar[type] = JointVelocityParameters
 
     def configure(self) -> None:
-        config = self.config
-        joints = _joints(self)
-        self.add(
-            JointServos(
-                self.scope,
-                JointServosConfig(
-                    joints=joints,
-                    topic=_topic(self, joints[0], "cmd_vel"),
-                    quantity="velocity",
-                    initial=config.initial,
-                    gains=_gains(config) if config.force else None,
-                ),
-            )
-        )
+        _add_servos(self, "velocity", by_pid=self.config.force)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -253,7 +242,6 @@ class ApplyJointForce(Plugin[ApplyJointForceParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-apply-joint-force-system",)
-    parameters: ClassVar[type] = ApplyJointForceParameters
 
     def configure(self) -> None:
         joint = self.config.joint.strip()

@@ -20,13 +20,15 @@ from cartwheel.errors import PluginError
 from cartwheel.simulation.limits import FARTHEST
 
 
-def _gain_tag(kind: str, name: str, doc: str) -> Any:
+def _gain_tag(name: str, doc: str) -> Any:
+    kind = name.partition("_")[0]
     limit = name.endswith(("_min", "_max"))
+    default = "no limit" if limit else "`0`"
     return tag(
-        f"{kind}_{name}",
+        name,
         default=(),
-        unit="N m or N" if limit or name == "cmd_offset" else "",
-        doc=f"{doc} {kind} controller, for each joint. Default: {'no limit' if limit else '`0`'}.",
+        unit="N m or N" if limit or name.endswith("cmd_offset") else "",
+        doc=f"{doc} the {kind} controller, for each joint. Default: {default}.",
     )
 
 
@@ -55,45 +57,37 @@ class JointTrajectoryParameters:
         most=FARTHEST,
         doc="Initial target of each joint. Default: `0`.",
     )
-    position_p_gain: tuple[float, ...] = _gain_tag("position", "p_gain", "Proportional gain of the")
-    position_i_gain: tuple[float, ...] = _gain_tag("position", "i_gain", "Integral gain of the")
-    position_d_gain: tuple[float, ...] = _gain_tag("position", "d_gain", "Derivative gain of the")
+    position_p_gain: tuple[float, ...] = _gain_tag("position_p_gain", "Proportional gain of")
+    position_i_gain: tuple[float, ...] = _gain_tag("position_i_gain", "Integral gain of")
+    position_d_gain: tuple[float, ...] = _gain_tag("position_d_gain", "Derivative gain of")
     position_i_min: tuple[float, ...] = _gain_tag(
-        "position", "i_min", "Lower limit of the integral term of the"
+        "position_i_min", "Lower limit of the integral term of"
     )
     position_i_max: tuple[float, ...] = _gain_tag(
-        "position", "i_max", "Upper limit of the integral term of the"
+        "position_i_max", "Upper limit of the integral term of"
     )
-    position_cmd_min: tuple[float, ...] = _gain_tag(
-        "position", "cmd_min", "Lower force limit of the"
-    )
-    position_cmd_max: tuple[float, ...] = _gain_tag(
-        "position", "cmd_max", "Upper force limit of the"
-    )
+    position_cmd_min: tuple[float, ...] = _gain_tag("position_cmd_min", "Lower force limit of")
+    position_cmd_max: tuple[float, ...] = _gain_tag("position_cmd_max", "Upper force limit of")
     position_cmd_offset: tuple[float, ...] = _gain_tag(
-        "position", "cmd_offset", "Constant force added by the"
+        "position_cmd_offset", "Constant force added by"
     )
-    velocity_p_gain: tuple[float, ...] = _gain_tag("velocity", "p_gain", "Proportional gain of the")
-    velocity_i_gain: tuple[float, ...] = _gain_tag("velocity", "i_gain", "Integral gain of the")
+    velocity_p_gain: tuple[float, ...] = _gain_tag("velocity_p_gain", "Proportional gain of")
+    velocity_i_gain: tuple[float, ...] = _gain_tag("velocity_i_gain", "Integral gain of")
     velocity_d_gain: tuple[float, ...] = tag(
         "velocity_d_gain",
         default=(),
         doc="No effect: the velocity controller has no derivative term.",
     )
     velocity_i_min: tuple[float, ...] = _gain_tag(
-        "velocity", "i_min", "Lower limit of the integral term of the"
+        "velocity_i_min", "Lower limit of the integral term of"
     )
     velocity_i_max: tuple[float, ...] = _gain_tag(
-        "velocity", "i_max", "Upper limit of the integral term of the"
+        "velocity_i_max", "Upper limit of the integral term of"
     )
-    velocity_cmd_min: tuple[float, ...] = _gain_tag(
-        "velocity", "cmd_min", "Lower force limit of the"
-    )
-    velocity_cmd_max: tuple[float, ...] = _gain_tag(
-        "velocity", "cmd_max", "Upper force limit of the"
-    )
+    velocity_cmd_min: tuple[float, ...] = _gain_tag("velocity_cmd_min", "Lower force limit of")
+    velocity_cmd_max: tuple[float, ...] = _gain_tag("velocity_cmd_max", "Upper force limit of")
     velocity_cmd_offset: tuple[float, ...] = _gain_tag(
-        "velocity", "cmd_offset", "Constant force added by the"
+        "velocity_cmd_offset", "Constant force added by"
     )
 
 
@@ -111,7 +105,6 @@ class GzJointTrajectory(Plugin[JointTrajectoryParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-trajectory-controller-system",)
-    parameters: ClassVar[type] = JointTrajectoryParameters
 
     def configure(self) -> None:
         config = self.config

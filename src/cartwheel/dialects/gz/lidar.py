@@ -49,7 +49,6 @@ class GzLidar(GzSensor[GzLidarParameters]):
     ros_gz_bridge.
     """
 
-    parameters: ClassVar[type] = GzLidarParameters
     serves: ClassVar[tuple[str, ...]] = ("gpu_lidar", "lidar", "gpu_ray", "ray")
 
     def configure(self) -> None:

@@ -86,7 +86,6 @@ class LiftDragSystem(Plugin[LiftDragParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-lift-drag-system", "libLiftDragPlugin.so")
-    parameters: ClassVar[type] = LiftDragParameters
 
     def configure(self) -> None:
         config = self.config

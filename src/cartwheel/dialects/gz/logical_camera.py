@@ -50,7 +50,6 @@ class LogicalCamera(GzSensor[LogicalCameraParameters]):
     the same as in ros_gz_bridge.
     """
 
-    parameters: ClassVar[type] = LogicalCameraParameters
     serves: ClassVar[tuple[str, ...]] = ("logical_camera",)
 
     def configure(self) -> None:

@@ -21,7 +21,6 @@ class GzMagnetometer(GzSensor[GzMagnetometerParameters]):
     The sensor corresponds to ``MagnetometerSensor`` in gz-sensors.
     """
 
-    parameters: ClassVar[type] = GzMagnetometerParameters
     serves: ClassVar[tuple[str, ...]] = ("magnetometer",)
 
     def configure(self) -> None:

@@ -73,7 +73,6 @@ class GzMecanumDrive(Plugin[MecanumParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-mecanum-drive-system",)
-    parameters: ClassVar[type] = MecanumParameters
 
     def configure(self) -> None:
         config = self.config

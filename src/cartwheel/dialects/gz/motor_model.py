@@ -8,8 +8,8 @@ from typing import ClassVar
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
-from cartwheel.dialects.tags import SMALLEST, tag
+from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller, max_speed_tag
+from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -26,13 +26,7 @@ class GzMotorParameters(PropellerTags):
         doc="Topic of the Actuators commands, with speeds in rad/s. Its namespace is "
         "`<robotNamespace>`, or else the model's name.",
     )
-    fastest: float = tag(
-        "maxRotVelocity",
-        default=838.0,
-        unit="rad/s",
-        least=SMALLEST,
-        doc="Maximum speed of the propeller.",
-    )
+    fastest: float = max_speed_tag()
 
 
 class GzMotorModel(Plugin[GzMotorParameters]):
@@ -43,7 +37,6 @@ class GzMotorModel(Plugin[GzMotorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-multicopter-motor-model-system",)
-    parameters: ClassVar[type] = GzMotorParameters
 
     def configure(self) -> None:
         namespace = self.namespace or self.part.name

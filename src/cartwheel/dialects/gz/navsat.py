@@ -24,7 +24,6 @@ class GzNavSat(GzSensor[GzNavSatParameters]):
     ``NavSatSensor`` in gz-sensors.
     """
 
-    parameters: ClassVar[type] = GzNavSatParameters
     serves: ClassVar[tuple[str, ...]] = ("navsat", "gps")
 
     def configure(self) -> None:

@@ -73,7 +73,6 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-odometry-publisher-system",)
-    parameters: ClassVar[type] = OdometryPublisherParameters
 
     def configure(self) -> None:
         config, part = self.config, self.part

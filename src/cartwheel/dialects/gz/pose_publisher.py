@@ -83,7 +83,6 @@ class PosePublisher(Plugin[PosePublisherParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-pose-publisher-system",)
-    parameters: ClassVar[type] = PosePublisherParameters
 
     def configure(self) -> None:
         config = self.config

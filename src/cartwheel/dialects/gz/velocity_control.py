@@ -47,7 +47,6 @@ class VelocityControl(Plugin[VelocityControlParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-velocity-control-system",)
-    parameters: ClassVar[type] = VelocityControlParameters
 
     def configure(self) -> None:
         if self.tag.element.find("link_name"):

@@ -47,7 +47,6 @@ class Create3Bumper(SensorPlugin[Create3BumperParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_bumper.so",)
-    parameters: ClassVar[type] = Create3BumperParameters
     sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:
@@ -78,7 +77,6 @@ class Create3Cliff(SensorPlugin[Create3CliffParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_cliff_sensor.so",)
-    parameters: ClassVar[type] = Create3CliffParameters
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
@@ -106,7 +104,6 @@ class Create3Intensity(SensorPlugin[Create3IntensityParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_intensity_sensor.so",)
-    parameters: ClassVar[type] = Create3IntensityParameters
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
@@ -140,7 +137,6 @@ class Create3Imu(SensorPlugin[Create3ImuParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_imu.so",)
-    parameters: ClassVar[type] = Create3ImuParameters
     sensor_type: ClassVar[str] = "imu"
 
     def configure(self) -> None:
@@ -168,7 +164,6 @@ class Create3Mouse(Plugin[Create3MouseParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_optical_mouse.so",)
-    parameters: ClassVar[type] = Create3MouseParameters
 
     def configure(self) -> None:
         config = self.config
@@ -205,7 +200,6 @@ class Create3WheelDrop(Plugin[Create3WheelDropParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_wheel_drop.so",)
-    parameters: ClassVar[type] = Create3WheelDropParameters
 
     def configure(self) -> None:
         config = self.config

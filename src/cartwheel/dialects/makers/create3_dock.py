@@ -66,7 +66,6 @@ class Create3Opcode(Plugin[Create3OpcodeParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_ir_opcode.so",)
-    parameters: ClassVar[type] = Create3OpcodeParameters
 
     def configure(self) -> None:
         config = self.config
@@ -102,7 +101,6 @@ class Create3DockStatus(Plugin[Create3DockStatusParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_create_docking_status.so",)
-    parameters: ClassVar[type] = Create3DockStatusParameters
 
     def configure(self) -> None:
         config = self.config

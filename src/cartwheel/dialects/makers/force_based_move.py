@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.codes import devices
 from cartwheel.devices.drives.force_based import ForceBasedDrive, ForceBasedDriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects import odometry_tags
@@ -66,16 +65,11 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
         "libgazebo_ros_force_based_move.so",
         "librobotnik_force_based_move.so",
     )
-    parameters: ClassVar[type] = ForceBasedMoveParameters
 
     def configure(self) -> None:
         config = self.config
         if config.y_gain != config.x_gain:
-            self.warn(
-                devices.PLUGIN_PARAMETER_IGNORED,
-                "<y_velocity_p_gain> has no effect: <x_velocity_p_gain> is used in both directions",
-                values={"parameter": "y_velocity_p_gain"},
-            )
+            self.warn_ignored("y_velocity_p_gain", "<x_velocity_p_gain> is used in both directions")
         odometry = OdometryConfig(
             topic=config.odometry_topic,
             frame=config.odometry_frame,

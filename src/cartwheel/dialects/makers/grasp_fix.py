@@ -87,7 +87,6 @@ class GraspFix(Plugin[GraspFixParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_grasp_fix.so",)
-    parameters: ClassVar[type] = GraspFixParameters
 
     def configure(self) -> None:
         config = self.config

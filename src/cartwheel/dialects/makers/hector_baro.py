@@ -50,7 +50,6 @@ class HectorBaro(Plugin[HectorBaroParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_baro.so",)
-    parameters: ClassVar[type] = HectorBaroParameters
 
     def configure(self) -> None:
         config = self.config

@@ -116,7 +116,6 @@ class HectorGps(Plugin[HectorGpsParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_gps.so",)
-    parameters: ClassVar[type] = HectorGpsParameters
 
     def configure(self) -> None:
         config = self.config

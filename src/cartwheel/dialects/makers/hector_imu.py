@@ -128,7 +128,6 @@ class HectorImu(Plugin[HectorImuParameters]):
         "libhector_gazebo_ros_imu.so",
         "hector_gazebo_ros_imu",
     )
-    parameters: ClassVar[type] = HectorImuParameters
 
     def configure(self) -> None:
         config = self.config

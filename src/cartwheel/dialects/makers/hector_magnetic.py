@@ -97,7 +97,6 @@ class HectorMagnetic(Plugin[HectorMagneticParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_magnetic.so",)
-    parameters: ClassVar[type] = HectorMagneticParameters
 
     def configure(self) -> None:
         config = self.config

@@ -39,7 +39,6 @@ class HectorSonar(SensorPlugin[SonarParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_ros_sonar.so",)
-    parameters: ClassVar[type] = SonarParameters
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:

@@ -92,7 +92,6 @@ class Kobuki(Plugin[KobukiParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_kobuki.so",)
-    parameters: ClassVar[type] = KobukiParameters
 
     def configure(self) -> None:
         config = self.config

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.drives.drive import DriveConfig
-from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.drives.steering_commands import (
     SteeringCommandsConfig,
     SteeringCommandsDrive,
@@ -99,13 +99,10 @@ class LimoAckermannDrive(Plugin[LimoParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackerman.so",)
-    parameters: ClassVar[type] = LimoParameters
 
     def configure(self) -> None:
         config = self.config
-        covariance = planar_covariance(
-            config.covariance_x, config.covariance_y, config.covariance_yaw
-        )
+        covariance = odometry_tags.covariance(config)
         self.add(
             SteeringCommandsDrive(
                 self.scope,

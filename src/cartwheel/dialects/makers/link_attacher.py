@@ -20,7 +20,6 @@ class LinkAttacherParameters:
 class _LinkAttacher(Plugin[LinkAttacherParameters]):
     """Base class of both plugins, whose services differ."""
 
-    parameters: ClassVar[type] = LinkAttacherParameters
     for_world: ClassVar[bool] = True
 
     def configure(self) -> None:

@@ -65,7 +65,6 @@ class MimicJoint(Plugin[MimicJointParameters]):
         "libroboticsgroup_gazebo_mimic_joint_plugin.so",
         "libgazebo_mimic_joint_plugin.so",
     )
-    parameters: ClassVar[type] = MimicJointParameters
 
     def configure(self) -> None:
         config = self.config
@@ -99,7 +98,6 @@ class Differential(Plugin[DifferentialParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)
-    parameters: ClassVar[type] = DifferentialParameters
 
     def configure(self) -> None:
         config = self.config

@@ -66,7 +66,6 @@ class MultiWheelDrive(Plugin[MultiWheelParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libdiffdrive_plugin_multi_wheel.so",)
-    parameters: ClassVar[type] = MultiWheelParameters
 
     def configure(self) -> None:
         config = self.config

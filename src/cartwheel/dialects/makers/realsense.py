@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
@@ -16,6 +16,18 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.camera import read_camera, read_lens
 from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag
+
+
+def _frame_tag(name: str, *, of: str) -> Any:
+    return tag(name, default="", doc=f"Frame ID of {of}. Default: the sensor's link.")
+
+
+def _info_tag(name: str) -> Any:
+    return tag(
+        name,
+        default="",
+        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,26 +46,10 @@ class RealSenseParameters:
     points_topic: str = tag(
         "pointCloudTopicName", default="points", doc="Topic of the PointCloud2 messages."
     )
-    color_frame: str = tag(
-        "colorOpticalframeName",
-        default="",
-        doc="Frame ID of the colour images. Default: the sensor's link.",
-    )
-    infrared1_frame: str = tag(
-        "infrared1OpticalframeName",
-        default="",
-        doc="Frame ID of the first infrared images. Default: the sensor's link.",
-    )
-    infrared2_frame: str = tag(
-        "infrared2OpticalframeName",
-        default="",
-        doc="Frame ID of the second infrared images. Default: the sensor's link.",
-    )
-    depth_frame: str = tag(
-        "depthOpticalframeName",
-        default="",
-        doc="Frame ID of the depth images and points. Default: the sensor's link.",
-    )
+    color_frame: str = _frame_tag("colorOpticalframeName", of="the colour images")
+    infrared1_frame: str = _frame_tag("infrared1OpticalframeName", of="the first infrared images")
+    infrared2_frame: str = _frame_tag("infrared2OpticalframeName", of="the second infrared images")
+    depth_frame: str = _frame_tag("depthOpticalframeName", of="the depth images and points")
     color_rate: float = sensor_rate_tag("colorUpdateRate", what="Rate of the colour images")
     infrared_rate: float = sensor_rate_tag("infraredUpdateRate", what="Rate of the infrared images")
     depth_rate: float = sensor_rate_tag("depthUpdateRate", what="Rate of the depth images")
@@ -82,26 +78,10 @@ class RealSenseParameters:
         unit="m",
         doc="Points with depths at or above this value are NaN.",
     )
-    color_info: str = tag(
-        "colorCameraInfoTopicName",
-        default="",
-        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
-    )
-    infrared1_info: str = tag(
-        "infrared1CameraInfoTopicName",
-        default="",
-        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
-    )
-    infrared2_info: str = tag(
-        "infrared2CameraInfoTopicName",
-        default="",
-        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
-    )
-    depth_info: str = tag(
-        "depthCameraInfoTopicName",
-        default="",
-        doc="No effect: the topic is always `camera_info`, in the namespace of the image topic.",
-    )
+    color_info: str = _info_tag("colorCameraInfoTopicName")
+    infrared1_info: str = _info_tag("infrared1CameraInfoTopicName")
+    infrared2_info: str = _info_tag("infrared2CameraInfoTopicName")
+    depth_info: str = _info_tag("depthCameraInfoTopicName")
 
 
 class RealSense(Plugin[RealSenseParameters]):
@@ -115,7 +95,6 @@ class RealSense(Plugin[RealSenseParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librealsense_gazebo_plugin.so",)
-    parameters: ClassVar[type] = RealSenseParameters
     empty_is_model: ClassVar[bool] = True
 
     def configure(self) -> None:

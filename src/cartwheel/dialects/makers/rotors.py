@@ -54,7 +54,6 @@ class RotorsController(Plugin[RotorsControllerParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_controller_interface.so",)
-    parameters: ClassVar[type] = RotorsControllerParameters
 
     def configure(self) -> None:
         config = SpeedRelayConfig(
@@ -91,7 +90,6 @@ class RotorsBase(Plugin[RotorsBaseParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_multirotor_base_plugin.so",)
-    parameters: ClassVar[type] = RotorsBaseParameters
 
     def configure(self) -> None:
         config, part = self.config, self.part

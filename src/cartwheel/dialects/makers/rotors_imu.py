@@ -92,7 +92,6 @@ class RotorsImu(Plugin[RotorsImuParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_imu_plugin.so",)
-    parameters: ClassVar[type] = RotorsImuParameters
 
     def configure(self) -> None:
         config = self.config

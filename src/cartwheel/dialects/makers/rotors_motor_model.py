@@ -9,8 +9,8 @@ from cartwheel.devices.air.propeller import ACTUATORS
 from cartwheel.devices.air.propeller_states import PropellerJointState, PropellerJointStateConfig
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
-from cartwheel.dialects.tags import SMALLEST, tag
+from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller, max_speed_tag
+from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,13 +37,7 @@ class RotorsMotorParameters(PropellerTags):
         default="",
         doc="Topic of the joint's angle in rad. Not published if empty.",
     )
-    fastest: float = tag(
-        "maxRotVelocity",
-        default=838.0,
-        unit="rad/s",
-        least=SMALLEST,
-        doc="Maximum speed of the propeller.",
-    )
+    fastest: float = max_speed_tag()
 
 
 class RotorsMotorModel(Plugin[RotorsMotorParameters]):
@@ -54,7 +48,6 @@ class RotorsMotorModel(Plugin[RotorsMotorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_motor_model.so",)
-    parameters: ClassVar[type] = RotorsMotorParameters
 
     def configure(self) -> None:
         config = self.config

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,6 +13,15 @@ from cartwheel.dialects.common_tags import ZEROS, deviation_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.errors import PluginError
+
+
+def _normal_tag(name: str, unit: str, what: str) -> Any:
+    return deviation_tag(name, default=ZEROS, unit=unit, of=f"Gaussian noise on {what}")
+
+
+def _uniform_tag(name: str, unit: str, what: str) -> Any:
+    doc = f"Maximum absolute value of uniform noise on {what}."
+    return tag(name, default=ZEROS, unit=unit, least=0.0, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,51 +58,29 @@ class RotorsOdometryParameters:
     unknown_delay: float = tag(
         "unknownDelay", default=0.0, unit="s", doc="Delay that is added to the header stamps."
     )
-    normal_position: tuple[float, float, float] = deviation_tag(
-        "noiseNormalPosition", default=ZEROS, unit="m", of="Gaussian noise on the position"
+    normal_position: tuple[float, float, float] = _normal_tag(
+        "noiseNormalPosition", "m", "the position"
     )
-    normal_turn: tuple[float, float, float] = deviation_tag(
-        "noiseNormalQuaternion", default=ZEROS, unit="rad", of="Gaussian noise on the orientation"
+    normal_turn: tuple[float, float, float] = _normal_tag(
+        "noiseNormalQuaternion", "rad", "the orientation"
     )
-    normal_linear: tuple[float, float, float] = deviation_tag(
-        "noiseNormalLinearVelocity",
-        default=ZEROS,
-        unit="m/s",
-        of="Gaussian noise on the linear velocity",
+    normal_linear: tuple[float, float, float] = _normal_tag(
+        "noiseNormalLinearVelocity", "m/s", "the linear velocity"
     )
-    normal_angular: tuple[float, float, float] = deviation_tag(
-        "noiseNormalAngularVelocity",
-        default=ZEROS,
-        unit="rad/s",
-        of="Gaussian noise on the angular velocity",
+    normal_angular: tuple[float, float, float] = _normal_tag(
+        "noiseNormalAngularVelocity", "rad/s", "the angular velocity"
     )
-    uniform_position: tuple[float, float, float] = tag(
-        "noiseUniformPosition",
-        default=ZEROS,
-        unit="m",
-        least=0.0,
-        doc="Maximum absolute value of uniform noise on the position.",
+    uniform_position: tuple[float, float, float] = _uniform_tag(
+        "noiseUniformPosition", "m", "the position"
     )
-    uniform_turn: tuple[float, float, float] = tag(
-        "noiseUniformQuaternion",
-        default=ZEROS,
-        unit="rad",
-        least=0.0,
-        doc="Maximum absolute value of uniform noise on the orientation.",
+    uniform_turn: tuple[float, float, float] = _uniform_tag(
+        "noiseUniformQuaternion", "rad", "the orientation"
     )
-    uniform_linear: tuple[float, float, float] = tag(
-        "noiseUniformLinearVelocity",
-        default=ZEROS,
-        unit="m/s",
-        least=0.0,
-        doc="Maximum absolute value of uniform noise on the linear velocity.",
+    uniform_linear: tuple[float, float, float] = _uniform_tag(
+        "noiseUniformLinearVelocity", "m/s", "the linear velocity"
     )
-    uniform_angular: tuple[float, float, float] = tag(
-        "noiseUniformAngularVelocity",
-        default=ZEROS,
-        unit="rad/s",
-        least=0.0,
-        doc="Maximum absolute value of uniform noise on the angular velocity.",
+    uniform_angular: tuple[float, float, float] = _uniform_tag(
+        "noiseUniformAngularVelocity", "rad/s", "the angular velocity"
     )
 
 
@@ -105,7 +92,6 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("librotors_gazebo_odometry_plugin.so",)
-    parameters: ClassVar[type] = RotorsOdometryParameters
 
     def configure(self) -> None:
         config = self.config
@@ -121,11 +107,7 @@ class RotorsOdometry(Plugin[RotorsOdometryParameters]):
         uniform = [config.uniform_position, config.uniform_turn, config.uniform_linear,
                    config.uniform_angular]  # fmt: skip
         if config.delay:
-            self.warn(
-                devices.PLUGIN_PARAMETER_IGNORED,
-                "<measurementDelay> has no effect: measurements are published immediately",
-                values={"parameter": "measurementDelay"},
-            )
+            self.warn_ignored("measurementDelay", "measurements are published immediately")
         device = PoseSensorConfig(
             link=config.link,
             pose_topic=config.pose_topic,

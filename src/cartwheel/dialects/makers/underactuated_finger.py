@@ -40,7 +40,6 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_underactuated_finger.so",)
-    parameters: ClassVar[type] = UnderactuatedFingerParameters
 
     def configure(self) -> None:
         elements = list(self.tag.element.find_all("virtualJoint"))

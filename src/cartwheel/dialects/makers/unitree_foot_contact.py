@@ -25,7 +25,6 @@ class FootContact(SensorPlugin[FootContactParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libunitreeFootContactPlugin.so",)
-    parameters: ClassVar[type] = FootContactParameters
     sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:

@@ -78,7 +78,6 @@ class VelodyneLaser(SensorPlugin[VelodyneParameters]):
         "libgazebo_ros_velodyne_laser.so",
         "libgazebo_ros_velodyne_gpu_laser.so",
     )
-    parameters: ClassVar[type] = VelodyneParameters
     sensor_type: ClassVar[str] = "ray"
     prefixes_by_namespace: ClassVar[bool] = True
 

@@ -43,7 +43,6 @@ class WarthogSuspension(Plugin[WarthogSuspensionParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libwarthog_suspension_plugin.so",)
-    parameters: ClassVar[type] = WarthogSuspensionParameters
 
     def configure(self) -> None:
         config = self.config

@@ -10,7 +10,7 @@ from typing import Any
 from cartwheel.codes import running
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros2_control.components import HardwareComponents
-from cartwheel.dialects.ros_control.catalogue import controller_types, find_type
+from cartwheel.dialects.ros_control.catalogue import find_type
 from cartwheel.dialects.ros_control.chaining import Reference, owners
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import (
@@ -22,15 +22,15 @@ from cartwheel.dialects.ros_control.files import (
 )
 from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.parameter_services import ParameterServices
+from cartwheel.dialects.ros_control.services import ManagerServices
 from cartwheel.dialects.ros_control.switching import wrong_state
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.messages import message_class
 
 _MESSAGES = "controller_manager_msgs_ros2"
-_BASE = "controller_interface::ControllerInterface"
 
 
-class Ros2ManagerServices:
+class Ros2ManagerServices(ManagerServices):
     """``controller_manager/list_controllers`` and the other services, in the manager's namespace.
 
     A controller is unconfigured, inactive or active. The controller manager has only configured
@@ -47,6 +47,9 @@ class Ros2ManagerServices:
         components: The hardware components.
     """
 
+    package = _MESSAGES
+    base = "controller_interface::ControllerInterface"
+
     def __init__(
         self,
         plugin: Plugin[Any],
@@ -56,20 +59,18 @@ class Ros2ManagerServices:
         entries: Sequence[ControllerEntry],
         components: HardwareComponents,
     ) -> None:
-        self._manager = manager
+        super().__init__(manager, name)
         self._components = components
         self._entries = {entry.name: entry for entry in entries}
         self._by_itself = {each.name for each in manager.controllers}
         """Controllers that started automatically and that no request has named yet."""
         self._unconfigured: dict[str, ControllerEntry] = {}
         self._name = name
-        namespace = manager.robot.namespace.strip("/")
-        prefix = f"/{namespace}/{name}" if namespace else f"/{name}"
-        plugin.graph.nodes[plugin.node] = prefix
+        plugin.graph.nodes[plugin.node] = self._prefix
         stated = {f"{entry.name}.type": entry.type for entry in entries}
         self._parameters = ParameterServices(
             plugin.serve,
-            prefix,
+            self._prefix,
             {"update_rate": self._rate, "use_sim_time": True, **stated},
             open_=True,
         )
@@ -86,8 +87,7 @@ class Ros2ManagerServices:
             "ListHardwareComponents": self._list_components,
             "SetHardwareComponentState": self._set_component,
         }
-        for kind, handler in handlers.items():
-            plugin.serve(f"{prefix}/{_snake(kind)}", f"{_MESSAGES}/srv/{kind}", handler)
+        self._offer(plugin, handlers)
 
     # -- controllers
 
@@ -97,7 +97,7 @@ class Ros2ManagerServices:
             _controller_state(name=entry.name, type=entry.type, state="unconfigured")
             for entry in self._unconfigured.values()
         ]
-        return _response("ListControllers")(controller=states)
+        return self._response("ListControllers", controller=states)
 
     def _state(self, controller: Controller) -> Any:
         commands = [f"{joint}/{kind}" for joint, kind in controller.interfaces.items()]
@@ -129,10 +129,6 @@ class Ros2ManagerServices:
     def _rate(self) -> int:
         period_ns = self._manager.robot.period_ns
         return round(1e9 / period_ns) if period_ns else 0
-
-    def _types(self, request: Any) -> Any:  # noqa: ARG002
-        types = sorted(controller_types())
-        return _response("ListControllerTypes")(types=types, base_classes=[_BASE] * len(types))
 
     def _load(self, request: Any) -> None:
         name = request.name
@@ -211,12 +207,7 @@ class Ros2ManagerServices:
             self._by_itself.discard(request.name)
 
     def _reload(self, request: Any) -> None:
-        active = [each.name for each in self._manager.controllers if each.running]
-        if active and not request.force_kill:
-            raise wrong_state(active[0], "is active", hint="Stop all controllers first.")
-        self._manager.switch([], active)
-        for each in self._manager.controllers:
-            self._manager.unload(each.name)
+        self._manager.unload_all(force=request.force_kill, active="is active")
         self._unconfigured.clear()
         self._by_itself.clear()
 
@@ -238,21 +229,22 @@ class Ros2ManagerServices:
             self._manager.switch(wanted, stop, strict=strict)
         except CartwheelError as error:
             self._manager.robot.report_error(error)
-            return _response("SwitchController")(ok=False, message=error.message)
+            return self._response("SwitchController", ok=False, message=error.message)
         self._by_itself.difference_update(start, stop)
-        return _response("SwitchController")(ok=True, message="")
+        return self._response("SwitchController", ok=True, message="")
 
     # -- hardware
 
     def _list_interfaces(self, request: Any) -> Any:  # noqa: ARG002
         commands, states = self._components.interfaces(self._manager.controllers)
-        return _response("ListHardwareInterfaces")(
-            command_interfaces=commands, state_interfaces=states
+        return self._response(
+            "ListHardwareInterfaces", command_interfaces=commands, state_interfaces=states
         )
 
     def _list_components(self, request: Any) -> Any:  # noqa: ARG002
-        return _response("ListHardwareComponents")(
-            component=self._components.messages(self._manager.controllers, self._rate)
+        return self._response(
+            "ListHardwareComponents",
+            component=self._components.messages(self._manager.controllers, self._rate),
         )
 
     def _set_component(self, request: Any) -> Any:
@@ -266,25 +258,12 @@ class Ros2ManagerServices:
             self._manager.switch([], self._manager.with_leaders(away))
         except CartwheelError as error:
             self._manager.robot.report_error(error)
-            return _response("SetHardwareComponentState")(
-                ok=False, state=self._components.state(request.name)
+            return self._response(
+                "SetHardwareComponentState", ok=False, state=self._components.state(request.name)
             )
-        return _response("SetHardwareComponentState")(
-            ok=True, state=self._components.state(request.name)
+        return self._response(
+            "SetHardwareComponentState", ok=True, state=self._components.state(request.name)
         )
-
-    def _answer(self, kind: str, function: Callable[[Any], None]) -> Callable[[Any], Any]:
-        """Returns a service handler that responds with ``ok`` and reports errors."""
-
-        def handler(request: Any) -> Any:
-            try:
-                function(request)
-            except CartwheelError as error:
-                self._manager.robot.report_error(error)
-                return _response(kind)(ok=False)
-            return _response(kind)(ok=True)
-
-        return handler
 
 
 def _controller_state(**fields: Any) -> Any:
@@ -301,11 +280,3 @@ def _controller_state(**fields: Any) -> Any:
         "chain_connections": [],
     }
     return message_class(f"{_MESSAGES}/msg/ControllerState")(**{**empty, **fields})
-
-
-def _response(service: str) -> Any:
-    return message_class(f"{_MESSAGES}/srv/{service}_Response")
-
-
-def _snake(name: str) -> str:
-    return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")

@@ -11,7 +11,7 @@ from cartwheel.component import Component
 from cartwheel.description.model import Joint, Mimic
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
 from cartwheel.devices.joints.gravity import gravity_efforts
-from cartwheel.devices.joints.limits import JointLimits
+from cartwheel.devices.joints.limits import JointLimits, position_range
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces
 from cartwheel.dialects.ros_control.settings import Settings
@@ -83,10 +83,7 @@ def _limits(joint: Joint, settings: Settings | None) -> JointLimits:
     axis = joint.axis
     effort = axis.effort if axis.effort else math.inf
     velocity = axis.velocity if axis.velocity else math.inf
-    lower, upper = -math.inf, math.inf
-    if joint.type != "continuous":
-        lower = -math.inf if axis.lower is None else axis.lower
-        upper = math.inf if axis.upper is None else axis.upper
+    lower, upper = position_range(joint)
     if settings is not None:
         if settings.boolean("has_position_limits", False):
             lower, upper = settings.number("min_position"), settings.number("max_position")

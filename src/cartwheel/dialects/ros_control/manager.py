@@ -99,6 +99,23 @@ class ControllerManager:
         self._begun.discard(name)
         controller.close()
 
+    def unload_all(self, *, force: bool, active: str) -> None:
+        """Closes all controllers.
+
+        Args:
+            force: Stop those that run.
+            active: Their state, as it follows the name in the message.
+
+        Raises:
+            GraphError: Without `force`, if a controller is running.
+        """
+        running = [each.name for each in self.controllers if each.running]
+        if running and not force:
+            raise wrong_state(running[0], active, hint="Stop all controllers first.")
+        self.switch([], running)
+        for each in self.controllers:
+            self.unload(each.name)
+
     def switch(self, start: Sequence[str], stop: Sequence[str], *, strict: bool = True) -> None:
         """Stops some controllers and starts others at the next update.
 

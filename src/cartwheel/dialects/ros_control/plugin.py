@@ -23,7 +23,7 @@ from cartwheel.dialects.ros_control.gains import read_gains
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces, transmissions
 from cartwheel.dialects.ros_control.robot import ControlledRobot
-from cartwheel.dialects.ros_control.services import ManagerServices
+from cartwheel.dialects.ros_control.services import Ros1ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import Origin, PluginError
@@ -117,7 +117,7 @@ class RosControl(ControlPlugin):
         )
         if config.stop_topic:
             self.subscribe(config.stop_topic, "std_msgs/msg/Bool", self._on_stop)
-        ManagerServices(self, manager)
+        Ros1ManagerServices(self, manager)
         self._start([replace(entry, values=self._parameters_of(entry)) for entry in entries])
 
     def _settings(self, name: str) -> Settings | None:

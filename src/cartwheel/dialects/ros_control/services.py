@@ -1,10 +1,10 @@
-"""The services of ROS 1's controller manager."""
+"""The services of controller managers, and those of ROS 1's in particular."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import TimeoutError as NotYet
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from cartwheel.calls import answered
 from cartwheel.codes import running
@@ -13,43 +13,97 @@ from cartwheel.dialects.ros_control.catalogue import controller_types
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.settings import Settings
-from cartwheel.dialects.ros_control.switching import wrong_state
 from cartwheel.errors import CartwheelError, GraphError
 from cartwheel.graph import resolve_name
 from cartwheel.messages import message_class
 
 T = TypeVar("T")
-_MESSAGES = "controller_manager_msgs"
-_BASE = "controller_interface::ControllerBase"
 _PATIENCE = 30.0
 """Maximum time in s for the thread that owns the simulation to respond."""
 
 
 class ManagerServices:
+    """Base class of a controller manager's services, in ``<namespace>/<manager's name>``.
+
+    Args:
+        manager: The manager.
+        name: Name of the manager's node.
+    """
+
+    package: ClassVar[str]
+    """Package of the service types."""
+    base: ClassVar[str]
+    """Base class of the controllers, in lists of types."""
+
+    def __init__(self, manager: ControllerManager, name: str) -> None:
+        self._manager = manager
+        namespace = manager.robot.namespace.strip("/")
+        self._prefix = f"/{namespace}/{name}" if namespace else f"/{name}"
+
+    def _offer(
+        self,
+        plugin: Plugin[Any],
+        handlers: Mapping[str, Callable[[Any], Any]],
+        *,
+        threaded: str = "",
+    ) -> None:
+        """Offers services by their types; `threaded` runs on its caller's thread."""
+        for kind, handler in handlers.items():
+            name = "".join(f"_{each.lower()}" if each.isupper() else each for each in kind)
+            plugin.serve(
+                f"{self._prefix}/{name.lstrip('_')}",
+                f"{self.package}/srv/{kind}",
+                handler,
+                threaded=kind == threaded,
+            )
+
+    def _response(self, kind: str, **fields: Any) -> Any:
+        return message_class(f"{self.package}/srv/{kind}_Response")(**fields)
+
+    def _answer(self, kind: str, function: Callable[[Any], None]) -> Callable[[Any], Any]:
+        """Returns a service handler that responds with ``ok`` and reports errors."""
+        return lambda request: self._response(kind, ok=self._try(lambda: function(request)))
+
+    def _try(self, function: Callable[[], None]) -> bool:
+        try:
+            function()
+        except CartwheelError as error:
+            self._manager.robot.report_error(error)
+            return False
+        return True
+
+    def _types(self, request: Any) -> Any:  # noqa: ARG002
+        types = sorted(controller_types())
+        bases = [self.base] * len(types)
+        return self._response("ListControllerTypes", types=types, base_classes=bases)
+
+
+class Ros1ManagerServices(ManagerServices):
     """``controller_manager/list_controllers`` and the other services, in the manager's namespace.
 
     ``load_controller`` reads parameters, possibly from the parameter server of another process, so
     it runs on its caller's thread.
     """
 
+    package = "controller_manager_msgs"
+    base = "controller_interface::ControllerBase"
+
     def __init__(self, plugin: Plugin[Any], manager: ControllerManager) -> None:
+        super().__init__(manager, "controller_manager")
         self._plugin = plugin
-        self._manager = manager
-        namespace = manager.robot.namespace.strip("/")
-        prefix = f"/{namespace}/controller_manager" if namespace else "/controller_manager"
-        for name, kind, handler, threaded in (
-            ("list_controllers", "ListControllers", self._list, False),
-            ("list_controller_types", "ListControllerTypes", self._types, False),
-            ("load_controller", "LoadController", self._load, True),
-            ("unload_controller", "UnloadController", self._unload, False),
-            ("switch_controller", "SwitchController", self._switch, False),
-            ("reload_controller_libraries", "ReloadControllerLibraries", self._reload, False),
-        ):
-            plugin.serve(f"{prefix}/{name}", f"{_MESSAGES}/srv/{kind}", handler, threaded=threaded)
+        handlers: dict[str, Callable[[Any], Any]] = {
+            "ListControllers": self._list,
+            "ListControllerTypes": self._types,
+            "LoadController": self._load,
+            "UnloadController": self._answer("UnloadController", self._unload),
+            "SwitchController": self._answer("SwitchController", self._switch),
+            "ReloadControllerLibraries": self._answer("ReloadControllerLibraries", self._reload),
+        }
+        self._offer(plugin, handlers, threaded="LoadController")
 
     def _list(self, request: Any) -> Any:  # noqa: ARG002
-        return _response("ListControllers")(
-            controller=[self._state(each) for each in self._manager.controllers]
+        return self._response(
+            "ListControllers", controller=[self._state(each) for each in self._manager.controllers]
         )
 
     def _state(self, controller: Controller) -> Any:
@@ -59,8 +113,8 @@ class ManagerServices:
             by_kind.setdefault(kind, []).append(joint)
         if not by_kind:
             by_kind = {"hardware_interface::JointStateInterface": []}
-        Resources = message_class(f"{_MESSAGES}/msg/HardwareInterfaceResources")
-        return message_class(f"{_MESSAGES}/msg/ControllerState")(
+        Resources = message_class(f"{self.package}/msg/HardwareInterfaceResources")
+        return message_class(f"{self.package}/msg/ControllerState")(
             name=controller.name,
             state=self._manager.state(controller),
             type=controller.type,
@@ -70,10 +124,6 @@ class ManagerServices:
             ],
         )
 
-    def _types(self, request: Any) -> Any:  # noqa: ARG002
-        types = sorted(controller_types())
-        return _response("ListControllerTypes")(types=types, base_classes=[_BASE] * len(types))
-
     def _load(self, request: Any) -> Any:
         name = request.name.strip("/ ")
         try:
@@ -81,10 +131,10 @@ class ManagerServices:
         except GraphError as error:
             fault = error  # Python deletes the name of an except clause at its end.
             self._plugin.graph.post(lambda: self._manager.robot.report_error(fault))
-            return _response("LoadController")(ok=False)
+            return self._response("LoadController", ok=False)
         values = self._plugin.graph.parameters.get(path)
 
-        def load() -> bool:
+        def load() -> None:
             if not isinstance(values, dict) or not isinstance(values.get("type"), str):
                 raise GraphError(
                     f'the type of controller "{name}" is not specified because there is no '
@@ -95,46 +145,21 @@ class ManagerServices:
                 )
             settings = Settings(values, name, f"parameters of {path}")
             self._manager.load(name, settings, values["type"])
-            return True
 
-        return _response("LoadController")(ok=self._on_owner(lambda: self._try(load)))
+        return self._response("LoadController", ok=self._on_owner(lambda: self._try(load)))
 
-    def _unload(self, request: Any) -> Any:
-        def unload() -> bool:
-            self._manager.unload(request.name)
-            return True
+    def _unload(self, request: Any) -> None:
+        self._manager.unload(request.name)
 
-        return _response("UnloadController")(ok=self._try(unload))
+    def _switch(self, request: Any) -> None:
+        self._manager.switch(
+            list(request.start_controllers),
+            list(request.stop_controllers),
+            strict=request.strictness != request.BEST_EFFORT,
+        )
 
-    def _switch(self, request: Any) -> Any:
-        def switch() -> bool:
-            self._manager.switch(
-                list(request.start_controllers),
-                list(request.stop_controllers),
-                strict=request.strictness != request.BEST_EFFORT,
-            )
-            return True
-
-        return _response("SwitchController")(ok=self._try(switch))
-
-    def _reload(self, request: Any) -> Any:
-        def reload() -> bool:
-            active = [each.name for each in self._manager.controllers if each.running]
-            if active and not request.force_kill:
-                raise wrong_state(active[0], "is running", hint="Stop all controllers first.")
-            self._manager.switch([], active)
-            for each in self._manager.controllers:
-                self._manager.unload(each.name)
-            return True
-
-        return _response("ReloadControllerLibraries")(ok=self._try(reload))
-
-    def _try(self, function: Callable[[], bool]) -> bool:
-        try:
-            return function()
-        except CartwheelError as error:
-            self._manager.robot.report_error(error)
-            return False
+    def _reload(self, request: Any) -> None:
+        self._manager.unload_all(force=request.force_kill, active="is running")
 
     def _on_owner(self, function: Callable[[], T]) -> T:
         future = answered(self._plugin.graph.post, function)
@@ -145,7 +170,3 @@ class ManagerServices:
             raise GraphError(
                 "the simulation does not respond", code=running.SIMULATION_UNRESPONSIVE
             ) from None
-
-
-def _response(service: str) -> Any:
-    return message_class(f"{_MESSAGES}/srv/{service}_Response")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from cartwheel.component import Component
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
-from cartwheel.devices.joints.limits import JointLimits
+from cartwheel.devices.joints.limits import JointLimits, position_range
 from cartwheel.dialects.ros_control.hardware import STRONGEST, Hardware, JointHardware
 from cartwheel.dialects.ros_control.interfaces import JointInterfaces
 from cartwheel.dialects.ros_control.parameters import parameter, read_parameters_of
@@ -173,12 +173,7 @@ class _SharedJoint(JointHardware):
 
 
 def _actuator(owner: Component, name: str, command: str, origin: Origin) -> JointActuator:
-    described = owner.part.description.joint(name)
-    lower, upper = -math.inf, math.inf
-    if described is not None and described.type != "continuous":
-        axis = described.axis
-        lower = -math.inf if axis.lower is None else axis.lower
-        upper = math.inf if axis.upper is None else axis.upper
+    lower, upper = position_range(owner.part.description.joint(name))
     return JointActuator(
         owner.part,
         JointActuatorConfig(

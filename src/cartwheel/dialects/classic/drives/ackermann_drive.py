@@ -12,7 +12,7 @@ from cartwheel.description.model import Capsule, Cylinder, Sphere
 from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Limits
-from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.common_tags import joint_tag
 from cartwheel.dialects.plugin import Plugin
@@ -109,7 +109,6 @@ class ClassicAckermannDrive(Plugin[AckermannParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ackermann_drive.so",)
-    parameters: ClassVar[type] = AckermannParameters
 
     def configure(self) -> None:
         config = self.config
@@ -129,9 +128,7 @@ class ClassicAckermannDrive(Plugin[AckermannParameters]):
                 "PID gains have no effect: servos steer and drive within the joints' effort limits",
                 severity="info",
             )
-        covariance = planar_covariance(
-            config.covariance_x, config.covariance_y, config.covariance_yaw
-        )
+        covariance = odometry_tags.covariance(config)
         odometry = OdometryConfig(
             topic="odom" if config.publish_odom else None,
             frame=config.odometry_frame,

@@ -12,7 +12,7 @@ from cartwheel.devices.drives.differential import (
     WheelPair,
 )
 from cartwheel.devices.drives.drive import DriveConfig
-from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
+from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig
 from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
@@ -150,7 +150,6 @@ class DiffDrive(Plugin[DiffDriveParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_diff_drive.so",)
     empty_is_model: ClassVar[bool] = True
     prefixes_by_namespace: ClassVar[bool] = True
-    parameters: ClassVar[type] = DiffDriveParameters
 
     def configure(self) -> None:
         config = self.config
@@ -174,9 +173,7 @@ class DiffDrive(Plugin[DiffDriveParameters]):
             self.under_model()
         publishes_odom = not ros2 if config.publish_odom is None else config.publish_odom
         publishes_tf = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
-        covariance = planar_covariance(
-            config.covariance_x, config.covariance_y, config.covariance_yaw
-        )
+        covariance = odometry_tags.covariance(config)
         joints = tuple(name for pair in pairs for name in (pair.left, pair.right))
         odometry = OdometryConfig(
             topic=config.odometry_topic if config.publish_tf and publishes_odom else None,

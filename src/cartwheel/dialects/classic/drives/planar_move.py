@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig, planar_covariance
+from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig
 from cartwheel.devices.drives.planar import PlanarDrive, PlanarDriveConfig
 from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
@@ -49,13 +49,10 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_planar_move.so",)
-    parameters: ClassVar[type] = PlanarMoveParameters
 
     def configure(self) -> None:
         config = self.config
-        covariance = planar_covariance(
-            config.covariance_x, config.covariance_y, config.covariance_yaw
-        )
+        covariance = odometry_tags.covariance(config)
         # The ROS 1 plugin leaves the covariance of the twist at zero.
         ros2 = self.tag.element.find("ros") is not None
         odometry = OdometryConfig(

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
-from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
+from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects import odometry_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
@@ -83,7 +83,6 @@ class SkidSteerDrive(Plugin[SkidSteerParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_skid_steer_drive.so",)
-    parameters: ClassVar[type] = SkidSteerParameters
 
     def configure(self) -> None:
         config = self.config
@@ -104,9 +103,7 @@ class SkidSteerDrive(Plugin[SkidSteerParameters]):
                             base=config.base_frame,
                             rate=config.update_rate,
                             transform=config.broadcast_tf,
-                            pose_covariance=planar_covariance(
-                                config.covariance_x, config.covariance_y, config.covariance_yaw
-                            ),
+                            pose_covariance=odometry_tags.covariance(config),
                         ),
                     ),
                 ),

@@ -172,7 +172,6 @@ class ClassicTricycleDrive(Plugin[TricycleParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_tricycle_drive.so",)
     empty_is_model: ClassVar[bool] = True
     prefixes_by_namespace: ClassVar[bool] = True
-    parameters: ClassVar[type] = TricycleParameters
 
     def configure(self) -> None:
         config = self.config

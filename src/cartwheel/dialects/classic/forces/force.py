@@ -38,7 +38,6 @@ class Force(Plugin[ForceParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_force.so",)
-    parameters: ClassVar[type] = ForceParameters
 
     def configure(self) -> None:
         config = self.config

@@ -45,7 +45,6 @@ class HandOfGod(Plugin[HandOfGodParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_hand_of_god.so",)
-    parameters: ClassVar[type] = HandOfGodParameters
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element

@@ -42,7 +42,6 @@ class VacuumGripper(Plugin[VacuumGripperParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_vacuum_gripper.so",)
-    parameters: ClassVar[type] = VacuumGripperParameters
 
     def configure(self) -> None:
         config = self.config

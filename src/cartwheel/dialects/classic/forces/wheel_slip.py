@@ -62,7 +62,6 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
         "gz-sim-wheel-slip-system",
         "libWheelSlipPlugin.so",
     )
-    parameters: ClassVar[type] = WheelSlipParameters
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element

@@ -57,7 +57,6 @@ class ElevatorPlugin(Plugin[ElevatorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_elevator.so", "libElevatorPlugin.so")
-    parameters: ClassVar[type] = ElevatorParameters
 
     def configure(self) -> None:
         config = self.config

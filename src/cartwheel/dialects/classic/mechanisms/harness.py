@@ -63,7 +63,6 @@ class Harness(Plugin[HarnessParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_harness.so", "libHarnessPlugin.so")
-    parameters: ClassVar[type] = HarnessParameters
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element

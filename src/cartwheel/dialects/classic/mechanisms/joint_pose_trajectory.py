@@ -51,7 +51,6 @@ class JointPoseTrajectory(Plugin[JointPoseTrajectoryParameters]):
         "libgazebo_ros_joint_pose_trajectory.so",
         "libgazebo_ros_joint_trajectory.so",
     )
-    parameters: ClassVar[type] = JointPoseTrajectoryParameters
 
     def configure(self) -> None:
         config = self.config

@@ -40,7 +40,6 @@ class BlockLaser(SensorPlugin[BlockLaserParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_block_laser.so",)
-    parameters: ClassVar[type] = BlockLaserParameters
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:

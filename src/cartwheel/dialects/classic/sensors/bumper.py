@@ -44,7 +44,6 @@ class Bumper(SensorPlugin[BumperParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_bumper.so",)
-    parameters: ClassVar[type] = BumperParameters
     sensor_type: ClassVar[str] = "contact"
 
     def configure(self) -> None:

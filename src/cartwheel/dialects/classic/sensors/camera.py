@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from cartwheel.codes import devices
 from cartwheel.description.model import CameraIntrinsics, Sensor
@@ -23,6 +23,16 @@ from cartwheel.dialects.sdf.rates import slowest
 from cartwheel.dialects.tags import tag, vector
 
 _NINE = 9
+
+
+def _distortion_tag(name: str, ros2_name: str, doc: str) -> Any:
+    return tag(name, ros2_name, default=0.0, most=MOST_BENT, doc=doc)
+
+
+def _projection_tag(name: str) -> Any:
+    element = name.removeprefix("P_")
+    doc = f"Element {element} of the projection matrix P (ROS 2 tag). Default: {element} in K."
+    return tag(name, default=None, unit="px", doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,40 +83,22 @@ class CameraParameters:
         doc="y coordinate of the principal point; if 0, (height + 1) / 2.",
     )
     cx_prime: float = tag("CxPrime", "cx_prime", default=0.0, unit="px", doc="No effect.")
-    k1: float = tag(
+    k1: float = _distortion_tag(
         "distortionK1",
         "distortion_k1",
-        default=0.0,
-        most=MOST_BENT,
-        doc="Radial distortion coefficient k1. The sensor's `<distortion>` takes precedence.",
+        "Radial distortion coefficient k1. The sensor's `<distortion>` takes precedence.",
     )
-    k2: float = tag(
-        "distortionK2",
-        "distortion_k2",
-        default=0.0,
-        most=MOST_BENT,
-        doc="Radial distortion coefficient k2.",
+    k2: float = _distortion_tag(
+        "distortionK2", "distortion_k2", "Radial distortion coefficient k2."
     )
-    k3: float = tag(
-        "distortionK3",
-        "distortion_k3",
-        default=0.0,
-        most=MOST_BENT,
-        doc="Radial distortion coefficient k3.",
+    k3: float = _distortion_tag(
+        "distortionK3", "distortion_k3", "Radial distortion coefficient k3."
     )
-    t1: float = tag(
-        "distortionT1",
-        "distortion_t1",
-        default=0.0,
-        most=MOST_BENT,
-        doc="Tangential distortion coefficient t1.",
+    t1: float = _distortion_tag(
+        "distortionT1", "distortion_t1", "Tangential distortion coefficient t1."
     )
-    t2: float = tag(
-        "distortionT2",
-        "distortion_t2",
-        default=0.0,
-        most=MOST_BENT,
-        doc="Tangential distortion coefficient t2.",
+    t2: float = _distortion_tag(
+        "distortionT2", "distortion_t2", "Tangential distortion coefficient t2."
     )
     auto_distortion: bool = tag(
         "autoDistortion",
@@ -125,30 +117,10 @@ class CameraParameters:
         default="",
         doc="Rectification matrix R: nine numbers, row by row (ROS 2 tag). Default: identity.",
     )
-    p_fx: float | None = tag(
-        "P_fx",
-        default=None,
-        unit="px",
-        doc="Element fx of the projection matrix P (ROS 2 tag). Default: fx in K.",
-    )
-    p_fy: float | None = tag(
-        "P_fy",
-        default=None,
-        unit="px",
-        doc="Element fy of the projection matrix P (ROS 2 tag). Default: fy in K.",
-    )
-    p_cx: float | None = tag(
-        "P_cx",
-        default=None,
-        unit="px",
-        doc="Element cx of the projection matrix P (ROS 2 tag). Default: cx in K.",
-    )
-    p_cy: float | None = tag(
-        "P_cy",
-        default=None,
-        unit="px",
-        doc="Element cy of the projection matrix P (ROS 2 tag). Default: cy in K.",
-    )
+    p_fx: float | None = _projection_tag("P_fx")
+    p_fy: float | None = _projection_tag("P_fy")
+    p_cx: float | None = _projection_tag("P_cx")
+    p_cy: float | None = _projection_tag("P_cy")
     p_tx: float | None = tag(
         "Tx",
         default=None,
@@ -318,7 +290,6 @@ class Camera(RosCamera[DepthByTypeParameters]):
         "libgazebo_ros_camera.so",
         "libgazebo_ros_multicamera.so",
     )
-    parameters: ClassVar[type] = DepthByTypeParameters
 
     def _depth(self) -> DepthConfig | None:
         if self.sensor.type not in ("depth", "depth_camera", "rgbd_camera"):
@@ -368,7 +339,6 @@ class Prosilica(RosCamera[ProsilicaParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_prosilica.so",)
-    parameters: ClassVar[type] = ProsilicaParameters
 
     def configure(self) -> None:
         super().configure()

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.codes import devices
 from cartwheel.devices.cameras.depth_camera import DepthConfig
 from cartwheel.devices.cameras.imager import topic_in
 from cartwheel.dialects.classic.sensors.camera import CameraParameters, RosCamera
@@ -76,7 +75,6 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_depth_camera.so",)
     sensor_type: ClassVar[str] = "depth"
-    parameters: ClassVar[type] = DepthCameraParameters
 
     def configure(self) -> None:
         super().configure()
@@ -85,11 +83,7 @@ class DepthCamera(RosCamera[DepthCameraParameters]):
             ("normalsTopicName", self.config.normals_topic),
         ):
             if written:
-                self.warn(
-                    devices.PLUGIN_PARAMETER_IGNORED,
-                    f"<{name}> has no effect: Gazebo 11 does not publish it either",
-                    values={"parameter": name},
-                )
+                self.warn_ignored(name, "Gazebo 11 does not publish it either")
 
     def _depth(self) -> DepthConfig:
         base, config = self._base(), self.config

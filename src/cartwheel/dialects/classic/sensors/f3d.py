@@ -38,7 +38,6 @@ class F3D(Plugin[F3DParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_f3d.so",)
-    parameters: ClassVar[type] = F3DParameters
 
     def configure(self) -> None:
         config = self.config

@@ -68,7 +68,6 @@ class FtSensor(Plugin[FtSensorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ft_sensor.so",)
-    parameters: ClassVar[type] = FtSensorParameters
 
     def configure(self) -> None:
         config, sensor = self.config, self.sensor
@@ -94,10 +93,6 @@ class FtSensor(Plugin[FtSensorParameters]):
                 values={"parameter": "jointName"},
             )
         if config.frame:
-            self.warn(
-                devices.PLUGIN_PARAMETER_IGNORED,
-                "<frame_name> has no effect: the wrench of a joint is in the frame of its child",
-                values={"parameter": "frame_name"},
-            )
+            self.warn_ignored("frame_name", "the wrench of a joint is in the frame of its child")
         joint = self.part.description.joint(name)
         return JointReactionConfig(joint=name), joint.child if joint is not None else ""

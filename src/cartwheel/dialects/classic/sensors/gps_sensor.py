@@ -27,7 +27,6 @@ class GpsSensor(SensorPlugin[GpsSensorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_gps_sensor.so",)
-    parameters: ClassVar[type] = GpsSensorParameters
     sensor_type: ClassVar[str] = "gps"
 
     def configure(self) -> None:

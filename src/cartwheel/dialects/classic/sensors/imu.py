@@ -53,7 +53,6 @@ class Imu(Plugin[ImuParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu.so",)
-    parameters: ClassVar[type] = ImuParameters
 
     def configure(self) -> None:
         config = self.config

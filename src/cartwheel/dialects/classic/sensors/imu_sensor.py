@@ -64,7 +64,6 @@ class ImuSensor(SensorPlugin[ImuSensorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_imu_sensor.so",)
-    parameters: ClassVar[type] = ImuSensorParameters
     sensor_type: ClassVar[str] = "imu"
 
     def configure(self) -> None:

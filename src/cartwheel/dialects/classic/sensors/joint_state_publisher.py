@@ -56,7 +56,6 @@ class JointStatePublisher(Plugin[JointStatePublisherParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_joint_state_publisher.so",)
-    parameters: ClassVar[type] = JointStatePublisherParameters
     empty_is_model: ClassVar[bool] = True
 
     def configure(self) -> None:
@@ -102,7 +101,6 @@ class GzJointStatePublisher(Plugin[GzJointStatePublisherParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-state-publisher-system",)
-    parameters: ClassVar[type] = GzJointStatePublisherParameters
 
     def configure(self) -> None:
         config, part = self.config, self.part

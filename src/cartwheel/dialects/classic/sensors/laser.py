@@ -38,7 +38,6 @@ class Laser(SensorPlugin[LaserParameters]):
         "libgazebo_ros_laser.so",
         "libgazebo_ros_gpu_laser.so",
     )
-    parameters: ClassVar[type] = LaserParameters
     empty_is_model: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "ray"
     prefixes_by_namespace: ClassVar[bool] = True

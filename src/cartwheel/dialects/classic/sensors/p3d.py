@@ -60,7 +60,6 @@ class P3D(Plugin[P3DParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_p3d.so",)
-    parameters: ClassVar[type] = P3DParameters
     in_link: ClassVar[bool] = False
     """Whether the twist is in the link frame instead of the reference frame."""
     in_world: ClassVar[bool] = False

@@ -50,7 +50,6 @@ class Range(SensorPlugin[RangeParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_range.so",)
-    parameters: ClassVar[type] = RangeParameters
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:

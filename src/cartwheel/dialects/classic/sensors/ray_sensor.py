@@ -65,7 +65,6 @@ class RaySensor(SensorPlugin[RaySensorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_ray_sensor.so",)
-    parameters: ClassVar[type] = RaySensorParameters
     sensor_type: ClassVar[str] = "ray"
 
     def configure(self) -> None:
