@@ -44,12 +44,12 @@ def _print_version(wanted: bool) -> None:
 @app.callback()
 def options(
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Show a traceback if Cartwheel itself fails.")
+        bool, help.option("--verbose", "Show a traceback if Cartwheel itself fails.")
     ] = False,
     version: Annotated[
         bool,
-        typer.Option(
-            "--version", is_eager=True, callback=_print_version, help="Show the version and exit."
+        help.option(
+            "--version", "Show the version and exit.", is_eager=True, callback=_print_version
         ),
     ] = False,
 ) -> None:

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import typer
-
 from cartwheel.cli import help
 from cartwheel.codes.command import OPTION_INVALID, USAGE
 from cartwheel.control.registry import VARIABLE
@@ -20,23 +18,18 @@ RECORDING = "Recording: a .mcap, .bag or .db3 file, or a rosbag2 folder."
 
 Sim = Annotated[
     str | None,
-    typer.Option(
-        "--sim",
-        metavar="PID|WORLD",
-        help="Simulation to control, if several are running: its process ID or the name of its "
+    help.option(
+        "--sim PID|WORLD",
+        "Simulation to control, if several are running: its process ID or the name of its "
         "world. For the second world of a Python program, append -2 to its process ID. "
         f"Default: the environment variable {VARIABLE}.",
     ),
 ]
 
 
-def _names(metavar: str, text: str) -> Any:
-    return typer.Argument(metavar=metavar, show_default=False, help=text)
-
-
 Names = Annotated[
     list[str] | None,
-    _names(
+    help.argument(
         "FILE [NAME:=VALUE]...",
         "Robot description (xacro, URDF or SDF), or the name of a bundled description. NAME:=VALUE "
         "sets a xacro argument.",
@@ -44,7 +37,7 @@ Names = Annotated[
 ]
 ModelNames = Annotated[
     list[str] | None,
-    _names(
+    help.argument(
         "FILE [NAME:=VALUE]...",
         "Model file (xacro, URDF or SDF), or the name of a bundled model. NAME:=VALUE sets a xacro "
         "argument.",
@@ -52,7 +45,7 @@ ModelNames = Annotated[
 ]
 CheckNames = Annotated[
     list[str] | None,
-    _names(
+    help.argument(
         "FILE|FOLDER [NAME:=VALUE]...",
         "Robot description (xacro, URDF or SDF), the name of a bundled description, or a folder "
         "with descriptions. NAME:=VALUE sets a xacro argument.",
@@ -60,7 +53,7 @@ CheckNames = Annotated[
 ]
 RunNames = Annotated[
     list[str] | None,
-    _names(
+    help.argument(
         "[FILE] [NAME:=VALUE]...",
         "Robot description (xacro, URDF or SDF), or the name of a bundled description. Default: "
         "the bundled example cart, rosbots.xacro.",
@@ -68,52 +61,43 @@ RunNames = Annotated[
 ]
 PackagePath = Annotated[
     list[Path] | None,
-    typer.Option(
-        "--package-path",
-        metavar="FOLDER",
-        help="Search this folder first for packages and models. Can be repeated.",
-        rich_help_panel=help.LOOKUP,
+    help.option(
+        "--package-path FOLDER",
+        "Search this folder first for packages and models. Can be repeated.",
+        help.LOOKUP,
     ),
 ]
 AllowPath = Annotated[
     list[Path] | None,
-    typer.Option(
-        "--allow-path",
-        metavar="FOLDER",
-        help="Allow services to read files in this folder, in addition to packages and models."
+    help.option(
+        "--allow-path FOLDER",
+        "Allow services to read files in this folder, in addition to packages and models."
         " Can be repeated.",
-        rich_help_panel=help.LOOKUP,
+        help.LOOKUP,
     ),
 ]
 
 
-def _pose(flag: str, unit: str, text: str) -> Any:
-    return typer.Option(flag, metavar=unit, help=text, rich_help_panel=help.ROBOT)
-
-
-X = Annotated[float | None, _pose("-x", "M", "Initial x position in the world.")]
-Y = Annotated[float | None, _pose("-y", "M", "Initial y position in the world.")]
-Z = Annotated[float | None, _pose("-z", "M", "Initial z position in the world.")]
-Roll = Annotated[float | None, _pose("-R", "RAD", "Initial roll.")]
-Pitch = Annotated[float | None, _pose("-P", "RAD", "Initial pitch.")]
-Yaw = Annotated[float | None, _pose("-Y", "RAD", "Initial yaw.")]
+X = Annotated[float | None, help.option("-x M", "Initial x position in the world.", help.ROBOT)]
+Y = Annotated[float | None, help.option("-y M", "Initial y position in the world.", help.ROBOT)]
+Z = Annotated[float | None, help.option("-z M", "Initial z position in the world.", help.ROBOT)]
+Roll = Annotated[float | None, help.option("-R RAD", "Initial roll.", help.ROBOT)]
+Pitch = Annotated[float | None, help.option("-P RAD", "Initial pitch.", help.ROBOT)]
+Yaw = Annotated[float | None, help.option("-Y RAD", "Initial yaw.", help.ROBOT)]
 Model = Annotated[
     str | None,
-    typer.Option(
-        "--model",
-        metavar="NAME",
-        help="Name of the model in the world. Default: the name in the file.",
-        rich_help_panel=help.ROBOT,
+    help.option(
+        "--model NAME", "Name of the model in the world. Default: the name in the file.", help.ROBOT
     ),
 ]
 
 
 def _host(servers: str) -> Any:
-    return typer.Option(
-        metavar="ADDRESS",
-        help=f"Network address of {servers}. With 0.0.0.0, other computers can connect if they "
+    return help.option(
+        "--host ADDRESS",
+        f"Network address of {servers}. With 0.0.0.0, other computers can connect if they "
         "have the token, which is in the printed URL.",
-        rich_help_panel=help.PAGE,
+        help.PAGE,
     )
 
 
@@ -121,35 +105,31 @@ Host = Annotated[str, _host("the web interface")]
 RunHost = Annotated[str, _host("the web interface and the Foxglove server")]
 AllowOrigin = Annotated[
     list[str] | None,
-    typer.Option(
-        "--allow-origin",
-        metavar="ORIGIN",
-        help="Accept connections from web pages with this origin, such as"
+    help.option(
+        "--allow-origin ORIGIN",
+        "Accept connections from web pages with this origin, such as"
         " https://robots.example.org. Can be repeated.",
-        rich_help_panel=help.PAGE,
+        help.PAGE,
     ),
 ]
 Port = Annotated[
     int,
-    typer.Option(
+    help.option(
+        "--port PORT",
+        "Port of the web interface; 0 selects a free port.",
+        help.PAGE,
         min=0,
         max=65535,
-        metavar="PORT",
-        help="Port of the web interface; 0 selects a free port.",
-        rich_help_panel=help.PAGE,
     ),
 ]
-Headless = Annotated[
-    bool,
-    typer.Option("--headless", help="Run without the web interface.", rich_help_panel=help.PAGE),
-]
-Paused = Annotated[bool, typer.Option("--paused", help="Start paused.", rich_help_panel=help.TIME)]
+Headless = Annotated[bool, help.option("--headless", "Run without the web interface.", help.PAGE)]
+Paused = Annotated[bool, help.option("--paused", "Start paused.", help.TIME)]
 OpenBrowser = Annotated[
     bool | None,
-    typer.Option(
+    help.option(
         "--open/--no-open",
-        help="Open the web interface in a browser. Default: open if a desktop session is running.",
-        rich_help_panel=help.PAGE,
+        "Open the web interface in a browser. Default: open if a desktop session is running.",
+        help.PAGE,
     ),
 ]
 

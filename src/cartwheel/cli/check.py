@@ -31,83 +31,58 @@ def check(
     *,
     select: Annotated[
         list[str] | None,
-        typer.Option(
-            "--select",
-            metavar="CODES",
-            help="Report only these codes: a number (CW204), a name, or the beginning of a number "
+        help.option(
+            "--select CODES",
+            "Report only these codes: a number (CW204), a name, or the beginning of a number "
             "(CW2). Separate several codes with commas.",
-            rich_help_panel=help.REPORT,
+            help.REPORT,
         ),
     ] = None,
     ignore: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--ignore",
-            metavar="CODES",
-            help="Do not report these codes.",
-            rich_help_panel=help.REPORT,
-        ),
+        list[str] | None, help.option("--ignore CODES", "Do not report these codes.", help.REPORT)
     ] = None,
     format: Annotated[
-        Format,
-        typer.Option("--format", help="Format of the report.", rich_help_panel=help.REPORT),
+        Format, help.option("--format", "Format of the report.", help.REPORT)
     ] = Format.text,
-    json: Annotated[
-        bool, typer.Option("--json", help="Same as --format json.", rich_help_panel=help.REPORT)
-    ] = False,
+    json: Annotated[bool, help.option("--json", "Same as --format json.", help.REPORT)] = False,
     strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict",
-            help="Also exit with status 1 if there are notes.",
-            rich_help_panel=help.REPORT,
-        ),
+        bool, help.option("--strict", "Also exit with status 1 if there are notes.", help.REPORT)
     ] = False,
     baseline: Annotated[
         Path | None,
-        typer.Option(
-            "--baseline",
-            metavar="FILE",
-            help="Report only findings that are not in this baseline file.",
-            rich_help_panel=help.REPORT,
+        help.option(
+            "--baseline FILE",
+            "Report only findings that are not in this baseline file.",
+            help.REPORT,
         ),
     ] = None,
     write_baseline: Annotated[
         Path | None,
-        typer.Option(
-            "--write-baseline",
-            metavar="FILE",
-            help="Write all findings to this baseline file and exit.",
-            rich_help_panel=help.REPORT,
+        help.option(
+            "--write-baseline FILE",
+            "Write all findings to this baseline file and exit.",
+            help.REPORT,
         ),
     ] = None,
     fix: Annotated[
         bool,
-        typer.Option(
+        help.option(
             "--fix",
-            help="Fix misspelt tags, angles in degrees, inertias and wheel sizes in the files.",
-            rich_help_panel=help.REPORT,
+            "Fix misspelt tags, angles in degrees, inertias and wheel sizes in the files.",
+            help.REPORT,
         ),
     ] = False,
     diff: Annotated[
-        bool,
-        typer.Option(
-            "--diff",
-            help="Show what --fix would change, and exit.",
-            rich_help_panel=help.REPORT,
-        ),
+        bool, help.option("--diff", "Show what --fix would change, and exit.", help.REPORT)
     ] = False,
-    codes: Annotated[
-        bool, typer.Option("--list", help="List all codes and exit.", rich_help_panel=help.REPORT)
-    ] = False,
+    codes: Annotated[bool, help.option("--list", "List all codes and exit.", help.REPORT)] = False,
     package_path: arguments.PackagePath = None,
     controllers: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--controllers",
-            metavar="FILE",
-            help="Also check this ros_control or ros2_control YAML file. Can be repeated.",
-            rich_help_panel=help.LOOKUP,
+        help.option(
+            "--controllers FILE",
+            "Also check this ros_control or ros2_control YAML file. Can be repeated.",
+            help.LOOKUP,
         ),
     ] = None,
 ) -> None:

@@ -63,9 +63,7 @@ def resume(sim: Sim = None) -> None:
 
 
 def step(
-    count: Annotated[
-        int, typer.Argument(metavar="[N]", min=1, help="Number of steps. Default: 1.")
-    ] = 1,
+    count: Annotated[int, help.argument("[N]", "Number of steps. Default: 1.", min=1)] = 1,
     sim: Sim = None,
 ) -> None:
     """Pause the simulation, then advance it by N steps."""
@@ -83,12 +81,7 @@ def reset(sim: Sim = None) -> None:
 
 def speed(
     value: Annotated[
-        str,
-        typer.Argument(
-            metavar="FACTOR|max",
-            show_default=False,
-            help="Real-time factor; max is as fast as possible.",
-        ),
+        str, help.argument("FACTOR|max", "Real-time factor; max is as fast as possible.")
     ],
     sim: Sim = None,
 ) -> None:

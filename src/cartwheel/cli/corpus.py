@@ -17,19 +17,13 @@ def add_to(app: typer.Typer) -> None:
 
 def corpus(
     folders: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="FOLDER|FILE...", show_default=False, help="Folders to search, or robot files."
-        ),
+        list[Path], help.argument("FOLDER|FILE...", "Folders to search, or robot files.")
     ],
-    json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
+    json: Annotated[bool, help.option("--json", "Print the results as JSON.")] = False,
     standing: Annotated[
         float,
-        typer.Option(
-            "--for",
-            metavar="SECONDS",
-            min=1.0,
-            help="Simulated time for which each robot must stand still.",
+        help.option(
+            "--for SECONDS", "Simulated time for which each robot must stand still.", min=1.0
         ),
     ] = 10.0,
     package_path: arguments.PackagePath = None,

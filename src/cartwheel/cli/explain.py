@@ -17,13 +17,9 @@ def add_to(app: typer.Typer) -> None:
 def explain(
     codes: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[CODE]...",
-            show_default=False,
-            help="Code (CW204) or name (file-missing). Default: list all codes.",
-        ),
+        help.argument("[CODE]...", "Code (CW204) or name (file-missing). Default: list all codes."),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the explanation as JSON.")] = False,
+    json: Annotated[bool, help.option("--json", "Print the explanation as JSON.")] = False,
 ) -> None:
     """Explain a diagnostic code, or list all codes."""
     from cartwheel.cli.commands import explain as work

@@ -50,11 +50,10 @@ def view(
 
 
 def convert(
-    to: Annotated[Format, typer.Option("--to", help="Output format.", show_default=False)],
+    to: Annotated[Format, help.option("--to", "Output format.", show_default=False)],
     words: arguments.Names = None,
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Output file. Default: stdout."),
+        Path | None, help.option("-o --output FILE", "Output file. Default: stdout.")
     ] = None,
     package_path: arguments.PackagePath = None,
 ) -> None:

@@ -63,6 +63,26 @@ def add(
     app.command(name, cls=Command, rich_help_panel=group)(function)
 
 
+def option(usage: str, text: str, group: str | None = None, **more: Any) -> Any:
+    """An option of a command, for ``Annotated``.
+
+    Args:
+        usage: The flags and the placeholder of the value, as in the help: ``-n --count N``.
+        text: What the option does.
+        group: The section of the help; by default the general options.
+        **more: Passed to ``typer.Option``.
+    """
+    words = usage.split()
+    flags = [word for word in words if word.startswith("-")]
+    metavar = " ".join(words[len(flags) :]) or None
+    return typer.Option(*flags, metavar=metavar, help=text, rich_help_panel=group, **more)
+
+
+def argument(metavar: str, text: str, **more: Any) -> Any:
+    """An argument of a command, for ``Annotated``. The placeholder has brackets if optional."""
+    return typer.Argument(metavar=metavar, help=text, **more)
+
+
 def arguments(command: Any, ctx: Any) -> list[Any]:
     """The arguments of a command, without its options."""
     return [p for p in command.get_params(ctx) if p.param_type_name == "argument"]

@@ -16,11 +16,9 @@ def add_to(app: typer.Typer) -> None:
 
 
 def info(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", show_default=False, help=arguments.RECORDING)
-    ],
+    file: Annotated[Path, help.argument("FILE", arguments.RECORDING)],
     *,
-    json: Annotated[bool, typer.Option("--json", help="Print the information as JSON.")] = False,
+    json: Annotated[bool, help.option("--json", "Print the information as JSON.")] = False,
 ) -> None:
     """List the topics of a recording, with types, counts and rates."""
     from cartwheel.cli.commands import info as work

@@ -44,9 +44,7 @@ def spawn(
 
 
 def delete(
-    model: Annotated[
-        str, typer.Argument(metavar="MODEL", show_default=False, help="Name of the model.")
-    ],
+    model: Annotated[str, help.argument("MODEL", "Name of the model.")],
     sim: Sim = None,
 ) -> None:
     """Delete a model."""

@@ -17,41 +17,35 @@ def add_to(app: typer.Typer) -> None:
 
 
 def play(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", show_default=False, help=arguments.RECORDING)
-    ],
+    file: Annotated[Path, help.argument("FILE", arguments.RECORDING)],
     *,
     headless: arguments.Headless = False,
     speed: Annotated[
         str,
-        typer.Option(
-            metavar="FACTOR|max",
-            help="Playback speed: 1 is the recorded speed, max is as fast as possible.",
-            rich_help_panel=help.TIME,
+        help.option(
+            "--speed FACTOR|max",
+            "Playback speed: 1 is the recorded speed, max is as fast as possible.",
+            help.TIME,
         ),
     ] = "1",
     start: Annotated[
         float,
-        typer.Option(
-            "--start",
-            metavar="SECONDS",
-            help="Time after the beginning of the recording at which playback starts.",
-            rich_help_panel=help.TIME,
+        help.option(
+            "--start SECONDS",
+            "Time after the beginning of the recording at which playback starts.",
+            help.TIME,
         ),
     ] = 0.0,
     loop: Annotated[
-        bool,
-        typer.Option(
-            "--loop", help="Repeat the recording when it ends.", rich_help_panel=help.TIME
-        ),
+        bool, help.option("--loop", "Repeat the recording when it ends.", help.TIME)
     ] = False,
     paused: arguments.Paused = False,
     world: Annotated[
         str | None,
-        typer.Option(
-            metavar="FILE|NAME",
-            help="World to show around the robot: an SDF file, or the name of a bundled world.",
-            rich_help_panel=help.WORLD,
+        help.option(
+            "--world FILE|NAME",
+            "World to show around the robot: an SDF file, or the name of a bundled world.",
+            help.WORLD,
         ),
     ] = None,
     host: arguments.Host = "127.0.0.1",

@@ -21,35 +21,25 @@ def run(
     words: arguments.RunNames = None,
     world: Annotated[
         str | None,
-        typer.Option(
-            metavar="FILE|NAME",
-            help="World to simulate: an SDF file, or the name of a bundled world.",
-            rich_help_panel=help.WORLD,
+        help.option(
+            "--world FILE|NAME",
+            "World to simulate: an SDF file, or the name of a bundled world.",
+            help.WORLD,
         ),
     ] = None,
     seed: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            metavar="N",
-            help="Random seed for sensor noise.",
-            rich_help_panel=help.WORLD,
-        ),
+        int, help.option("--seed N", "Random seed for sensor noise.", help.WORLD, min=0)
     ] = 0,
     strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict", help="Treat every warning as an error.", rich_help_panel=help.WORLD
-        ),
+        bool, help.option("--strict", "Treat every warning as an error.", help.WORLD)
     ] = False,
     without: Annotated[
         list[str] | None,
-        typer.Option(
-            "--without",
-            metavar="NAME|all",
-            help="Omit physics that Cartwheel adds to descriptions, such as chain-drag; "
+        help.option(
+            "--without NAME|all",
+            "Omit physics that Cartwheel adds to descriptions, such as chain-drag; "
             "--verbose shows the names. Can be repeated.",
-            rich_help_panel=help.WORLD,
+            help.WORLD,
         ),
     ] = None,
     x: arguments.X = None,
@@ -61,39 +51,31 @@ def run(
     model: arguments.Model = None,
     controllers: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--controllers",
-            metavar="FILE",
-            help="Start the controllers in this ros_control or ros2_control YAML file. Can be "
-            "repeated.",
-            rich_help_panel=help.ROBOT,
+        help.option(
+            "--controllers FILE",
+            "Start the controllers in this ros_control or ros2_control YAML file. Can be repeated.",
+            help.ROBOT,
         ),
     ] = None,
     plugin: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--plugin",
-            metavar="FILE",
-            help="Execute this Python file and use the plugins that it defines. Can be repeated.",
-            rich_help_panel=help.ROBOT,
+        help.option(
+            "--plugin FILE",
+            "Execute this Python file and use the plugins that it defines. Can be repeated.",
+            help.ROBOT,
         ),
     ] = None,
     speed: Annotated[
         str,
-        typer.Option(
-            metavar="FACTOR|max",
-            help="Real-time factor: 1 is real time, max is as fast as possible.",
-            rich_help_panel=help.TIME,
+        help.option(
+            "--speed FACTOR|max",
+            "Real-time factor: 1 is real time, max is as fast as possible.",
+            help.TIME,
         ),
     ] = "1",
     seconds: Annotated[
         float | None,
-        typer.Option(
-            "--for",
-            metavar="SECONDS",
-            help="Stop after this much simulated time.",
-            rich_help_panel=help.TIME,
-        ),
+        help.option("--for SECONDS", "Stop after this much simulated time.", help.TIME),
     ] = None,
     paused: arguments.Paused = False,
     headless: arguments.Headless = False,
@@ -103,117 +85,88 @@ def run(
     open_browser: arguments.OpenBrowser = None,
     ros1: Annotated[
         bool,
-        typer.Option(
-            "--ros1",
-            help="Run as a ROS 1 node, with Gazebo's topics and services.",
-            rich_help_panel=help.WIRES,
+        help.option(
+            "--ros1", "Run as a ROS 1 node, with Gazebo's topics and services.", help.WIRES
         ),
     ] = False,
     ros1_node: Annotated[
         str,
-        typer.Option(
-            "--ros1-node",
-            metavar="NAME",
-            help="Name of the ROS 1 node. Can also be set with __name:=NAME.",
-            rich_help_panel=help.WIRES,
+        help.option(
+            "--ros1-node NAME",
+            "Name of the ROS 1 node. Can also be set with __name:=NAME.",
+            help.WIRES,
         ),
     ] = "gazebo",
     ros2: Annotated[
         bool,
-        typer.Option(
-            "--ros2",
-            help="Run as a ROS 2 node, with Gazebo's topics and services.",
-            rich_help_panel=help.WIRES,
+        help.option(
+            "--ros2", "Run as a ROS 2 node, with Gazebo's topics and services.", help.WIRES
         ),
     ] = False,
     ros2_node: Annotated[
-        str,
-        typer.Option(
-            "--ros2-node",
-            metavar="NAME",
-            help="Name of the ROS 2 node.",
-            rich_help_panel=help.WIRES,
-        ),
+        str, help.option("--ros2-node NAME", "Name of the ROS 2 node.", help.WIRES)
     ] = "gazebo",
     rmw: Annotated[
-        str,
-        typer.Option(
-            "--rmw",
-            metavar="dds|zenoh",
-            help="Middleware of the ROS 2 node.",
-            rich_help_panel=help.WIRES,
-        ),
+        str, help.option("--rmw dds|zenoh", "Middleware of the ROS 2 node.", help.WIRES)
     ] = "dds",
     bridge: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--bridge",
-            metavar="FILE",
-            help="Rename topics as configured in this ros_gz_bridge YAML file. Can be repeated.",
-            rich_help_panel=help.WIRES,
+        help.option(
+            "--bridge FILE",
+            "Rename topics as configured in this ros_gz_bridge YAML file. Can be repeated.",
+            help.WIRES,
         ),
     ] = None,
     foxglove: Annotated[
         bool,
-        typer.Option(
+        help.option(
             "--foxglove",
-            help="Start a server for Foxglove and Lichtblick on the address of --host.",
-            rich_help_panel=help.WIRES,
+            "Start a server for Foxglove and Lichtblick on the address of --host.",
+            help.WIRES,
         ),
     ] = False,
     foxglove_port: Annotated[
         int,
-        typer.Option(
-            "--foxglove-port",
+        help.option(
+            "--foxglove-port PORT",
+            "Port of the Foxglove server; 0 selects a free port.",
+            help.WIRES,
             min=0,
             max=65535,
-            metavar="PORT",
-            help="Port of the Foxglove server; 0 selects a free port.",
-            rich_help_panel=help.WIRES,
         ),
     ] = 8765,
     record: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--record",
-            metavar="FILE",
-            help="Record to a .mcap, .bag or .db3 file, or to a rosbag2 folder. Can be repeated.",
-            rich_help_panel=help.RECORDING,
+        help.option(
+            "--record FILE",
+            "Record to a .mcap, .bag or .db3 file, or to a rosbag2 folder. Can be repeated.",
+            help.RECORDING,
         ),
     ] = None,
     record_topics: Annotated[
         list[str] | None,
-        typer.Option(
-            "--record-topics",
-            metavar="PATTERN",
-            help="Record only topics that match a name such as /camera/*, or a regular expression "
+        help.option(
+            "--record-topics PATTERN",
+            "Record only topics that match a name such as /camera/*, or a regular expression "
             "such as re:/imu/.*. With ! in front, as in !/camera/*, exclude topics. Can be "
             "repeated. Default: all topics, including images.",
-            rich_help_panel=help.RECORDING,
+            help.RECORDING,
         ),
     ] = None,
     record_encoding: Annotated[
         str | None,
-        typer.Option(
-            "--record-encoding",
-            metavar="ros1|ros2",
-            help="Message encoding in a .mcap file. Default: ros2.",
-            rich_help_panel=help.RECORDING,
+        help.option(
+            "--record-encoding ros1|ros2",
+            "Message encoding in a .mcap file. Default: ros2.",
+            help.RECORDING,
         ),
     ] = None,
     overwrite: Annotated[
-        bool,
-        typer.Option(
-            "--overwrite",
-            help="Replace a recording that already exists.",
-            rich_help_panel=help.RECORDING,
-        ),
+        bool, help.option("--overwrite", "Replace a recording that already exists.", help.RECORDING)
     ] = False,
     package_path: arguments.PackagePath = None,
     allow_path: arguments.AllowPath = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", help="Show informational messages.")
-    ] = False,
+    verbose: Annotated[bool, help.option("--verbose", "Show informational messages.")] = False,
 ) -> None:
     """Simulate a robot, by default the bundled example cart.
 

@@ -14,9 +14,7 @@ app = typer.Typer(cls=help.Group, help="List and call services.", no_args_is_hel
 
 @app.command("list", cls=help.Command)
 def list_services(
-    verbose: Annotated[
-        bool, typer.Option("-v", "--verbose", help="Also show types and servers.")
-    ] = False,
+    verbose: Annotated[bool, help.option("-v --verbose", "Also show types and servers.")] = False,
     sim: Sim = None,
 ) -> None:
     """List services."""
@@ -27,12 +25,9 @@ def list_services(
 
 @app.command(cls=help.Command)
 def call(
-    service: Annotated[
-        str, typer.Argument(metavar="SERVICE", show_default=False, help="Name of the service.")
-    ],
+    service: Annotated[str, help.argument("SERVICE", "Name of the service.")],
     request: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[YAML]...", help="Request. Default: all fields zero or empty."),
+        list[str] | None, help.argument("[YAML]...", "Request. Default: all fields zero or empty.")
     ] = None,
     sim: Sim = None,
 ) -> None:

@@ -18,15 +18,13 @@ def add_to(app: typer.Typer) -> None:
 def teleop(
     topic: Annotated[
         str | None,
-        typer.Option(
-            metavar="TOPIC",
-            help="Topic of the velocity commands. Default: the only topic with a Twist subscriber.",
+        help.option(
+            "--topic TOPIC",
+            "Topic of the velocity commands. Default: the only topic with a Twist subscriber.",
         ),
     ] = None,
-    speed: Annotated[float, typer.Option(min=0, metavar="M/S", help="Initial linear speed.")] = 0.5,
-    turn: Annotated[
-        float, typer.Option(min=0, metavar="RAD/S", help="Initial angular speed.")
-    ] = 1.0,
+    speed: Annotated[float, help.option("--speed M/S", "Initial linear speed.", min=0)] = 0.5,
+    turn: Annotated[float, help.option("--turn RAD/S", "Initial angular speed.", min=0)] = 1.0,
     sim: Sim = None,
 ) -> None:
     """Drive a robot with the keys of teleop_twist_keyboard."""

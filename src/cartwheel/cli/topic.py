@@ -15,16 +15,13 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
-Topic = Annotated[
-    str, typer.Argument(metavar="TOPIC", show_default=False, help="Name of the topic.")
-]
+Topic = Annotated[str, help.argument("TOPIC", "Name of the topic.")]
 
 
 @app.command("list", cls=help.Command)
 def list_topics(
     verbose: Annotated[
-        bool,
-        typer.Option("-v", "--verbose", help="Also show types, rates, publishers and subscribers."),
+        bool, help.option("-v --verbose", "Also show types, rates, publishers and subscribers.")
     ] = False,
     sim: Sim = None,
 ) -> None:
@@ -47,15 +44,13 @@ def echo(
     *,
     topic: Topic,
     count: Annotated[
-        int | None, typer.Option("-n", "--count", min=1, metavar="N", help="Stop after N messages.")
+        int | None, help.option("-n --count N", "Stop after N messages.", min=1)
     ] = None,
     no_arr: Annotated[
-        bool, typer.Option("--no-arr", "--noarr", help="Do not print the values of arrays.")
+        bool, help.option("--no-arr --noarr", "Do not print the values of arrays.")
     ] = False,
-    full: Annotated[bool, typer.Option("--full", help="Print long arrays in full.")] = False,
-    field: Annotated[
-        str | None, typer.Option(metavar="A.B.C", help="Print only this field.")
-    ] = None,
+    full: Annotated[bool, help.option("--full", "Print long arrays in full.")] = False,
+    field: Annotated[str | None, help.option("--field A.B.C", "Print only this field.")] = None,
     sim: Sim = None,
 ) -> None:
     """Print the messages of a topic as they arrive."""
@@ -68,13 +63,10 @@ def echo(
 def hz(
     topic: Topic,
     count: Annotated[
-        int | None,
-        typer.Option(
-            "-n", "--count", min=1, metavar="N", help="Stop after N measurements, one per second."
-        ),
+        int | None, help.option("-n --count N", "Stop after N measurements, one per second.", min=1)
     ] = None,
     window: Annotated[
-        int, typer.Option(min=2, metavar="N", help="Average over the last N messages.")
+        int, help.option("--window N", "Average over the last N messages.", min=2)
     ] = 10_000,
     sim: Sim = None,
 ) -> None:
@@ -90,30 +82,21 @@ def pub(
     topic: Topic,
     type_name: Annotated[
         str,
-        typer.Argument(
-            metavar="TYPE",
-            show_default=False,
-            help="Message type, such as geometry_msgs/Twist or geometry_msgs/msg/Twist.",
+        help.argument(
+            "TYPE", "Message type, such as geometry_msgs/Twist or geometry_msgs/msg/Twist."
         ),
     ],
     message: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[YAML]...", help="Message. Default: all fields zero or empty."),
+        list[str] | None, help.argument("[YAML]...", "Message. Default: all fields zero or empty.")
     ] = None,
     rate: Annotated[
-        float | None,
-        typer.Option(
-            "-r", "--rate", metavar="HZ", help="Publish repeatedly at this rate in wall time."
-        ),
+        float | None, help.option("-r --rate HZ", "Publish repeatedly at this rate in wall time.")
     ] = None,
     once: Annotated[
-        bool, typer.Option("-1", "--once", help="Publish once. This is the default without --rate.")
+        bool, help.option("-1 --once", "Publish once. This is the default without --rate.")
     ] = False,
     count: Annotated[
-        int | None,
-        typer.Option(
-            "-n", "--count", min=1, metavar="N", help="With --rate, stop after N messages."
-        ),
+        int | None, help.option("-n --count N", "With --rate, stop after N messages.", min=1)
     ] = None,
     sim: Sim = None,
 ) -> None:
