@@ -116,8 +116,8 @@ def test_the_server_as_a_run():
     )
     assert options.file == EMPTY
     assert (options.headless, options.paused, options.seed, options.steps) == (True, True, 3, 9)
-    assert options.ros1_node == "gazebo"
-    assert options.ros1_arguments == ("__name:=sim",)
+    assert options.plan.ros1 == "gazebo"
+    assert options.plan.ros1_arguments == ("__name:=sim",)
     assert not translated("gazebo", parse_server("gazebo", [])).headless
 
 

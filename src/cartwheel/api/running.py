@@ -17,7 +17,8 @@ from cartwheel.session import Session
 from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
-    from cartwheel.assembly.connections import Connections, Plan
+    from cartwheel.assembly.connections import Connections
+    from cartwheel.assembly.plan import Plan
     from cartwheel.assembly.ros1 import Ros1Connection
     from cartwheel.assembly.ros2 import Ros2Connection
     from cartwheel.simulation import Simulation
@@ -205,7 +206,7 @@ class RunningWorld:
             CartwheelError: A name is invalid, or no ROS master can be used.
         """
         with self.used():
-            return self._connected(ros1=True).connect_ros1(node, arguments)
+            return self._connected(ros1=True).assembly.connect_ros1(node, arguments)
 
     def connect_ros2(
         self, node: str = "gazebo", *, rmw: Literal["dds", "zenoh"] = "dds"
@@ -223,7 +224,7 @@ class RunningWorld:
             CartwheelError: A name is invalid, or a dependency is missing.
         """
         with self.used():
-            return self._connected().connect_ros2(node, rmw)
+            return self._connected().assembly.connect_ros2(node, rmw)
 
     def serve_foxglove(self, port: int = 8765) -> str:
         """Starts a server for Foxglove, as ``cartwheel run --foxglove``.
@@ -238,7 +239,7 @@ class RunningWorld:
             CartwheelError: The optional dependency is missing, or the port is in use.
         """
         with self.used():
-            return self._connected().serve_foxglove(port)
+            return self._connected().assembly.serve_foxglove(port).url
 
     def serve_commands(self) -> None:
         """Lets commands such as ``cartwheel topic list`` connect. Other connections include it.

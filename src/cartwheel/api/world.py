@@ -90,7 +90,8 @@ class World(RunningWorld):
         files = _several(record)
         # A port may be 0, which selects a free port.
         if ros1 or ros2 or foxglove is not False or viewer is not False or files:
-            from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, Plan, port
+            from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, port
+            from cartwheel.assembly.plan import Plan
             from cartwheel.assembly.recording import RecordingOptions
 
             plan = Plan(
@@ -371,7 +372,7 @@ class World(RunningWorld):
         robots = None
         try:
             with self.lock:
-                if self._connections is None or not self._connections.describes_robots:
+                if self._connections is None or not self._connections.assembly.describes_robots:
                     robots = RobotDescriptions(simulation, self.graph)
                 recorder.start()
                 simulation.drain()

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from cartwheel.assembly.middleware import Rmw
+from cartwheel.assembly.middleware import Rmw, check_rmw
 from cartwheel.assembly.names import world_title
 from cartwheel.assembly.observer import AtEnd, Observer
 from cartwheel.assembly.processes import Kind, Processes
@@ -233,6 +233,7 @@ class Assembly:
         """
         from cartwheel.assembly.ros2 import Ros2Connection
 
+        check_rmw(rmw)
         self._publish_descriptions()
         with self._opening("ros2") as process:
             connection = Ros2Connection(

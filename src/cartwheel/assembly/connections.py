@@ -7,19 +7,15 @@ import os
 import sys
 import threading
 import weakref
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.assembly.assembly import Assembly
 from cartwheel.assembly.attendant import Attendant
 from cartwheel.assembly.driver import Driver
-from cartwheel.assembly.middleware import Rmw, check_rmw
 from cartwheel.assembly.names import world_title
 from cartwheel.assembly.observer import Observer
-from cartwheel.assembly.processes import Kind
-from cartwheel.assembly.recording import RecordingOptions, check_recordings
 from cartwheel.assembly.turns import Turns
 from cartwheel.description.files.readable_files import run_folders
 from cartwheel.errors import Diagnostic
@@ -27,8 +23,7 @@ from cartwheel.forks import keep_object
 from cartwheel.gate.access import Access, refused_page
 
 if TYPE_CHECKING:
-    from cartwheel.assembly.ros1 import Ros1Connection
-    from cartwheel.assembly.ros2 import Ros2Connection
+    from cartwheel.assembly.plan import Plan
     from cartwheel.assembly.viewer_on_demand import ViewerOnDemand
     from cartwheel.session import Session
 
@@ -41,40 +36,6 @@ _LOOK = 0.2
 """Interval in s at which the end of the main thread is checked."""
 _PATIENCE = 5.0
 """Maximum wall time in s for a run on another thread to end when the process exits."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Plan:
-    """The connections that a program requests at the start."""
-
-    ros1: str | None = None
-    """Name of the ROS 1 node."""
-    ros2: str | None = None
-    """Name of the ROS 2 node."""
-    rmw: Rmw = "dds"
-    foxglove: int | None = None
-    """Port of the Foxglove server."""
-    viewer: bool = False
-    viewer_port: int | None = None
-    """Port of the viewer; None for the first free port."""
-    recordings: tuple[Path, ...] = ()
-    recording: RecordingOptions = field(default_factory=RecordingOptions)
-
-    @property
-    def bridges(self) -> Iterator[Kind | Path]:
-        """The bridges, and the paths of recordings."""
-        if self.ros1 is not None:
-            yield "ros1"
-        if self.ros2 is not None:
-            yield "ros2"
-        if self.foxglove is not None:
-            yield "foxglove"
-        yield from self.recordings
-
-    @property
-    def empty(self) -> bool:
-        """Whether nothing is requested."""
-        return not self.viewer and not any(True for _ in self.bridges)
 
 
 class Connections:
@@ -93,7 +54,7 @@ class Connections:
 
     def __init__(self, *, host: str, allow_origin: Sequence[str]) -> None:
         self._observer = _ReportingObserver()
-        self._assembly = Assembly(access=Access.of(host, allow_origin), observer=self._observer)
+        self.assembly = Assembly(access=Access.of(host, allow_origin), observer=self._observer)
         self._turns: Turns | None = None
         self._attendant: Attendant | None = None
         self._viewer: ViewerOnDemand | None = None
@@ -115,15 +76,8 @@ class Connections:
         Raises:
             CartwheelError: An option is invalid.
         """
-        if plan.ros2 is not None:
-            check_rmw(plan.rmw)
-        if plan.recordings:
-            check_recordings(plan.recordings, plan.recording)
-        if plan.foxglove is not None:
-            from cartwheel.bridges.foxglove.bridge import require
-
-            require()
-        self._assembly.prepare(plan.bridges)
+        plan.check()
+        self.assembly.prepare(plan.bridges)
 
     def attach(self, session: Session, driver: Driver, turns: Turns, *, ros1: bool) -> None:
         """Makes the session available to the commands of Cartwheel.
@@ -144,9 +98,9 @@ class Connections:
         session.allow_path += tuple(run_folders(_files(session)))
         self._turns = turns
         self._attendant = Attendant(simulation, turns)
-        self._assembly.attach(session, driver.pacer)
-        self._assembly.serve_control(_title(session), ros=ros1)
-        self._viewer = self._assembly.offer_viewer(VIEWER_PORT)
+        self.assembly.attach(session, driver.pacer)
+        self.assembly.serve_control(_title(session), ros=ros1)
+        self._viewer = self.assembly.offer_viewer(VIEWER_PORT)
         driver.connected = True
 
     def close_with(self, owner: object) -> None:
@@ -161,34 +115,8 @@ class Connections:
         """
         if plan.viewer:
             self.show(plan.viewer_port)
-        if plan.ros1 is not None:
-            self.connect_ros1(plan.ros1)
-        if plan.ros2 is not None:
-            self.connect_ros2(plan.ros2, plan.rmw)
-        if plan.foxglove is not None:
-            self.serve_foxglove(plan.foxglove)
-        for path in plan.recordings:
-            self._assembly.record(path, plan.recording)
+        plan.connect(self.assembly)
         self._serve_reads()
-
-    def connect_ros1(self, node: str, arguments: Sequence[str] = ()) -> Ros1Connection:
-        """See `Assembly.connect_ros1`."""
-        connection = self._assembly.connect_ros1(node, arguments)
-        self._serve_reads()
-        return connection
-
-    def connect_ros2(self, node: str, rmw: Rmw) -> Ros2Connection:
-        """See `Assembly.connect_ros2`."""
-        check_rmw(rmw)
-        connection = self._assembly.connect_ros2(node, rmw)
-        self._serve_reads()
-        return connection
-
-    def serve_foxglove(self, port: int) -> str:
-        """See `Assembly.serve_foxglove`. Returns the URL."""
-        server = self._assembly.serve_foxglove(port)
-        self._serve_reads()
-        return server.url
 
     def show(self, port: int | None, *, on_owner: bool = True) -> str:
         """See `ViewerOnDemand.show`."""
@@ -199,18 +127,13 @@ class Connections:
         """See `Assembly.update`."""
         if self.forked:
             return
-        self._assembly.update()
+        self.assembly.update()
         self._serve_reads()
-
-    @property
-    def describes_robots(self) -> bool:
-        """Whether the descriptions of robots are published."""
-        return self._assembly.describes_robots
 
     def raise_failure(self) -> None:
         """See `Assembly.raise_failure`."""
         if not self.forked:
-            self._assembly.raise_failure()
+            self.assembly.raise_failure()
 
     def leave_to_parent(self) -> None:
         """Ends the use of the simulation in a forked process."""
@@ -219,7 +142,7 @@ class Connections:
         if self._turns is not None:
             self._turns.abandon()
             # The process may have been forked by a callback. Its run ends.
-            self._assembly.session.simulation.stop()
+            self.assembly.session.simulation.stop()
 
     def close(self) -> None:
         """Closes all connections and completes the recordings. Other threads that call it wait.
@@ -236,7 +159,7 @@ class Connections:
                 return
             self.closed = True
             try:
-                self._assembly.close()
+                self.assembly.close()
             finally:
                 _open.discard(self)
                 self._owner = None
@@ -247,7 +170,7 @@ class Connections:
         """Stops a run on another thread, and closes the connections."""
         entered = False
         if self._turns is not None:
-            self._assembly.session.simulation.stop()
+            self.assembly.session.simulation.stop()
             entered = self._turns.acquire_within(_PATIENCE)
         try:
             self.close()
@@ -262,7 +185,7 @@ class Connections:
 
     def _serve_reads(self) -> None:
         """Delivers latched messages before anything else happens."""
-        self._assembly.session.simulation.serve_reads()
+        self.assembly.session.simulation.serve_reads()
 
 
 class _ReportingObserver(Observer):

@@ -176,6 +176,8 @@ def run(
     With --ros1, arguments of a ROS 1 node are also accepted: __name:=NAME, _PARAMETER:=VALUE and
     /TOPIC:=NEW_NAME. If FILE is a world, TOPIC:=NEW_NAME is accepted, too.
     """
+    from cartwheel.assembly.plan import Plan
+    from cartwheel.assembly.recording import RecordingOptions
     from cartwheel.cli.commands.options import Options
     from cartwheel.cli.commands.run import simulate
 
@@ -206,15 +208,19 @@ def run(
             controllers=tuple(controllers or ()),
             plugins=tuple(plugin or ()),
             bridge=tuple(bridge or ()),
-            ros1_node=ros1_node if ros1 else None,
-            ros2_node=ros2_node if ros2 else None,
-            rmw=arguments.rmw(rmw),
-            ros1_arguments=tuple(ros1_arguments),
-            record=tuple(record or ()),
-            record_topics=tuple(word for text in record_topics or () for word in text.split()),
-            record_encoding=record_encoding,
-            overwrite=overwrite,
-            foxglove_port=foxglove_port if foxglove else None,
+            plan=Plan(
+                ros1=ros1_node if ros1 else None,
+                ros1_arguments=tuple(ros1_arguments),
+                ros2=ros2_node if ros2 else None,
+                rmw=arguments.rmw(rmw),
+                foxglove=foxglove_port if foxglove else None,
+                recordings=tuple(record or ()),
+                recording=RecordingOptions(
+                    topics=tuple(word for text in record_topics or () for word in text.split()),
+                    encoding=record_encoding,
+                    overwrite=overwrite,
+                ),
+            ),
             verbose=verbose,
         )
     )

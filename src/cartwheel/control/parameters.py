@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from cartwheel.codes.command import CONTROL_REQUEST_INVALID
-from cartwheel.errors import ControlError
+from cartwheel.errors import ControlError, Value
 
 
 class Parameters:
@@ -35,79 +35,59 @@ class Parameters:
         if value is None and default is not None:
             return default
         if not isinstance(value, str):
-            raise ControlError(
-                f'the request\'s "{name}" must be a string',
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name},
-            )
+            raise _invalid(name, "a string")
         return value
 
     def texts(self, name: str) -> dict[str, str]:
         """A mapping from strings to strings."""
         value = self._values.get(name) or {}
         if not isinstance(value, dict) or not all(isinstance(v, str) for v in value.values()):
-            raise ControlError(
-                f'the request\'s "{name}" must be an object of strings',
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name},
-            )
+            raise _invalid(name, "an object of strings")
         return value
 
     def list_of_texts(self, name: str) -> list[str]:
         """A list of strings."""
         value = self._values.get(name) or []
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
-            raise ControlError(
-                f'the request\'s "{name}" must be a list of strings',
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name},
-            )
+            raise _invalid(name, "a list of strings")
         return value
 
     def number(self, name: str, default: float | None = None) -> float:
         """A finite number; required unless there is a default."""
         value = self._values.get(name, default)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ControlError(
-                f'the request\'s "{name}" must be a number',
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name},
-            )
+            raise _invalid(name, "a number")
         try:
             number = float(value)
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise ControlError(
-                f'the request\'s "{name}" must be finite (got {number})',
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name},
-            )
+            raise _invalid(name, f"finite (got {number})")
         return number
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
         """An integer within limits."""
         value = self.number(name, default)
         if value != int(value) or not low <= value <= high:
-            raise ControlError(
-                f'the request\'s "{name}" must be a whole number between {low} and {high} (got '
-                f"{value:g})",
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name, "value": value},
-            )
+            wanted = f"a whole number between {low} and {high} (got {value:g})"
+            raise _invalid(name, wanted, value=value)
         return int(value)
 
     def flag(self, name: str, *, default: bool) -> bool:
         """A boolean."""
         value = self._values.get(name, default)
         if not isinstance(value, bool):
-            raise ControlError(
-                f'the request\'s "{name}" must be true or false',
-                code=CONTROL_REQUEST_INVALID,
-                values={"parameter": name},
-            )
+            raise _invalid(name, "true or false")
         return value
 
     def value(self, name: str) -> Any:
         """Any value."""
         return self._values.get(name)
+
+
+def _invalid(name: str, wanted: str, **values: Value) -> ControlError:
+    return ControlError(
+        f'the request\'s "{name}" must be {wanted}',
+        code=CONTROL_REQUEST_INVALID,
+        values={"parameter": name, **values},
+    )

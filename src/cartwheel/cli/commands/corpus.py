@@ -6,7 +6,7 @@ import json as json_module
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -96,37 +96,9 @@ def as_mapping(verdict: Verdict) -> dict[str, Any]:
         },
         "topics": verdict.topics,
         "silent_topics": list(verdict.silent),
-        "drives": [
-            {
-                "topic": each.topic,
-                "commanded": each.commanded,
-                "measured": each.measured,
-                "commanded_turn": each.commanded_turn,
-                "measured_turn": each.measured_turn,
-                "turning": each.turning,
-                "limited": each.limited,
-            }
-            for each in verdict.drives
-        ],
-        "spins": [
-            {
-                "topic": each.topic,
-                "joint": each.joint,
-                "commanded": each.commanded,
-                "measured": each.measured,
-                "effort": each.effort,
-            }
-            for each in verdict.spins
-        ],
-        "flights": [
-            {
-                "topic": each.topic,
-                "motors": each.motors,
-                "command": each.command,
-                "rose": each.rose,
-            }
-            for each in verdict.flights
-        ],
+        "drives": [asdict(each) for each in verdict.drives],
+        "spins": [asdict(each) for each in verdict.spins],
+        "flights": [asdict(each) for each in verdict.flights],
         "reaches": [
             {
                 "controller": each.controller,

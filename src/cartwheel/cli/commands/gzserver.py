@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 
+from cartwheel.assembly.plan import Plan
 from cartwheel.assembly.ports import free_port
 from cartwheel.cli.commands.gazebo_arguments import ServerArguments, parse_server
 from cartwheel.cli.commands.gazebo_paths import adopt_exports, find_world
@@ -50,8 +51,7 @@ def translated(program: str, arguments: ServerArguments) -> Options:
         steps=arguments.iterations,
         verbose=arguments.verbose,
         allow_path=arguments.allow_path,
-        ros1_node=NODE,
-        ros1_arguments=arguments.ros,
+        plan=Plan(ros1=NODE, ros1_arguments=arguments.ros),
     )
     if not options.headless:
         return replace(options, port=free_port(options.host, options.port))

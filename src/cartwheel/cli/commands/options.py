@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+
+from cartwheel.assembly.plan import Plan
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,18 +45,6 @@ class Options:
     """Python files that define plugins."""
     bridge: tuple[Path, ...] = ()
     """Configuration files of ros_gz_bridge."""
-    ros1_node: str | None = None
-    """Name of the ROS 1 node; None for no node."""
-    ros1_arguments: tuple[str, ...] = ()
-    ros2_node: str | None = None
-    """Name of the ROS 2 node; None for no node."""
-    rmw: Literal["dds", "zenoh"] = "dds"
-    record: tuple[Path, ...] = ()
-    """Files or folders to record to."""
-    record_topics: tuple[str, ...] = ()
-    """Patterns; all topics if empty."""
-    record_encoding: str | None = None
-    overwrite: bool = False
-    foxglove_port: int | None = None
-    """Port for Foxglove's protocol; None for no server."""
+    plan: Plan = field(default_factory=Plan)
+    """ROS, Foxglove and recordings."""
     verbose: bool = False

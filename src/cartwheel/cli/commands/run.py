@@ -5,15 +5,13 @@ from __future__ import annotations
 import contextlib
 import gc
 import time
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from cartwheel.assembly.assembly import Assembly
 from cartwheel.assembly.names import world_title
 from cartwheel.assembly.ports import refuse_taken
-from cartwheel.assembly.processes import Kind
-from cartwheel.assembly.recording import RecordingOptions, check_recordings
 from cartwheel.cli import interrupts
 from cartwheel.cli.commands.desktop import is_desktop
 from cartwheel.cli.commands.options import Options
@@ -47,12 +45,7 @@ def simulate(options: Options) -> None:
             code=OPTION_INVALID,
             values={"option": "--for", "value": options.seconds},
         )
-    if options.record:
-        check_recordings(options.record, _recording_options(options))
-    if options.foxglove_port is not None:
-        from cartwheel.bridges.foxglove.bridge import require
-
-        require()
+    options.plan.check()
     # What is loaded stays: looking through it for garbage costs a tenth of the start, and of
     # the speed later where a reader keeps many messages.
     gc.disable()
@@ -64,27 +57,8 @@ def simulate(options: Options) -> None:
         at_end=interrupts.finally_do,
     )
     with assembly:
-        assembly.prepare(_bridges(options))
+        assembly.prepare(options.plan.bridges)
         _simulate(options, assembly, report)
-
-
-def _bridges(options: Options) -> Iterator[Kind | Path]:
-    """The requested bridges."""
-    if options.ros1_node is not None:
-        yield "ros1"
-    if options.ros2_node is not None:
-        yield "ros2"
-    if options.foxglove_port is not None:
-        yield "foxglove"
-    yield from options.record
-
-
-def _recording_options(options: Options) -> RecordingOptions:
-    return RecordingOptions(
-        topics=options.record_topics,
-        encoding=options.record_encoding,
-        overwrite=options.overwrite,
-    )
 
 
 def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
@@ -125,7 +99,7 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
     # Ctrl-C is how an endless run is meant to end, so it is no failure; a run that was to
     # last a certain time has failed when it is ended before.
     endless = options.seconds is None and options.steps is None
-    ros = options.ros1_node is not None
+    ros = options.plan.ros1 is not None
     # From the time at which other processes can see the simulation.
     with (
         interrupts.handled_by(session.simulation.stop, status=0 if endless else None),
@@ -137,7 +111,9 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         if others:
             report.others(others)
         report.loaded(session, name, ros=ros)
-        _connect(assembly, options, remappings)
+        plan = options.plan
+        plan = replace(plan, ros1_arguments=(*plan.ros1_arguments, *remappings))
+        plan.connect(assembly, end_ns=assembly.pacer.until_ns)
         _run(assembly, viewer, report)
 
 
@@ -148,19 +124,6 @@ def _viewer(assembly: Assembly, options: Options) -> AnnouncedViewer | None:
         return None
     open_browser = is_desktop() if options.open_browser is None else options.open_browser
     return assembly.add_viewer(options.port, open_browser=open_browser)
-
-
-def _connect(assembly: Assembly, options: Options, remappings: Sequence[str]) -> None:
-    """Connects the simulation to everything that the options request."""
-    if options.ros1_node is not None:
-        assembly.connect_ros1(options.ros1_node, (*options.ros1_arguments, *remappings))
-    if options.ros2_node is not None:
-        assembly.connect_ros2(options.ros2_node, options.rmw)
-    if options.foxglove_port is not None:
-        end_ns = None if options.seconds is None else round(options.seconds * 1e9)
-        assembly.serve_foxglove(options.foxglove_port, end_ns=end_ns)
-    for path in options.record:
-        assembly.record(path, _recording_options(options))
 
 
 def _files(*descriptions: WorldDescription | RobotDescription | None) -> Iterator[str]:
@@ -197,7 +160,7 @@ def _read(
                 values={"file": str(file)},
             )
         remappings: tuple[str, ...] = ()
-        if options.ros1_node is not None and values:
+        if options.plan.ros1 is not None and values:
             # Without a xacro, they cannot be xacro arguments.
             remappings = tuple(f"{name}:={value}" for name, value in values.items())
             found = load_world(file, package_path=options.package_path)
