@@ -77,7 +77,16 @@ MAY_IMPORT = {
     },
     "playback": {"description", "simulation", "messages", "graph", "bridges"},
     "checks": {"description", "dialects"},
-    "corpus": {"checks", "description", "simulation", "messages", "graph", "dialects", "api"},
+    "corpus": {
+        "checks",
+        "description",
+        "simulation",
+        "messages",
+        "graph",
+        "devices",
+        "dialects",
+        "api",
+    },
     "cli": {
         "description",
         "world",

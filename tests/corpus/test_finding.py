@@ -3,6 +3,7 @@
 import pytest
 
 from cartwheel.corpus import robots_in, survey
+from cartwheel.corpus.launches import LaunchUse
 
 LINK = (
     '<link name="{}"><inertial><mass value="1"/>'
@@ -76,8 +77,14 @@ def test_what_cannot_be_read_is_kept_for_its_trial_to_tell(folder):
     assert folder(bad_dot_urdf='<robot name="bad"><link name="a">') == ["bad.urdf"]
 
 
-def kinds(folder, launched=()):
-    found = survey(folder, launched=[folder / each for each in launched])
+def kinds(folder, launched=(), passed=()):
+    uses = [
+        LaunchUse(
+            file=folder / "a.launch", description=folder / each, arguments=dict.fromkeys(passed, "")
+        )
+        for each in launched
+    ]
+    found = survey(folder, launches=uses)
     return {str(path.relative_to(folder)): kind for path, kind in found.skipped}
 
 
@@ -105,6 +112,15 @@ def test_a_file_that_needs_names_of_another_file_is_a_part(folder, tmp_path, con
     assert kinds(tmp_path, launched=["part.xacro"]) == {}
     (tmp_path / "cart.xacro").unlink()
     assert folder() == ["part.xacro"]
+
+
+def test_a_file_that_needs_arguments_of_launch_files_is_a_part(folder, tmp_path):
+    drone = XACRO.format(' name="drone"', '<link name="$(arg team)/base"/>')
+    mav = XACRO.format(' name="mav"', '<link name="$(arg team)/mav"/>')
+    found = folder(other_dot_xacro=drone, mav_dot_gazebo=mav)
+    assert found == ["mav.gazebo", "other.xacro"]
+    expected = {"other.xacro": "part"}
+    assert kinds(tmp_path, launched=["mav.gazebo"], passed=["team"]) == expected
 
 
 def test_a_robot_without_a_name_is_a_part(folder, tmp_path):

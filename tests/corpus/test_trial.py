@@ -12,6 +12,7 @@ from cartwheel.codes.devices import (
 from cartwheel.codes.files import INCLUDE_ABSENT
 from cartwheel.codes.robot import (
     DUPLICATE_NAME,
+    JOINTS_UNDRIVEN,
     UNBALANCED,
     WHEEL_DIAMETER_MISMATCH,
     WHEEL_FRICTIONLESS,
@@ -231,6 +232,49 @@ def test_an_error_that_follows_from_gravity_and_the_gains_is_none(tmp_path, trie
     assert reach.sag == pytest.approx(abs(reach.error), rel=0.02)
     assert reach.arrived
     assert verdict.good
+
+
+def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tried):
+    plugin = (
+        '<gazebo><plugin name="p" filename="gz-sim-joint-position-controller-system">'
+        "<joint_name>shoulder</joint_name><p_gain>3</p_gain></plugin></gazebo>"
+    )
+    rubbing = ARM.format(kind="Effort").replace(
+        '<limit lower="-1"', '<dynamics friction="1.5" damping="1"/><limit lower="-1"'
+    )
+    verdict = tried(rubbing.split("<transmission")[0], plugin)
+    (reach,) = verdict.reaches
+    # Gravity, 0.98 N m sin(0.2), is not what holds it.
+    assert abs(reach.error) > 0.1
+    assert reach.sag > 1.5 / 3.0
+    assert verdict.good, verdict.faults
+
+
+def test_an_arm_that_nothing_drives_falls_and_the_reason_is_told(tried):
+    upper = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]
+    joint = ARM[ARM.index('<joint name="shoulder"') : ARM.index("<transmission")]
+    # It falls to the side.
+    upper = upper.replace('xyz="0 0 0.1"', 'xyz="0.02 0 0.5"').replace('"1"/>', '"3"/>')
+    joint = joint.replace('lower="-1" upper="1"', 'lower="-2" upper="2"')
+    verdict = tried(BOX.format(name="base", at="0 0 0", size="0.2 0.2 0.1"), upper, joint)
+    assert verdict.stand.state in ("tips", "moves"), verdict.stand
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
+
+
+def test_an_effort_moves_a_light_link_without_throwing_it(tmp_path, tried):
+    path = tmp_path / "push.yaml"
+    path.write_text("push:\n  type: effort_controllers/JointEffortController\n  joint: shoulder\n")
+    light = (
+        ARM.format(kind="Effort")
+        .replace('"0.01"', '"1e-6"')
+        .replace('<mass value="1"/>', '<mass value="1e-4"/>')
+    )
+    verdict = tried(light, controllers=[path])
+    (spin,) = verdict.spins
+    assert spin.follows
+    assert abs(spin.measured) < 10
+    assert verdict.good, verdict.faults
 
 
 def test_a_joint_that_is_too_weak_does_not_arrive(tmp_path, tried):

@@ -9,8 +9,8 @@ import pytest
 from cartwheel.description import load_text
 from cartwheel.description.model import Physics
 from cartwheel.geometry import Pose
-from cartwheel.world.actuation import _MOTOR_REFERENCE
 from cartwheel.world.build import DEFAULT_STEP
+from cartwheel.world.joints import STIFF_REFERENCE
 
 COMMAND = "/part2_cmr/cmd_vel"
 RADIUS, SEPARATION, TORQUE, RAMP, CONTROL = 0.26, 1.1, 20.0, 1.0, 0.01
@@ -63,7 +63,7 @@ def test_speed_and_way_follow_the_ramp(make, rosbots):
     wanted_way = np.where(time < ramp_end, RAMP * time**2 / 2, 0.5 * time - 0.5 * ramp_end / 2)
     # The ramp is climbed in stairs of one control period. The wheel follows its motor with the
     # time constant of their coupling.
-    lag = RAMP * _MOTOR_REFERENCE[0]
+    lag = RAMP * STIFF_REFERENCE[0]
     assert np.abs(speed - wanted_speed).max() < RAMP * CONTROL + lag + RAMP * DEFAULT_STEP
     assert np.abs(way - wanted_way).max() < (RAMP * CONTROL + lag) * ramp_end + 0.5 * DEFAULT_STEP
     # From then on it holds within 2 %.

@@ -212,3 +212,18 @@ def test_a_model_stands_free_when_what_it_was_joined_to_is_deleted():
         world.model("a").delete()
         world.run(0.5)
         assert world.model("b").pose.position[2] == pytest.approx(2 - G * 0.125, abs=0.02)
+
+
+def test_a_joint_that_friction_holds_does_not_creep(make):
+    # Two thirds of the friction hold the weight: 9.8 N at 0.1 m against 1.5 N m.
+    lever = link("lever", inertia=0.01).replace(
+        "<inertial>", "<inertial><pose>0.1 0 0 0 0 0</pose>"
+    )
+    axis = "<axis><xyz>0 1 0</xyz><dynamics><friction>{}</friction></dynamics></axis>"
+    angles = {}
+    for friction in (1.5, 0.9):
+        world = run(make, lever, joint("j", "revolute", "world", "lever", axis.format(friction)))
+        world.run(5.0)
+        angles[friction] = float(data_of(world).joint("m::j").qpos[0])
+    assert abs(angles[1.5]) < 1e-4
+    assert angles[0.9] > 0.5

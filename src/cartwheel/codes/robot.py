@@ -174,3 +174,9 @@ UNBALANCED = Code(
     "info",
     "the centre of mass is not above the points where the robot touches the ground",
 )
+JOINTS_UNDRIVEN = Code(
+    "CW244",
+    "joints-undriven",
+    "info",
+    "no plugin drives the joints of a robot, so they move freely",
+)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from cartwheel.api import Model, World
-from cartwheel.corpus.motion import positions
+from cartwheel.corpus.motion import positions, resistance
 from cartwheel.corpus.verdict import RISEN, Flight, Spin
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -22,8 +23,9 @@ _ACTUATORS = {
 """Fields with the propellers' speeds by message type."""
 _VELOCITY = 0.5
 """rad/s or m/s."""
-_EFFORT = 1.0
-"""N m or N, if the joint has no effort limit."""
+_ACCELERATION = 5.0
+"""rad/s² or m/s², commanded by an effort beyond what holds a joint: the limit of a strong motor
+would accelerate a light link beyond all bounds."""
 _SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
 """s."""
 _STEPS = 20
@@ -64,8 +66,7 @@ def spins(
                     topic=info.name, joint=name, commanded=_VELOCITY, measured=speed, effort=False
                 )
     for info, joints in by_effort:
-        limits = [each.axis.effort for name in joints if (each := robot.joint(name)) is not None]
-        effort = min([each for each in limits if each], default=_EFFORT)
+        effort = min(_effort(world, model, robot, name) for name in joints)
         _, pushed = _moved(world, model, [(info, joints)], effort, (0.0, _PUSHING))
         _, pulled = _moved(world, model, [(info, joints)], -effort, (0.0, _PUSHING))
         for name in joints:
@@ -104,6 +105,14 @@ def _joints(info: TopicInfo, robot: RobotDescription) -> tuple[str, ...]:
         if topic is not None and joint is not None and info.name.endswith(topic.text.strip()):
             named.append(joint.text.strip())
     return tuple(dict.fromkeys(named))
+
+
+def _effort(world: World, model: Model, robot: RobotDescription, name: str) -> float:
+    """An effort that moves a joint, at most the joint's limit, N m or N."""
+    load, inertia = resistance(world, model, name)
+    joint = robot.joint(name)
+    limit = (joint.axis.effort if joint is not None else None) or math.inf
+    return min(load + _ACCELERATION * inertia, limit)
 
 
 def _moved(

@@ -58,6 +58,7 @@ _STANDING = frozenset(
         robot.JOINT_LINK_UNKNOWN,
         robot.UNBALANCED,
         robot.OVERLAPPING_COLLISIONS,
+        robot.JOINTS_UNDRIVEN,
     }
 )
 _JOINTS = frozenset(
@@ -182,6 +183,9 @@ def _of_drive(
     if robot.SKID_STEERING in factors:
         # Its ratio contains the stated separation.
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
+    if robot.SKID_STEERING in factors and factors[robot.SKID_STEERING][1] < ratio < 1:
+        # Fewer wheels than predicted carry the robot.
+        return factors[robot.SKID_STEERING][0]
     product = math.prod(factor for _, factor in factors.values())
     for each, factor in factors.values():
         if any(abs(ratio - one) <= _AGREES * abs(one) for one in (factor, product)):
@@ -201,7 +205,8 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
     if finding.code is robot.SKID_STEERING and turning:
         ratio = values.get("ratio")
         return ratio if isinstance(ratio, float) else None
-    if finding.code is robot.WHEELS_SWAPPED and turning:
+    if finding.code is robot.WHEELS_SWAPPED:
+        # Seen in the other direction, the robot drives backward instead.
         return -1.0
     stated, measured = values.get("stated"), values.get("measured")
     if not isinstance(stated, float) or not isinstance(measured, float) or stated * measured == 0:

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.codes.files import XACRO_NAME_UNKNOWN
+from cartwheel.corpus.launches.use import SUFFIXES, LaunchUse
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.loading import open_description, understand
 from cartwheel.errors import DescriptionError
 
-_SUFFIXES = (".xacro", ".urdf", ".sdf")
 _SEMANTICS = (".srdf", ".srdf.xacro")
 """MoveIt's files, which begin like a robot."""
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__", "worlds"})
@@ -61,7 +61,7 @@ class Survey:
 
 
 def survey(
-    folder: Path, *, package_path: Sequence[Path] = (), launched: Iterable[Path] = ()
+    folder: Path, *, package_path: Sequence[Path] = (), launches: Iterable[LaunchUse] = ()
 ) -> Survey:
     """Sorts the descriptions in a folder and its subfolders into robots and other files.
 
@@ -70,17 +70,20 @@ def survey(
     Args:
         folder: A folder, or a single description, which is a robot.
         package_path: Additional folders to search for packages.
-        launched: Descriptions that launch files name, which are neither parts nor scenery.
+        launches: Contents of launch files. The descriptions that they name are neither parts nor
+            scenery.
     """
     if folder.is_file():
         return Survey(robots=(folder,))
     files = list(_files(folder))
     texts = {path: text for path in files if (text := _text(path)) is not None}
-    used = frozenset(path.resolve() for path in launched)
+    launches = list(launches)
+    used = frozenset(each.description.resolve() for each in launches if each.description)
     whole = _Folder(
         texts=texts,
         included=_included(texts.values()),
         launched=used,
+        passed=frozenset(name for each in launches for name in each.arguments),
         parts=_included(text for path, text in texts.items() if path.resolve() in used),
         package_path=package_path,
     )
@@ -113,6 +116,8 @@ class _Folder:
     included: Sequence[re.Pattern[str]]
     """Patterns for the ends of the paths of included files."""
     launched: frozenset[Path]
+    passed: frozenset[str]
+    """Names of the arguments that launch files pass to descriptions."""
     package_path: Sequence[Path]
     parts: Sequence[re.Pattern[str]]
     """Patterns for the ends of the paths of files that launched descriptions include."""
@@ -162,6 +167,8 @@ class _Folder:
             return False
         if not isinstance(kind, str) or not isinstance(name, str):
             return False
+        if kind == "argument" and name in self.passed:
+            return True
         found = re.compile(
             _DEFINED.get(kind, r"(?!)").format(re.escape(name.removeprefix("xacro:"))), re.DOTALL
         )
@@ -192,7 +199,7 @@ def _files(folder: Path) -> Iterator[Path]:
             name for name in folders if not name.startswith(".") and name not in _SKIPPED
         )
         for name in sorted(names):
-            if name.endswith(_SUFFIXES) and not name.endswith(_SEMANTICS):
+            if name.endswith(SUFFIXES) and not name.endswith(_SEMANTICS):
                 yield Path(root, name)
 
 

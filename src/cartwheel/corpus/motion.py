@@ -13,6 +13,7 @@ from cartwheel.corpus.heading import heading
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.verdict import Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.devices.drives.drive import Drives
 from cartwheel.geometry import Pose, rotate
 from cartwheel.graph import TWIST_STAMPED, JointInput, TopicInfo
 from cartwheel.simulation.clock import NANOSECONDS
@@ -94,11 +95,12 @@ def drives(
         ahead, _ = _driven(world, model, robot, info, (forward, 0.0, speed_up))
         both = (forward if steered else 0.0, turn, speed_up)
         _, turned = _driven(world, model, robot, info, both)
+        drive = world.session.shared.get(Drives).of(info.subscribers)
         yield Drive(
             topic=info.name,
-            commanded=forward,
+            commanded=drive.commanded(forward, 0.0)[0] if drive is not None else forward,
             measured=ahead,
-            commanded_turn=turn,
+            commanded_turn=drive.commanded(*both[:2])[1] if drive is not None else turn,
             measured_turn=turned,
             turning="arc" if steered else "in place",
             limited=forward < VELOCITY or (turn < TURN and not steered),
@@ -111,8 +113,8 @@ def reaches(
 ) -> list[Reach]:
     """Commands all position-controlled joints at once and measures where they end.
 
-    `gains` contains the proportional gains of PID controllers with an effort output and without an
-    integral, by joint, in N m/rad or N/m.
+    `gains` contains the proportional gains of PID controllers with an effort output and a slow or
+    no integral, by joint, in N m/rad or N/m.
     """
     if not world.graph.joint_inputs.all():
         return []
@@ -139,15 +141,29 @@ def reaches(
     ]
 
 
+def yields(proportional: float, integral: float) -> bool:
+    """Whether the integral of a PID controller is too slow to correct an error within the test."""
+    return integral * _REACHING < proportional
+
+
 def _sag(world: World, model: Model, joint: str, gain: float) -> float:
-    """Error of a proportional controller that holds a joint against gravity, rad or m."""
-    if gain <= 0:
-        return 0.0
+    """Error of a proportional controller because of gravity and friction, rad or m."""
+    return resistance(world, model, joint)[0] / gain if gain > 0 else 0.0
+
+
+def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
+    """What resists the motion of a joint at rest.
+
+    Returns:
+        The load of gravity plus the friction, N m or N, and the inertia about the joint with all
+        joints at 0, kg m² or kg.
+    """
     simulation = world.session.simulation
     simulation.refresh()
-    number = simulation.engine.joint_id(model.name, joint)
-    load = simulation.data.qfrc_bias[simulation.model.jnt_dofadr[number]]
-    return abs(float(load)) / gain
+    engine, data = simulation.model, simulation.data
+    place = engine.jnt_dofadr[simulation.engine.joint_id(model.name, joint)]
+    load = abs(float(data.qfrc_bias[place])) + float(engine.dof_frictionloss[place])
+    return load, float(engine.dof_M0[place])
 
 
 def _driven(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -23,9 +24,14 @@ from cartwheel.description import load_robot
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.gz.joint_controller import (
+    JointPositionController,
+    JointPositionParameters,
+)
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles, for_robot, read_parameters
 from cartwheel.dialects.ros_control.suggestion import suggested
+from cartwheel.dialects.tags import read
 from cartwheel.dialects.world_plugins import BUILT_IN
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
@@ -217,24 +223,37 @@ def _moved(
         yield verdict
         verdict = replace(verdict, flights=tuple(commands.flights(world, model, robot)))
         yield verdict
-    verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot, _gains(started))))
+    verdict = replace(
+        verdict, reaches=tuple(motion.reaches(world, model, robot, _gains(robot, started)))
+    )
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started)))
 
 
-def _gains(started: Sequence[Controller]) -> dict[str, float]:
-    """Proportional gains of effort controllers without an integral, by joint."""
+def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:
+    """Proportional gains of PIDs with an effort output and a slow or no integral, by joint."""
     found: dict[str, float] = {}
     for controller in started:
         values = controller.settings.flat()
         for joint, interface in controller.interfaces.items():
-            gains = [
-                (values.get(f"{path}.p"), values.get(f"{path}.i", 0.0))
-                for path in ("pid", f"gains.{joint}", f"{joint}.pid")
-                if f"{path}.p" in values
-            ]
-            if interface == "effort" and gains and not gains[0][1]:
-                found[joint] = float(gains[0][0] or 0.0)
+            path = next(
+                (
+                    each
+                    for each in ("pid", f"gains.{joint}", f"{joint}.pid")
+                    if f"{each}.p" in values
+                ),
+                None,
+            )
+            if interface == "effort" and path is not None:
+                gain, integral = (values.get(f"{path}.{name}") or 0.0 for name in ("p", "i"))
+                if motion.yields(float(gain), float(integral)):
+                    found[joint] = float(gain)
+    for tag in robot.plugins:
+        if plugin_named(tag.filename) is JointPositionController:
+            with contextlib.suppress(PluginError):
+                config, _ = read(JointPositionParameters, tag.element)
+                if not config.velocity and motion.yields(config.p, config.i):
+                    found |= dict.fromkeys(config.joints, config.p)
     return found
 
 

@@ -106,8 +106,9 @@ class Reach:
     reached: float
     angular: bool
     sag: float = 0.0
-    """Error that follows from gravity and the controller's own gains, rad or m: the load divided by
-    the proportional gain of a PID controller with an effort output and without an integral."""
+    """Error that follows from gravity, friction and the controller's own gains, rad or m: the load
+    and the friction divided by the proportional gain of a PID controller with an effort output,
+    whose integral is 0 or takes more than 5 s."""
 
     @property
     def error(self) -> float:

@@ -22,8 +22,6 @@ from cartwheel.world.shapes import pose_arguments
 
 _CAMERA_AXES = np.array([[0.0, 0, -1], [-1, 0, 0], [0, 1, 0]])
 """Columns: MuJoCo's camera axes (right, up, back) in a sensor frame that looks along x."""
-_MOTOR_REFERENCE = (0.01, 1.0)
-_MOTOR_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 ROTOR_INERTIA = 1e6
 """kg m²; large enough that no load slows a rotor."""
 _STRONGEST = 1e6
@@ -94,8 +92,8 @@ def _add_rotor(spec: mujoco.MjSpec, entry: ModelEntry, motor: Motor) -> None:
     coupling = spec.add_tendon(
         name=name,
         frictionloss=min(limits, default=_STRONGEST),
-        solref_friction=list(_MOTOR_REFERENCE),
-        solimp_friction=list(_MOTOR_IMPEDANCE),
+        solref_friction=list(joints.STIFF_REFERENCE),
+        solimp_friction=list(joints.STIFF_IMPEDANCE),
     )
     coupling.wrap_joint(scoped(entry.name, motor.joint), 1.0)
     coupling.wrap_joint(name, -1.0)

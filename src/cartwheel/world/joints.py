@@ -14,10 +14,10 @@ from cartwheel.world.entry import ModelEntry, scoped
 
 _KIND = mujoco.mjtJoint
 _EQUALITY = mujoco.mjtEq
-_COUPLING_REFERENCE = (0.01, 1.0)
-"""solref of screws and gears: as stiff as the default time step allows."""
-_COUPLING_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""solimp: a nut under load has no visible slip."""
+STIFF_REFERENCE = (0.01, 1.0)
+"""solref of screws, gears, motors and joint friction: as stiff as the default time step allows."""
+STIFF_IMPEDANCE = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""solimp: a nut under load has no visible slip, and a joint that friction holds does not creep."""
 _LOCKED = 1e-6
 """Remaining range of a joint with equal limits on each side, rad or m."""
 _LOOP_ARM = 0.1
@@ -86,8 +86,8 @@ def couple(
         name1=follower,
         name2=leader,
         data=equality_data(offset, ratio),
-        solref=list(_COUPLING_REFERENCE),
-        solimp=list(_COUPLING_IMPEDANCE),
+        solref=list(STIFF_REFERENCE),
+        solimp=list(STIFF_IMPEDANCE),
     )
 
 
@@ -111,7 +111,7 @@ def join_models(spec: mujoco.MjSpec, joint: Joint) -> bool:
         return False
     made = _hold(spec, scoped("world", joint.name), joint.child, joint.parent, joint)
     for each in made:
-        each.solref, each.solimp = list(_COUPLING_REFERENCE), list(_COUPLING_IMPEDANCE)
+        each.solref, each.solimp = list(STIFF_REFERENCE), list(STIFF_IMPEDANCE)
     spec.add_exclude(bodyname1=joint.parent, bodyname2=joint.child)
     return True
 
@@ -152,8 +152,8 @@ def add_attachment(spec: mujoco.MjSpec, name: str) -> None:
         name1="world",
         name2=spec.worldbody.bodies[0].name,
         active=False,
-        solref=list(_COUPLING_REFERENCE),
-        solimp=list(_COUPLING_IMPEDANCE),
+        solref=list(STIFF_REFERENCE),
+        solimp=list(STIFF_IMPEDANCE),
         data=equality_data(*([0.0] * 10), 1.0),
     )
 
@@ -172,6 +172,8 @@ def _add_axis(body: Any, name: str, joint: Joint, axis: Axis) -> Any:
     )
     made.damping = [axis.damping, 0, 0]
     made.frictionloss = axis.friction
+    made.solref_friction = list(STIFF_REFERENCE)
+    made.solimp_friction = list(STIFF_IMPEDANCE)
     if axis.spring_stiffness:
         made.stiffness = [axis.spring_stiffness, 0, 0]
         made.springref = axis.spring_reference

@@ -21,6 +21,7 @@ from cartwheel.checks.rules.devices import (
     sensor_types,
     topics,
     transmissions,
+    undriven_joints,
     update_rates,
 )
 from cartwheel.checks.rules.files import missing_files, unused_definitions
@@ -78,6 +79,7 @@ RULES: tuple[Rule, ...] = tuple(
         missing_collisions,
         wheels_off_ground,
         balance,
+        undriven_joints,
         overlapping_collisions,
         blocked_views,
         update_rates,

@@ -150,8 +150,7 @@ def _survey(
             f"{folder} does not exist", code=NO_ROBOTS, values={"folder": str(folder)}
         )
     launches = launches_near(folder, package_path) if folder.is_dir() else None
-    launched = [use.description for use in launches or () if use.description is not None]
-    found = survey(folder, package_path=package_path, launched=launched)
+    found = survey(folder, package_path=package_path, launches=launches or ())
     if not found.robots:
         raise CartwheelError(
             f"{folder} contains no robot description",

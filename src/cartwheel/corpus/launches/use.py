@@ -15,7 +15,8 @@ UNKNOWN = "\0"
 """A character in texts of which a part is unknown."""
 DEEPEST = 6
 """Maximum nesting of included launch files."""
-_SUFFIXES = (".xacro", ".urdf", ".sdf")
+SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
+"""Ends of the names of descriptions."""
 _SPAWNERS = frozenset(
     {"spawn_model", "spawn_entity.py", "create", "gzserver", "gzclient", "gz_sim", "gazebo"}
 )
@@ -89,7 +90,7 @@ class Facts:
                     value, skip = words[index + 1], True
                 # Without the space before the next argument, both values are unknown.
                 arguments[name] = UNKNOWN if ":=" in value else value
-            elif file is None and word.endswith(_SUFFIXES):
+            elif file is None and word.endswith(SUFFIXES):
                 file = Path(word)
         self.add(file, arguments)
 

@@ -13,7 +13,7 @@ from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
 from cartwheel.devices.drives.steering import angle_of_turn, rim_factors, wheel_angles
-from cartwheel.devices.elementwise import Number, clamp, copysign
+from cartwheel.devices.elementwise import Number, clamp, copysign, tan
 from cartwheel.messages import message_class
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 
@@ -126,6 +126,13 @@ class AckermannDrive(Drive):
 
     def command(self, forward: float, sideways: float, turn: float) -> None:  # noqa: ARG002
         self._command = (forward, turn)
+
+    def commanded(self, forward: float, turn: float) -> tuple[float, float]:
+        config = self._config
+        if config.turn == "yaw rate":
+            return forward, turn
+        angle = clamp(reversed_angle(forward, turn), -config.max_steering, config.max_steering)
+        return forward, forward * tan(angle) / config.wheel_base
 
     def update(self, seconds: float) -> None:
         config = self._config

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +26,17 @@ class DriveConfig:
     """The odometry. Its rate is the publish rate of all topics."""
     joint_states: JointStatesConfig | None = None
     """The joint states; None: not published."""
+
+
+class Drives:
+    """The drives of a simulation, in the order in which they were created."""
+
+    def __init__(self) -> None:
+        self.all: list[Drive] = []
+
+    def of(self, nodes: Sequence[str]) -> Drive | None:
+        """The first drive of these nodes, such as the subscribers of a topic."""
+        return next((each for each in self.all if each.node in nodes), None)
 
 
 class Drive(Component):
@@ -52,6 +64,9 @@ class Drive(Component):
             self.part.schedule(0, before=self._watch)
         self.part.schedule(config.control_rate, before=self._control)
         self.part.schedule(config.odometry.rate, after=self._publish, active=self.wanted)
+        drives = self.shared.get(Drives).all
+        drives.append(self)
+        self._open.callback(drives.remove, self)
         self.reset()
 
     def reset(self) -> None:
@@ -70,6 +85,15 @@ class Drive(Component):
             turn: Yaw rate in rad/s, or a steering angle in rad: the drive defines it.
         """
         raise NotImplementedError
+
+    def commanded(self, forward: float, turn: float) -> tuple[float, float]:
+        """The velocity that a command without a sideways part asks for: m/s in x and rad/s.
+
+        Args:
+            forward: ``linear.x``, m/s.
+            turn: ``angular.z``, rad/s or rad.
+        """
+        return forward, turn
 
     def update(self, seconds: float) -> None:
         """Executes the command; `seconds` is the time since the last call, or 0."""

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from cartwheel.component import Scope
+from cartwheel.description.kinematics import link_poses
 from cartwheel.devices.drives.commanded_joint import Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
@@ -108,6 +109,22 @@ class TricycleDrive(Drive):
 
     def command(self, forward: float, sideways: float, turn: float) -> None:  # noqa: ARG002
         self._command = (forward, turn)
+
+    def commanded(self, forward: float, turn: float) -> tuple[float, float]:
+        angle = clamp(turn, -_QUARTER, _QUARTER)
+        return forward * math.cos(angle), forward * math.sin(angle) / self._wheel_base()
+
+    def _wheel_base(self) -> float:
+        """Distance from the steered wheel to the middle of the free wheels, m."""
+        config, description = self._config, self.part.description
+        poses = link_poses(description, {})
+        steered, left, right = (
+            poses[joint.child].position
+            for name in (config.steering, config.left, config.right)
+            if (joint := description.joint(name)) is not None
+        )
+        middle = [(a + b) / 2 for a, b in zip(left, right, strict=True)]
+        return math.dist(steered[:2], middle[:2])
 
     def update(self, seconds: float) -> None:
         config = self._config

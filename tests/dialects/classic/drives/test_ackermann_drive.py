@@ -19,6 +19,7 @@ from tests.devices.drives.carts import (
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Mesh
+from cartwheel.devices.drives.drive import Drives
 from cartwheel.geometry import Pose
 
 
@@ -33,6 +34,9 @@ def test_car_circles_about_one_point(make, cart, read):
     radius = base / math.tan(angle)
     assert circle(path(told)) == pytest.approx(radius, rel=0.03)
     assert turned(told) / 7.99 == pytest.approx(speed / radius, rel=0.03)
+    (drive,) = world.session.shared.get(Drives).all
+    assert drive.commanded(speed, angle) == pytest.approx((speed, speed / radius))
+    assert drive.commanded(-speed, angle) == pytest.approx((-speed, speed / radius))
     simulation = world.session.simulation
     left = simulation.joint_position("cart", "front_left_steering")
     right = simulation.joint_position("cart", "front_right_steering")

@@ -14,6 +14,7 @@ from tests.devices.drives.carts import (
 )
 
 from cartwheel.codes import devices
+from cartwheel.devices.drives.drive import Drives
 from cartwheel.messages import to_dict
 
 THREE = {"front": (0.3, 0.0), "left": (0.0, 0.15), "right": (0.0, -0.15)}
@@ -44,6 +45,9 @@ def test_tricycle_circles_about_its_rear_axle(make, cart, read, source):
     told = read(world, "/odom", 10.0)
     assert circle(path(told)) == pytest.approx(base / math.tan(angle), rel=0.03)
     assert turned(told) / 9.99 == pytest.approx(speed * math.sin(angle) / base, rel=0.03)
+    (drive,) = world.session.shared.get(Drives).all
+    expected = (speed * math.cos(angle), speed * math.sin(angle) / base)
+    assert drive.commanded(speed, angle) == pytest.approx(expected)
     truth = world.model("cart").pose
     if source == "world":
         assert where(told[-1])[:2] == pytest.approx((truth.x, truth.y), abs=0.01)
