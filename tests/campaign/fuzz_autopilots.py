@@ -10,6 +10,7 @@ from tests.devices.autopilots.ardupilot_client import servo_packet
 
 from cartwheel.devices.autopilots.ardupilot_packets import VehicleState, encode_binary, encode_json
 from cartwheel.devices.autopilots.conversation import Conversation
+from cartwheel.devices.autopilots.reports import Reports
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 
@@ -70,9 +71,7 @@ def run_one(data: bytes) -> None:
             port,  # type: ignore[arg-type]
             lock_step=lock_step,
             most_missed=3,
-            report=reports.append,
-            title="the plugin",
-            origin=None,
+            reports=Reports(reports.append, title="the plugin", origin=None),
         )
         while not port.empty:
             packet = conversation.next()

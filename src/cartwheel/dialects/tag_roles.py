@@ -24,6 +24,8 @@ Role = Literal[
     "rate",
     "topic",
     "namespace",
+    "tcp_port",
+    "udp_port",
 ]
 """Meaning of a tag.
 
@@ -35,6 +37,7 @@ Role = Literal[
 - ``rate``: how often per second the plugin does something.
 - ``topic``: a topic on which the plugin publishes; ``namespace``: the first part of its name,
   which defaults to the plugin's name.
+- ``tcp_port``, ``udp_port``: a port that the plugin opens.
 """
 WHEEL_ROLES: tuple[Role, ...] = ("left_wheel", "right_wheel", "left_wheels", "right_wheels")
 JOINT_ROLES: tuple[Role, ...] = (*WHEEL_ROLES, "joint")

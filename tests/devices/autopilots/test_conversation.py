@@ -5,6 +5,7 @@ from tests.devices.autopilots.ardupilot_client import servo_packet
 
 from cartwheel.codes import wires
 from cartwheel.devices.autopilots.conversation import Conversation
+from cartwheel.devices.autopilots.reports import Reports
 
 SITL, OTHER = ("127.0.0.1", 5000), ("127.0.0.1", 6000)
 
@@ -38,9 +39,7 @@ class Case:
             self.port,
             lock_step=lock_step,
             most_missed=most_missed,
-            report=self.reports.append,
-            title="the plugin",
-            origin=None,
+            reports=Reports(self.reports.append, title="the plugin", origin=None),
         )
 
     def next(self, *packets):

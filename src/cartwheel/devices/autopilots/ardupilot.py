@@ -18,6 +18,7 @@ from cartwheel.devices.autopilots.ardupilot_packets import (
 from cartwheel.devices.autopilots.channels import Channel, ChannelConfig
 from cartwheel.devices.autopilots.conversation import Conversation
 from cartwheel.devices.autopilots.datagrams import HOST, DatagramPort
+from cartwheel.devices.autopilots.reports import Reports
 from cartwheel.devices.inertial.unit import InertialUnit, InertialUnitConfig
 from cartwheel.devices.periodic import Elapsed
 from cartwheel.geometry import Pose, rotate
@@ -113,9 +114,7 @@ class ArduPilot(Component):
                 port,
                 lock_step=config.lock_step,
                 most_missed=config.most_missed,
-                report=self.part.report,
-                title=self.title,
-                origin=self.origin,
+                reports=Reports(self.part.report, title=self.title, origin=self.origin),
             )
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -19,10 +20,11 @@ class ChannelConfig:
     number: int
     """Index of the output in the autopilot's packets."""
     joint: str
-    """Joint to drive."""
-    kind: Literal["velocity", "position", "effort", "message"]
+    """Joint to drive. It may be empty for a message."""
+    kind: Literal["velocity", "position", "exact position", "effort", "message"]
     """Quantity of the command: velocity in rad/s or m/s, position in rad or m, or effort in N m or
-    N. A message is published on a topic instead."""
+    N. An exact position is reached regardless of the load. A message is published on a topic
+    instead."""
     topic: str = ""
     """Topic of the message (Float64)."""
     gains: PidGains | None = None
@@ -36,6 +38,10 @@ class ChannelConfig:
     """Command per output."""
     offset: float = 0.0
     """Is added to the output before the multiplication."""
+    constant: float = 0.0
+    """Is added to the command."""
+    most_error: float = math.inf
+    """Largest error of a position on which the controller acts, rad or m."""
     slowdown: float = 1.0
     """Commanded velocity divided by the velocity of the joint."""
 
@@ -51,7 +57,9 @@ class Channel(Component):
         super().__init__(scope)
         self.config = config
         part, origin = self.part, self.origin
-        self._joint = part.joint(config.joint, origin=origin)
+        self._joint = None
+        if config.joint or config.kind != "message":
+            self._joint = part.joint(config.joint, origin=origin)
         self._servo = self._publisher = None
         if config.kind == "message":
             self._publisher = self.advertise(config.topic, _FLOAT)
@@ -80,7 +88,12 @@ class Channel(Component):
 
     def set_output(self, output: float) -> None:
         """Sets the command from an output, which is usually between 0 and 1."""
-        self._command = self.config.multiplier * (output + self.config.offset)
+        config = self.config
+        self._command = config.multiplier * (output + config.offset) + config.constant
+
+    def set_command(self, command: float) -> None:
+        """Sets the command."""
+        self._command = command
 
     def switch_off(self) -> None:
         """No longer drives the joint."""
@@ -101,6 +114,8 @@ class Channel(Component):
             return
         if config.kind == "effort":
             servo.command_effort(command)
+        elif config.kind == "exact position":
+            servo.command_position(command)
         elif pid is None:
             servo.command_velocity(command / config.slowdown)
         else:
@@ -108,11 +123,13 @@ class Channel(Component):
             servo.command_effort(effort, damping=damping)
 
     def _effort(self, pid: Pid, command: float, seconds: float) -> DampedEffort:
-        joint, velocity = self._joint, self._joint.velocity
+        joint = self._joint
+        assert joint is not None
+        velocity = joint.velocity
         if self.config.kind == "velocity":
             effort = pid.velocity(command / self.config.slowdown, velocity, seconds)
         else:
-            effort = pid.position(
-                command - joint.position, seconds, target=command, lightness=joint.lightness
-            )
+            most = self.config.most_error
+            error = min(max(command - joint.position, -most), most)
+            effort = pid.position(error, seconds, target=command, lightness=joint.lightness)
         return pid.limited(effort, velocity)

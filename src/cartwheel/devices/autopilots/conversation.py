@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
-from collections.abc import Callable
 
 from cartwheel.codes import wires
 from cartwheel.devices.autopilots.ardupilot_packets import ServoPacket, decode
-from cartwheel.devices.autopilots.datagrams import Address, DatagramPort
-from cartwheel.errors import Code, Diagnostic, Origin, Severity, Value
+from cartwheel.devices.autopilots.datagrams import DatagramPort
+from cartwheel.devices.autopilots.reports import Address, Reports
 
-_WAIT = 0.01
-"""Wall time to wait for the next packet, s, as in Gazebo's plugin."""
-_MOST_WAITS = 100
+WAIT = 0.01
+"""Wall time to wait for the next packet, s, as in Gazebo's plugins."""
+MOST_WAITS = 100
 """Number of waits after which the connection is lost with lock step."""
 _MOST_DATAGRAMS = 64
 """Datagrams that are read during one wait."""
-_MOST_REPORTS = 10
-"""Reports of one kind, so that a program that repeats its mistakes cannot flood the terminal."""
-_WANTED = {
+_FAULTS = {
     "length": "has an invalid length",
     "magic": "begins with the wrong number",
     "number": "contains a number that is not finite",
@@ -39,28 +35,16 @@ class Conversation:
         most_missed: With lock step, number of waits after which the last state is sent again.
             Otherwise, number of consecutive steps without a packet after which the connection is
             lost.
-        report: Receives diagnostics.
-        title: Name of the plugin in messages.
-        origin: File and line of the plugin.
+        reports: Receives what happens on the port.
     """
 
     def __init__(
-        self,
-        port: DatagramPort,
-        *,
-        lock_step: bool,
-        most_missed: int,
-        report: Callable[[Diagnostic], None],
-        title: str,
-        origin: Origin | None,
+        self, port: DatagramPort, *, lock_step: bool, most_missed: int, reports: Reports
     ) -> None:
         self._port = port
         self._lock_step = lock_step
         self._most_missed = most_missed
-        self._report = report
-        self._title = title
-        self._origin = origin
-        self._reports: Counter[tuple[Code, str]] = Counter()
+        self._reports = reports
         self._peer: Address | None = None
         self._forget()
 
@@ -85,7 +69,7 @@ class Conversation:
                 return None
             waits += 1
             self._missed += 1
-            if self._lock_step and waits < _MOST_WAITS:
+            if self._lock_step and waits < MOST_WAITS:
                 if waits % (self._most_missed + 1) == 0:
                     # The state, or the packet that answered it, may be lost.
                     self._port.send(self._sent, self._peer)
@@ -114,17 +98,11 @@ class Conversation:
         assert self._peer is not None
         peer, self._peer = self._peer, None
         self._forget()
-        self._tell(
-            wires.AUTOPILOT_LOST,
-            "",
-            f"{self._title} has lost the connection to the autopilot at {_text(peer)}, so its "
-            "joints are no longer driven",
-            {"address": _text(peer)},
-        )
+        self._reports.lost(peer)
 
     def _read(self) -> ServoPacket | None:
         """Returns the next valid packet, or None after a short wait."""
-        end = time.monotonic() + (_WAIT if self._peer is not None else 0.0)
+        end = time.monotonic() + (WAIT if self._peer is not None else 0.0)
         newest: ServoPacket | None = None
         for _ in range(_MOST_DATAGRAMS):
             left = 0.0 if newest is not None else max(0.0, end - time.monotonic())
@@ -142,19 +120,13 @@ class Conversation:
         """Checks a packet, and connects its sender if no autopilot is connected."""
         packet = decode(data)
         if isinstance(packet, str):
-            self._ignore(packet, data, sender)
+            self._reports.ignored(packet, _FAULTS[packet], len(data), sender)
             return None
         if self._peer is None:
             self._peer = sender
-            self._tell(
-                wires.AUTOPILOT_CONNECTED,
-                "",
-                f"{self._title} is connected to the autopilot at {_text(sender)}",
-                {"address": _text(sender)},
-                severity="info",
-            )
+            self._reports.connected(sender)
         elif sender != self._peer:
-            self._ignore("sender", data, sender)
+            self._reports.ignored("sender", _FAULTS["sender"], len(data), sender)
             return None
         frame, before = packet.frame, self._frame
         if frame is not None and before is not None:
@@ -165,39 +137,11 @@ class Conversation:
                 return None
             missed = frame - before - 1
             if missed > 0:
-                self._tell(
+                self._reports.tell(
                     wires.AUTOPILOT_FRAMES_MISSED,
                     "",
-                    f"{self._title} has not received {missed} packets of the autopilot",
+                    f"{self._reports.title} has not received {missed} packets of the autopilot",
                     {"missed": missed},
                 )
         self._frame = frame
         return packet
-
-    def _ignore(self, reason: str, data: bytes, sender: Address) -> None:
-        self._tell(
-            wires.AUTOPILOT_PACKET_IGNORED,
-            reason,
-            f"{self._title} ignores a packet of {len(data)} bytes from {_text(sender)}, which "
-            f"{_WANTED[reason]}",
-            {"reason": reason, "address": _text(sender), "bytes": len(data)},
-        )
-
-    def _tell(
-        self,
-        code: Code,
-        kind: str,
-        message: str,
-        values: dict[str, Value],
-        *,
-        severity: Severity = "warning",
-    ) -> None:
-        self._reports[code, kind] += 1
-        if self._reports[code, kind] <= _MOST_REPORTS:
-            self._report(
-                code.diagnostic(message, origin=self._origin, values=values, severity=severity)
-            )
-
-
-def _text(address: Address) -> str:
-    return f"{address[0]}:{address[1]}"

@@ -6,10 +6,10 @@ import contextlib
 import select
 import socket
 
+from cartwheel.devices.autopilots.reports import Address
 from cartwheel.forks import keep_socket
 
 HOST = "127.0.0.1"
-Address = tuple[str, int]
 
 
 class DatagramPort:

@@ -32,6 +32,15 @@ def pressure_at(height: Number) -> Number:
     return SEA_LEVEL * power(maximum(1 - LAPSE * height / TEMPERATURE, 0.0), EXPONENT)
 
 
+def height_at(pressure: float) -> float:
+    """Returns the height in m above sea level of a positive air pressure in Pa.
+
+    It is the inverse of `pressure_at`.
+    """
+    height: float = TEMPERATURE / LAPSE * (1 - power(pressure / SEA_LEVEL, 1 / EXPONENT))
+    return height
+
+
 def pressure_by_qnh(altitude: Number, qnh: Number) -> Number:
     """Returns the air pressure at an altitude in m, in the unit of the pressure at sea level."""
     return qnh * power(maximum(1.0 - altitude / _SCALE_HEIGHT, 0.0), _QNH_EXPONENT)
@@ -55,6 +64,8 @@ class PressureSensorConfig:
     """Publish rate, Hz; 0: every step."""
     error: ErrorConfig
     """Error of the pressure, Pa."""
+    drift: float = 0.0
+    """Change of the measured pressure with time, Pa/s."""
 
 
 class PressureSensor(LinkSensor):
@@ -77,7 +88,8 @@ class PressureSensor(LinkSensor):
 
     def _measure(self) -> None:
         _, _, height = self._link.pose.apply(self._config.mount)
-        (pressure,) = self._error.add([pressure_at(self._config.elevation + height)])
+        drift = self._config.drift * self.part.seconds
+        (pressure,) = self._error.add([pressure_at(self._config.elevation + height) + drift])
         self._publisher.publish(self._FluidPressure(self._header(), pressure, self._variance))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import math
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -14,13 +13,13 @@ from cartwheel.devices.autopilots.channels import ChannelConfig
 from cartwheel.devices.autopilots.datagrams import HOST
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.makers.flying.ports import MOST_PORT, check_address
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.tags import SMALLEST, invalid, missing, read, tag, vector
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Pose
 
-_MOST_PORT = 65535
 _MOST_RANGES = 6
 """Rangefinders that ArduPilot's JSON interface supports."""
 _KINDS: dict[str, Literal["velocity", "position", "effort", "message"]] = {
@@ -76,7 +75,14 @@ class ArduPilotParameters:
         doc="Address on which packets are received. Only loopback addresses are supported: for "
         "any other address, the plugin receives packets on 127.0.0.1.",
     )
-    port: int = tag("fdm_port_in", default=9002, doc="UDP port on which packets are received.")
+    port: int = tag(
+        "fdm_port_in",
+        default=9002,
+        least=1,
+        most=MOST_PORT,
+        role="udp_port",
+        doc="UDP port on which packets are received.",
+    )
     listen: str = tag("listen_addr", default="", doc="No effect, as in Gazebo.")
     port_out: str = tag(
         "fdm_port_out",
@@ -165,10 +171,7 @@ class ArduPilotPlugin(Plugin[ArduPilotParameters]):
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element
-        self._check_address()
-        if not 0 < config.port <= _MOST_PORT:
-            place = self.place_of("fdm_port_in")
-            raise invalid("fdm_port_in", config.port, f"between 1 and {_MOST_PORT}", place)
+        check_address(self, "fdm_addr", config.address, program="SITL")
         self.check_not_negative("most_missed")
         controls = tuple(element.find_all("control")) or tuple(element.find_all("rotor"))
         if not controls:
@@ -191,22 +194,6 @@ class ArduPilotPlugin(Plugin[ArduPilotParameters]):
                 ),
             )
         )
-
-    def _check_address(self) -> None:
-        address = self.config.address.strip()
-        try:
-            loopback = address == "localhost" or ipaddress.ip_address(address).is_loopback
-        except ValueError:
-            loopback = False
-        if not loopback:
-            self.warn(
-                devices.PLUGIN_PARAMETER_UNSUPPORTED,
-                f'<fdm_addr> "{address}" is not a loopback address, so packets are received on '
-                f"{HOST}",
-                at=self.place_of("fdm_addr"),
-                hint="Run SITL on this computer.",
-                values={"parameter": "fdm_addr", "value": address},
-            )
 
     def _imu(self) -> Sensor:
         """Returns the IMU sensor.

@@ -100,7 +100,7 @@ class RotorsImu(Plugin[RotorsImuParameters]):
                 self.scope,
                 ImuConfig(
                     unit=InertialUnitConfig(link=config.link, mount=Pose()),
-                    topic=config.topic,
+                    topic=self._topic(),
                     frame=config.link,
                     rate=0.0,
                     rate_error=self._error(
@@ -119,6 +119,9 @@ class RotorsImu(Plugin[RotorsImuParameters]):
                 ),
             )
         )  # fmt: skip
+
+    def _topic(self) -> str:
+        return self.config.topic
 
     def _error(
         self, kind: str, density: float, walk: float, time: float, bias: float

@@ -1,0 +1,1 @@
+"""Plugins of flying robots: ArduPilot, PX4, RotorS and other quadcopters."""
