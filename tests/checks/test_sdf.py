@@ -220,3 +220,37 @@ def test_an_element_without_what_could_not_be_read_is_not_reported_as_well(
     usual = {each.identity for each in bench.report(model(arm), "m.sdf").findings}
     report = bench.report(model(arm).replace(right, wrong, 1), "m.sdf")
     assert [each.code.name for each in report.findings if each.identity not in usual] == [code]
+
+
+def vehicle(name, port, filename, tag):
+    """A model with a flight controller; without a port, it is the default."""
+    stated = f"<{tag}>{port}</{tag}>" if port else ""
+    text = model(f'<plugin name="p" filename="{filename}">\n{stated}</plugin>')
+    inside = text.removeprefix('<sdf version="1.6"><model name="m">').removesuffix("</sdf>")
+    return f'<model name="{name}">{inside}'
+
+
+@pytest.mark.parametrize(
+    ("plugin", "default", "free"),
+    [
+        (("libgazebo_mavlink_interface.so", "mavlink_tcp_port"), 4560, 4561),
+        (("ArduPilotPlugin", "fdm_port_in"), 9002, 9012),
+    ],
+)
+@pytest.mark.parametrize("stated", [True, False])
+def test_two_vehicles_on_one_port_are_found(bench, plugin, default, free, stated):
+    filename, tag = plugin
+    one = vehicle("one", "", filename, tag)
+    other = vehicle("other", default if stated else "", filename, tag)
+    (found,) = bench.find(world(one + other), "port-used-twice", "w.world")
+    assert found.values["port"] == default
+    if stated:
+        assert found.instead == f"<{tag}>{free}</{tag}>"
+    apart = vehicle("other", free, filename, tag)
+    assert not bench.find(world(one + apart), "port-used-twice", "w.world")
+
+
+def test_tcp_and_udp_ports_do_not_clash(bench):
+    one = vehicle("one", 7000, "libgazebo_mavlink_interface.so", "mavlink_tcp_port")
+    other = vehicle("other", 7000, "ArduPilotPlugin", "fdm_port_in")
+    assert not bench.find(world(one + other), "port-used-twice", "w.world")

@@ -252,3 +252,9 @@ CONTROLLERS_NOT_FOUND = Code(
     "warning",
     "no file contains controllers for a robot with a controller manager",
 )
+PORT_USED_TWICE = Code(
+    "CW482",
+    "port-used-twice",
+    "error",
+    "two vehicles use the same port for their flight controllers",
+)

@@ -306,5 +306,6 @@ def test_two_vehicles_fly_on_two_ports(make):
 def test_a_long_time_step_is_reported(make):
     world = make.world(step=0.005)
     world.session.spawn(drone(make, free_port()))
+    world.run(0.005)
     (slow,) = reported(world, devices.RATE_ABOVE_PHYSICS)
     assert slow.values == {"rate": 250.0, "physics": 200.0}

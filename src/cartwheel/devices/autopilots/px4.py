@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.codes import wires
+from cartwheel.codes import devices, wires
 from cartwheel.component import Component, Scope
 from cartwheel.devices.air.propeller import ACTUATORS
 from cartwheel.devices.autopilots.channels import Channel, ChannelConfig
@@ -186,6 +186,14 @@ class Px4(Component):
         """Opens the port: at the first step, so that a model that is only loaded opens none."""
         self._is_open = True
         config = self._config
+        physics = 1e9 / self.part.period_ns(0)
+        if physics < RATE:
+            self.warn(
+                devices.RATE_ABOVE_PHYSICS,
+                f"PX4 requires {RATE:g} states per second, but the physics rate is {physics:g} Hz",
+                hint=f"Set <max_step_size> of the world to {1 / RATE:g}.",
+                values={"rate": RATE, "physics": physics},
+            )
         try:
             port = StreamPort(config.port)
         except OSError as error:

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal, TypeVar
 from cartwheel.codes import devices
 from cartwheel.description.model import Element, PluginTag, Sensor
 from cartwheel.devices.autopilots.channels import ChannelConfig
-from cartwheel.devices.autopilots.px4 import RATE, MotorConfig, Px4, Px4Config
+from cartwheel.devices.autopilots.px4 import MotorConfig, Px4, Px4Config
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.makers.flying.ports import MOST_PORT, check_address
@@ -27,8 +27,6 @@ _KINDS: dict[str, Literal["velocity", "position", "exact position", "message"]] 
     "position_kinematic": "exact position",
     "position_gztopic": "message",
 }
-_TIME_STEP = 0.004
-"""Longest time step that PX4 allows, s."""
 _ANOTHER_WAY = "No effect: PX4 is connected by TCP."
 
 
@@ -204,15 +202,6 @@ class Px4Interface(Plugin[Px4Parameters]):
                     hint=f"Write <{name}>{right}</{name}>.",
                     values={"parameter": name, "value": str(name != "use_tcp").lower()},
                 )
-        step = self.part.period_ns(0) * 1e-9
-        if step > _TIME_STEP * (1 + 1e-9):
-            self.warn(
-                devices.RATE_ABOVE_PHYSICS,
-                f"PX4 requires {RATE:g} states per second, but the physics rate is {1 / step:g} Hz",
-                at=self.origin,
-                hint=f"Set <max_step_size> of the world to {_TIME_STEP:g}.",
-                values={"rate": RATE, "physics": 1 / step},
-            )
 
     def _receivers(self) -> tuple[tuple[str, str], ...]:
         """Returns the topics of the satellite receivers."""
