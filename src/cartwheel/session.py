@@ -105,6 +105,7 @@ class Session:
         self.types.report = self.simulation.report
         for diagnostic in early:
             self.simulation.report(diagnostic)
+        self.graph.on_demand = self.simulation.note_subscribers
         self.graph.on_error = self._subscriber_failed
         self.simulation.faults.strict = strict
         self._clock = self.graph.advertise(
@@ -238,9 +239,7 @@ class Session:
                 )
 
     def _schedule_clock(self, rate: float) -> Task:
-        return self.simulation.schedule(
-            rate, after=self._publish_clock, active=lambda: self._clock.wanted
-        )
+        return self.simulation.schedule(rate, after=self._publish_clock, topics=[self._clock])
 
     def _publish_clock(self) -> None:
         message: Any = message_class("rosgraph_msgs/msg/Clock")(

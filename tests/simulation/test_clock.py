@@ -2,23 +2,24 @@
 
 import math
 from fractions import Fraction
+from types import SimpleNamespace
 
 import pytest
 
-from cartwheel.simulation.clock import NANOSECONDS, Schedule, Task, to_ns
+from cartwheel.simulation.clock import NANOSECONDS, Schedule, Task, always, to_ns
 
 STEP = 5_000_000
 
 
-def task(rate, *, order=0):
-    return Task(rate=rate, before=None, after=None, active=lambda: True, order=order)
+def task(rate, *, order=0, active=lambda: True, topics=None):
+    return Task(rate=rate, before=None, after=None, active=active, topics=topics, order=order)
 
 
 def due_steps(rate, steps, *, step_ns=STEP):
     """The steps on which a task alone is due."""
     schedule, step, found = Schedule([task(rate)], step_ns=step_ns), 0, []
     while step < steps:
-        tasks, upcoming = schedule.at(step)
+        tasks, _, upcoming = schedule.at(step)
         if tasks:
             found.append(step)
         step = upcoming
@@ -55,8 +56,7 @@ def test_a_step_that_is_no_round_number():
 def test_a_schedule_looked_at_late_goes_on_with_the_next():
     """Steps that were missed, as after a spawn far into a run, are not made up for."""
     schedule = Schedule([task(50)], step_ns=STEP)
-    tasks, upcoming = schedule.at(1002)
-    assert (list(tasks), upcoming) == ([], 1004)
+    assert schedule.at(1002) == ((), (), 1004)
 
 
 def test_tasks_due_together_come_in_their_order():
@@ -65,6 +65,30 @@ def test_tasks_due_together_come_in_their_order():
     assert schedule.at(0)[0] == (other, early, late)
     assert schedule.at(2)[0] == (early,)
     assert schedule.at(4)[0] == (early, late)
+
+
+def test_tasks_that_only_read_the_state_are_listed_apart():
+    asked, reads = task(50), task(100, order=1, active=always)
+    schedule = Schedule([reads, asked], step_ns=STEP)
+    assert schedule.at(0) == ((asked,), (reads,), 2)
+    assert schedule.at(2) == ((), (reads,), 4)
+
+
+def test_a_task_sleeps_while_none_of_its_topics_has_subscribers():
+    """Topics can be added later."""
+    topics = [SimpleNamespace(wanted=False)]
+    rare, sleeper = task(50), task(0, order=1, topics=topics)
+    assert Schedule([rare, sleeper], step_ns=STEP).at(0) == ((rare,), (), 4)
+    topics.append(SimpleNamespace(wanted=True))
+    assert Schedule([rare, sleeper], step_ns=STEP).at(0) == ((rare, sleeper), (), 1)
+
+
+def test_a_task_without_topics_sleeps_until_its_owner_wakes_it():
+    sleeper = task(0)
+    sleeper.asleep = True
+    assert Schedule([sleeper], step_ns=STEP).at(0)[:2] == ((), ())
+    sleeper.asleep = False
+    assert Schedule([sleeper], step_ns=STEP).at(0)[:2] == ((sleeper,), ())
 
 
 @pytest.mark.parametrize("rate", [30, 29.97, 7, 100, 0.3, 0, 1000])

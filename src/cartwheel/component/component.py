@@ -20,7 +20,7 @@ from cartwheel.graph import (
 from cartwheel.graph.reconfigure import OnChange
 from cartwheel.graph.reconfigure import Value as Parameter
 from cartwheel.messages.limits import unfit
-from cartwheel.simulation import LinkHandle, Part
+from cartwheel.simulation import LinkHandle
 from cartwheel.simulation.limits import STRONGEST, number
 
 
@@ -46,18 +46,17 @@ class Component:
 
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
+        self.part = scope.part
+        """The model's part of the simulation."""
         self._open = contextlib.ExitStack()
         if scope.holder is None:
             scope.holder = self
         else:
             scope.holder._open.callback(self._open.close)
         self._devices: list[Component] = []
+        self.publishers: list[Publisher] = []
+        """The component's own topics, without those of its devices."""
         self._crowded = False
-
-    @property
-    def part(self) -> Part:
-        """The model's part of the simulation."""
-        return self.scope.part
 
     @property
     def graph(self) -> Graph:
@@ -135,6 +134,7 @@ class Component:
         publisher = self.graph.advertise(
             name, type_name, node=self.node, rate=rate, qos=qos, checked=self._foreign
         )
+        self.publishers.append(publisher)
         return self.keep(publisher)
 
     def subscribe(

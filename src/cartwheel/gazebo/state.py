@@ -181,16 +181,13 @@ class StateTopics:
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._ModelStates = message_class("gazebo_msgs/msg/ModelStates")
         self._LinkStates = message_class("gazebo_msgs/msg/LinkStates")
-        self._task = simulation.schedule(0, after=self._publish, active=self._wanted)
+        self._task = simulation.schedule(0, after=self._publish, topics=[self._models, self._links])
 
     def close(self) -> None:
         """Removes the topics."""
         self._simulation.unschedule(self._task)
         self._models.close()
         self._links.close()
-
-    def _wanted(self) -> bool:
-        return self._models.wanted or self._links.wanted
 
     def _publish(self) -> None:
         if self._version != self._simulation.scene.version:

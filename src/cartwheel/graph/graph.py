@@ -76,6 +76,9 @@ class Graph:
         the graph."""
         self.on_error: OnError = _raise
         """Called on the owner's thread with the exception of a subscription's callback."""
+        self.on_demand: Callable[[], None] = _nothing
+        """Called when a publisher's `wanted` changes, on any thread, with the graph locked. It must
+        return at once."""
         self.on_change: list[Callable[[], None]] = []
         """Called after each change that `changed` counts, on any thread, with the graph locked.
         The functions must return at once."""
@@ -92,6 +95,7 @@ class Graph:
             self.post = _refuse
             self.post_read = None
             self.on_change.clear()
+            self.on_demand = _nothing
             self.on_error = _raise
             self.joint_inputs.close()
             for table in (self._topics, self._services, self._actions):
@@ -383,9 +387,18 @@ class Graph:
     def _changed(self, topic: Topic) -> None:
         topic.callbacks = tuple(subscription.callback for subscription in topic.subscriptions)
         # The publishers cache the value, because they check it several times per message.
+        demand = False
         for publisher in topic.publishers:
-            publisher.wanted = bool(topic.subscriptions) or publisher.qos == "latched"
+            wanted = bool(topic.subscriptions) or publisher.qos == "latched"
+            demand = demand or wanted != publisher.wanted
+            publisher.wanted = wanted
+        if demand:
+            self.on_demand()
         self._notify()
+
+
+def _nothing() -> None:
+    """What an unused graph calls."""
 
 
 def _at_once(function: Callable[[], None]) -> None:

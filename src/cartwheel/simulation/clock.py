@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
+from typing import Protocol
 
 NANOSECONDS = 1_000_000_000
 _NEVER = 1 << 40
@@ -27,6 +28,13 @@ def always() -> bool:
     return True
 
 
+class Topic(Protocol):
+    """A topic on which a task publishes."""
+
+    wanted: bool
+    """Whether it has subscribers."""
+
+
 class Task:
     """A task that runs at a rate, at fixed multiples of its period since time zero.
 
@@ -38,10 +46,21 @@ class Task:
         before: Writes controls, before the step that starts at the due time; or None.
         after: Reads the state at the due time and publishes; or None.
         active: Whether the task has anything to do; called when the task is due.
+        topics: While none of them has subscribers, the task is not due. None: always due.
         order: Tasks due at the same time run in this order.
     """
 
-    __slots__ = ("active", "after", "before", "order", "owner", "period_ns", "rate")
+    __slots__ = (
+        "active",
+        "after",
+        "asleep",
+        "before",
+        "order",
+        "owner",
+        "period_ns",
+        "rate",
+        "topics",
+    )
 
     def __init__(
         self,
@@ -50,12 +69,16 @@ class Task:
         before: Callable[[], None] | None,
         after: Callable[[], None] | None,
         active: Callable[[], bool],
+        topics: Collection[Topic] | None = None,
         order: int,
     ) -> None:
         self.rate = rate
         self.before = before
         self.after = after
         self.active = active
+        self.topics = topics
+        self.asleep = False
+        """Whether the task is not due until its owner wakes it."""
         self.order = order
         self.owner: object = None
         """The plugin that owns the task; None for the simulation's own tasks."""
@@ -70,6 +93,14 @@ class Task:
         """Deactivates the task and clears its references."""
         self.before = self.after = None
         self.active = always
+        self.topics = None
+
+    @property
+    def awake(self) -> bool:
+        """Whether the task can be due."""
+        if self.asleep:
+            return False
+        return self.topics is None or any(topic.wanted for topic in self.topics)
 
     def period(self, step_ns: int) -> Fraction:
         """Period in steps; at least 1."""
@@ -102,31 +133,36 @@ class Ticks:
         return -((self._offset - count * self._numerator) // self._denominator)
 
 
+Due = tuple[tuple[Task, ...], tuple[Task, ...], int]
+"""Due tasks that write controls or have to be asked whether they are active; due tasks that only
+read the state; and the next step with due tasks."""
+
+
 class Schedule:
     """Tasks by period, with a cached cycle of all periods.
 
     Each step needs one table lookup, regardless of the number of tasks and periods.
 
     Args:
-        tasks: In any order.
+        tasks: In any order. Only those that are awake are scheduled.
         step_ns: Length of a step.
         origin_ns: The time of step zero.
     """
 
     def __init__(self, tasks: Iterable[Task] = (), *, step_ns: int = 1, origin_ns: int = 0) -> None:
-        ordered = sorted(tasks, key=lambda task: task.order)
+        ordered = sorted((task for task in tasks if task.awake), key=lambda task: task.order)
         self._tasks = [(task, task.period(step_ns)) for task in ordered]
         offset = Fraction(origin_ns, step_ns)
         self._ticks = [
             Ticks(period, offset) for period in {period: None for _, period in self._tasks}
         ]
         self._cycle = math.lcm(*(ticks.cycle for ticks in self._ticks))
-        self._met: dict[int, tuple[tuple[Task, ...], int]] = {}
-        """Cache by step in the cycle: due tasks, and the number of steps to the next due tasks."""
-        self._together: dict[int, tuple[Task, ...]] = {}
+        self._met: dict[int, Due] = {}
+        """Cache by step in the cycle; the step of the next due tasks is relative."""
+        self._together: dict[int, tuple[tuple[Task, ...], tuple[Task, ...]]] = {}
         """Cache of tasks that are due together, by a bit mask of their periods."""
 
-    def at(self, step: int) -> tuple[tuple[Task, ...], int]:
+    def at(self, step: int) -> Due:
         """The tasks due at a step, in order, and the next step with due tasks."""
         place = step % self._cycle
         met = self._met.get(place)
@@ -135,10 +171,10 @@ class Schedule:
             if len(self._met) >= _KEPT:
                 self._met.clear()
             met = self._met[place] = self._look(step)
-        tasks, gap = met
-        return tasks, step + gap
+        first, last, gap = met
+        return first, last, step + gap
 
-    def _look(self, step: int) -> tuple[tuple[Task, ...], int]:
+    def _look(self, step: int) -> Due:
         due, bit, upcoming = 0, 1, step + _NEVER
         for ticks in self._ticks:
             if ticks.due(step) == step:
@@ -148,6 +184,8 @@ class Schedule:
         tasks = self._together.get(due)
         if tasks is None:
             periods = {ticks.period for i, ticks in enumerate(self._ticks) if due >> i & 1}
-            tasks = tuple(task for task, period in self._tasks if period in periods)
+            together = [task for task, period in self._tasks if period in periods]
+            last = tuple(t for t in together if t.before is None and t.active is always)
+            tasks = tuple(t for t in together if t not in last), last
             self._together[due] = tasks
-        return tasks, upcoming - step
+        return *tasks, upcoming - step

@@ -12,6 +12,8 @@ from cartwheel.simulation.engine import Engine
 
 _INTERVAL_NS = 50_000_000
 """Simulation time between two checks."""
+_FIRST_NS = 10_000_000
+"""Simulation time until the first check of a new state."""
 _RECOVERIES = 20
 """Maximum number of recovery reports: remote commands may cause divergence repeatedly."""
 
@@ -22,20 +24,20 @@ class Watch:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._guard = Guard()
-        self.due = 0
+        self.due = 1
         """The step of the next check."""
         self._recovered = 0
         """`Engine.commanded` at the last recovery."""
         self._recoveries = 0
 
     def bind(self, model: Any, data: Any) -> None:
-        """Continues with a newly compiled model and its data; the next check is due immediately."""
-        self.due = 0
+        """Continues with a newly compiled model and its data; the next check is due soon."""
+        self._wait(_FIRST_NS)
         self._guard.bind(model, data)
 
     def forget(self) -> None:
-        """Discards the stored states after a reset; the next check is due immediately."""
-        self.due = 0
+        """Discards the stored states after a reset; the next check is due soon."""
+        self._wait(_FIRST_NS)
         self._guard.forget()
 
     def check(self, origin_of: Callable[[str], Origin | None]) -> None:
@@ -47,10 +49,13 @@ class Watch:
         Raises:
             DivergedError: The state is no longer finite.
         """
-        self.due = self._engine.step + max(1, _INTERVAL_NS // self._engine.step_ns)
+        self._wait(_INTERVAL_NS)
         for message in self._guard.check(origin_of):
             self._engine.report(world_codes.PHYSICS_WARNING.diagnostic(message))
         self._guard.keep()
+
+    def _wait(self, time_ns: int) -> None:
+        self.due = self._engine.step + max(1, time_ns // self._engine.step_ns)
 
     def begin_recovery(self) -> bool:
         """Whether an external action since the last recovery may have caused the divergence.

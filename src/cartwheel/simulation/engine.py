@@ -12,7 +12,7 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
-from cartwheel.simulation.clock import Task, to_ns
+from cartwheel.simulation.clock import Task, Topic, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
 from cartwheel.simulation.sensing.rendering import Renderer
@@ -91,6 +91,7 @@ class Engine:
         before: Callable[[], None] | None,
         after: Callable[[], None] | None,
         active: Callable[[], bool],
+        topics: Collection[Topic] | None,
     ) -> Task:
         """Creates a task that runs after all earlier tasks; see `Task`."""
         return Task(
@@ -98,6 +99,7 @@ class Engine:
             before=before,
             after=after,
             active=active,
+            topics=topics,
             order=next(self._orders),
         )
 
@@ -146,7 +148,7 @@ class Engine:
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_comVel(self.model, self.data)
 
-    def advance(self, count: int, *, forwarded: bool) -> None:
+    def advance(self, count: int, forwarded: bool) -> None:
         """Runs simulation steps.
 
         Args:

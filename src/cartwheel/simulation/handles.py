@@ -201,9 +201,9 @@ class JointHandle:
         """Resolves the name in a compiled model."""
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(self.model_name, self.name))
         self._data = data
-        self._qpos, self._qvel = data.qpos, data.qvel
-        # Returns Python floats, and is cheaper than indexing.
-        self._position_at, self._velocity_at = data.qpos.item, data.qvel.item
+        # Memory views contain Python floats, and are cheaper than arrays.
+        self._qpos: Any = memoryview(data.qpos)
+        self._qvel: Any = memoryview(data.qvel)
         rotor = scoped(self.model_name, self.name, ROTOR)
         self._motor = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._position_index = int(model.jnt_qposadr[self.id])
@@ -229,8 +229,7 @@ class JointHandle:
     @property
     def position(self) -> float:
         """Position, rad or m."""
-        read = self._position_at
-        position: float = read(self._position_index)
+        position: float = self._qpos[self._position_index]
         return position
 
     @position.setter
@@ -240,8 +239,7 @@ class JointHandle:
     @property
     def velocity(self) -> float:
         """Velocity, rad/s or m/s."""
-        read = self._velocity_at
-        velocity: float = read(self._velocity_index)
+        velocity: float = self._qvel[self._velocity_index]
         return velocity
 
     @velocity.setter
@@ -263,8 +261,7 @@ class JointHandle:
 
         Computed only from the joint's position, so it is exact anywhere in the world.
         """
-        read = self._position_at
-        moved = read(self._position_index) - self._zero
+        moved = self._qpos[self._position_index] - self._zero
         x, y, z = self._axis
         if self._slides:
             dx, dy, dz = rotate(self._rest_turn, (x * moved, y * moved, z * moved))
@@ -327,13 +324,14 @@ class MotorHandle:
         self.motor = motor
         self.target = 0.0
         # Until the model is compiled, commands are only stored.
-        self._qvel, self._dof = np.zeros(1), 0
+        self._qvel: Any = [0.0]
+        self._dof = 0
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
         name = scoped(self.model_name, self.motor.joint, ROTOR)
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
-        self._qvel, self._dof = data.qvel, int(model.jnt_dofadr[self.id])
+        self._qvel, self._dof = memoryview(data.qvel), int(model.jnt_dofadr[self.id])
         self.command(self.target)
 
     @property

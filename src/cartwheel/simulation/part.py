@@ -86,7 +86,9 @@ class Part(Requests):
 
     def reschedule(self, task: Task, rate: float) -> Task:
         """Replaces a task with one at a different rate; the given task becomes invalid."""
-        made = self._engine.task(rate, before=task.before, after=task.after, active=task.active)
+        made = self._engine.task(
+            rate, before=task.before, after=task.after, active=task.active, topics=task.topics
+        )
         made.order, made.owner = task.order, task.owner
         self.tasks[self.tasks.index(task)] = made
         for callback in self._engine.on_tasks:

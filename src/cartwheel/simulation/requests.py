@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from cartwheel.errors import (
     UnknownNameError,
 )
 from cartwheel.geometry import Array, Pose
-from cartwheel.simulation.clock import Task, always
+from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
@@ -88,9 +88,10 @@ class Requests:
         before: Callable[[], None] | None = None,
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
+        topics: Collection[Topic] | None = None,
     ) -> Task:
         """Schedules callbacks at a rate in Hz; 0 is every step. See `Task`."""
-        task = self._engine.task(rate, before=before, after=after, active=active)
+        task = self._engine.task(rate, before=before, after=after, active=active, topics=topics)
         self.tasks.append(task)
         return task
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
+from operator import attrgetter
 from typing import Any
 
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, DivergedError
-from cartwheel.simulation.clock import Task, always
+from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
 from cartwheel.simulation.limits import check_steps
@@ -17,6 +18,8 @@ from cartwheel.simulation.models.resident import Attach
 from cartwheel.simulation.snapshot import RunState, Snapshot
 from cartwheel.simulation.world_changes import adjust
 from cartwheel.world.additions import omitted
+
+_order = attrgetter("order")
 
 
 class Simulation(Models):
@@ -105,28 +108,36 @@ class Simulation(Models):
         engine, forces, faults = self.engine, self.forces, self.faults
         population = self._population
         separation, watch = population.separation, population.watch
+        commands, running = self.commands, RunState.RUNNING
         self.owner = threading.get_ident()
         left = engine.steps_until(target_ns)
         while left > 0:
-            if not self.commands.empty():
+            if not commands.empty():
                 rewinds = engine.rewinds
                 self.drain()
                 if engine.rewinds != rewinds:
                     return
-            if self.run_state is not RunState.RUNNING and not self.steps_allowed:
+            if self.run_state is not running and not self.steps_allowed:
                 return
             change = forces.serve() if forces.active else None
-            due, forwarded = self._serve()
-            if change is not None:
-                due = min(due, change)
-            # Recomputed, because a task may have changed the step length.
-            left = engine.steps_until(target_ns)
-            single = separation.roots or faults.pending is not None
-            count = 1 if single else min(left, due - engine.step)
+            if population.subscribers_changed:
+                population.gather_tasks()
+            first, last, due = population.schedule.at(engine.step)
+            forwarded = False
+            if first or last:
+                forwarded = self._serve(first, last)
+                # Recomputed, because a task may have changed the step length.
+                left = engine.steps_until(target_ns)
+            if change is not None and change < due:
+                due = change
+            # Without tasks, commands still do not wait longer than until the next check.
+            count = min(left, due - engine.step, watch.due - engine.step)
+            if separation.roots or faults.pending is not None:
+                count = 1
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
-            engine.advance(count, forwarded=forwarded)
+            engine.advance(count, forwarded)
             left -= count
             if separation.roots:
                 separation.limit(engine.model, engine.data)
@@ -135,36 +146,38 @@ class Simulation(Models):
             if faults.pending is not None:
                 faults.raise_pending()
 
-    def _serve(self) -> tuple[int, bool]:
-        """Runs the tasks that are due now.
+    def _serve(self, first: Sequence[Task], last: Sequence[Task]) -> bool:
+        """Runs due tasks; see `Schedule`.
 
         Returns:
-            The step of the next due task, and whether a forward pass was made for tasks that read
-            the state. The physics would compute the same pass next.
+            Whether a forward pass was made for tasks that read the state. The physics would compute
+            the same pass next.
         """
-        tasks, upcoming = self._population.schedule.at(self.engine.step)
-        afters = []
-        for task in tasks:
-            active, before, after = task.active, task.before, task.after
+        readers: list[Task] = []
+        for task in first:
+            active, before = task.active, task.before
             try:
                 if active is always or active():
                     if before is not None:
                         before()
-                    if after is not None:
-                        afters.append(task)
+                    if task.after is not None:
+                        readers.append(task)
             except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
                 self.faults.task_failed(task, error)
-        if afters:
-            self.engine.forward()
-            for task in afters:
-                after = task.after
-                try:
-                    # None if the plugin was disabled in the meantime.
-                    if after is not None:
-                        after()
-                except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
-                    self.faults.task_failed(task, error)
-        return upcoming, bool(afters)
+        if readers:
+            last = sorted((*readers, *last), key=_order)
+        if not last:
+            return False
+        self.engine.forward()
+        for task in last:
+            after = task.after
+            try:
+                # None if the plugin was disabled in the meantime.
+                if after is not None:
+                    after()
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
+                self.faults.task_failed(task, error)
+        return True
 
     def step(self, count: int = 1) -> None:
         """Queues `count` single steps of a paused simulation.
@@ -250,12 +263,17 @@ class Simulation(Models):
         before: Callable[[], None] | None = None,
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
+        topics: Collection[Topic] | None = None,
     ) -> Task:
         """Schedules callbacks of the world, independent of models, at a rate in Hz; see `Task`."""
-        task = self.engine.task(rate, before=before, after=after, active=active)
+        task = self.engine.task(rate, before=before, after=after, active=active, topics=topics)
         self._population.world_tasks.append(task)
         self._population.gather_tasks()
         return task
+
+    def note_subscribers(self) -> None:
+        """Lets tasks sleep or wake before the next step, by their topics. Thread-safe."""
+        self._population.subscribers_changed = True
 
     def unschedule(self, task: Task) -> None:
         """Removes a task of `schedule`."""

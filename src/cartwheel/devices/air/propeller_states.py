@@ -47,11 +47,7 @@ class PropellerJointState(Component):
             )
             if topic is not None
         ]
-        self.part.schedule(
-            0,
-            after=self._publish,
-            active=lambda: any(publisher.wanted for publisher, _ in self._outputs),
-        )
+        self.part.schedule(0, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         for publisher, quantity in self._outputs:
@@ -92,9 +88,7 @@ class PropellerStates(Component):
         self._JointState = message_class(_JOINT_STATE)
         self._speeds = self.advertise(config.speed_topic, ACTUATORS)
         self._states = self.advertise(config.joint_topic, _JOINT_STATE)
-        part.schedule(
-            0, after=self._publish, active=lambda: self._speeds.wanted or self._states.wanted
-        )
+        part.schedule(0, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         head, empty = header(self.part.time_ns, self._frame), np.zeros(0)

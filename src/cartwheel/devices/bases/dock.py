@@ -89,7 +89,7 @@ class IrReceivers(_DockSensor):
         self._receivers = config.receivers
         self._IrOpcode = message_class(_OPCODE)
         self._publisher = self.advertise(config.topic, _OPCODE, qos="sensor")
-        self.part.schedule(config.rate, after=self._update, active=lambda: self._publisher.wanted)
+        self.part.schedule(config.rate, after=self._update, topics=self.publishers)
 
     def _update(self) -> None:
         seen = self._measure()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from cartwheel.component import Component, Scope
 from cartwheel.devices.elementwise import Number, where
 from cartwheel.devices.rays.scan import Scanner, ScannerConfig
 from cartwheel.geometry import quat_conjugate, rotate
+from cartwheel.graph import Publisher
 from cartwheel.messages import header, message_class
 
 _HAZARD = "irobot_create_msgs/msg/HazardDetection"
@@ -28,10 +30,12 @@ class _HazardSensor(Component):
         super().__init__(scope)
         self._HazardDetection = message_class(_HAZARD)
         self._publisher = self.advertise(topic, _HAZARD, qos="sensor")
-        self.part.schedule(rate, after=self._update, active=self._active)
+        self.part.schedule(rate, after=self._update, topics=self._topics)
 
-    def _active(self) -> bool:
-        return self._publisher.wanted
+    @property
+    def _topics(self) -> Sequence[Publisher] | None:
+        """The topics without whose subscribers the sensor sleeps; None: it never sleeps."""
+        return self.publishers
 
     def _update(self) -> None:
         raise NotImplementedError
@@ -143,9 +147,10 @@ class WheelDropSensor(_HazardSensor):
         super().reset()
         self._dropped = False
 
-    def _active(self) -> bool:
+    @property
+    def _topics(self) -> Sequence[Publisher] | None:
         # The hysteresis must not depend on whether there are subscribers.
-        return True
+        return None
 
     def _update(self) -> None:
         self._dropped = dropped(self._joint.position, self._config.threshold, before=self._dropped)

@@ -38,7 +38,7 @@ class IrIntensity(Component):
         self._publisher = self.advertise(
             config.topic, _MESSAGE, rate=config.rate or None, qos="sensor"
         )
-        self.part.schedule(config.rate, after=self._publish, active=lambda: self._publisher.wanted)
+        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         value = intensity(nearest(self._scanner), self._scanner.pattern.maximum)

@@ -81,7 +81,7 @@ class KobukiSensors(Component):
         self._core = self.advertise(
             config.namespace + "sensors/core", "kobuki_msgs/msg/SensorState", rate=rate
         )
-        self.part.schedule(config.rate, after=self._sense, active=self._sensed)
+        self.part.schedule(config.rate, after=self._sense, topics=self.publishers)
         self.reset()
 
     def reset(self) -> None:
@@ -89,9 +89,6 @@ class KobukiSensors(Component):
         self._cliff = dict.fromkeys(_SIDES, False)
         self._pressed = dict.fromkeys(_SIDES, False)
         self._dropped = dict.fromkeys(("left", "right"), False)
-
-    def _sensed(self) -> bool:
-        return any(each.wanted for each in (self._imu, self._core, *self._events.values()))
 
     def _sense(self) -> None:
         if self._imu.wanted:

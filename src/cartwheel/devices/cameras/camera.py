@@ -76,6 +76,7 @@ class Camera(Component):
             _IDLE_RATE if self._triggered else config.rate,
             after=self._publish_once if self._triggered else self._publish,
             active=(lambda: self._pending > 0) if self._triggered else self._wanted,
+            topics=None if self._triggered else self.publishers,
         )
 
     def _set_rate(self, rate: float) -> None:

@@ -76,7 +76,7 @@ class LogicalCamera(Component):
         self._publisher = self.advertise(
             config.topic, _IMAGE, rate=config.rate or None, qos="sensor"
         )
-        self.part.schedule(config.rate, after=self._publish, active=lambda: self._publisher.wanted)
+        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         camera = self._link.pose @ self._config.pose

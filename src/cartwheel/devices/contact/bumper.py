@@ -48,7 +48,7 @@ class Bumper(Component):
         self._publisher = self.advertise(
             config.topic, "gazebo_msgs/msg/ContactsState", rate=config.rate or None
         )
-        self.part.schedule(config.rate, after=self._publish, active=lambda: self._publisher.wanted)
+        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         pairs: dict[tuple[str, str], list[Contact]] = {}

@@ -123,7 +123,7 @@ class FrameSpring(Component):
         self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
         self._publisher = self.advertise("/tf", "tf2_msgs/msg/TFMessage")
         part.schedule(0, before=self._pull)
-        part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
+        part.schedule(0, after=self._publish, topics=self.publishers)
 
     def reset(self) -> None:
         """Removes the force and the target."""

@@ -57,7 +57,7 @@ class WrenchSensor(Component):
         self._publisher = self.advertise(
             config.topic, WRENCH_STAMPED, rate=config.rate or None, qos=config.qos
         )
-        self.part.schedule(config.rate, after=self._publish, active=lambda: self._publisher.wanted)
+        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         values = self._load.measure()

@@ -162,10 +162,6 @@ class AckermannDrive(Drive):
     def motion(self) -> Motion:
         return self._reckoning.motion() if self._config.encoded else super().motion()
 
-    def wanted(self) -> bool:
-        own = (self._distance, self._angle)
-        return super().wanted() or any(each is not None and each.wanted for each in own)
-
     def publish(self, time_ns: int) -> None:
         super().publish(time_ns)
         if self._distance is not None and self._distance.wanted:

@@ -63,7 +63,9 @@ class Drive(Component):
             self._timeout = config.timeout
             self.part.schedule(0, before=self._watch)
         self.part.schedule(config.control_rate, before=self._control)
-        self.part.schedule(config.odometry.rate, after=self._publish, active=self.wanted)
+        owners = (self, self._odometry, self._joint_states)
+        topics = [topic for each in owners if each is not None for topic in each.publishers]
+        self.part.schedule(config.odometry.rate, after=self._publish, topics=topics)
         drives = self.shared.get(Drives).all
         drives.append(self)
         self._open.callback(drives.remove, self)
@@ -103,12 +105,6 @@ class Drive(Component):
         """Returns pose and velocity for the odometry: by default, those in the world."""
         return planar_motion(self._base)
 
-    def wanted(self) -> bool:
-        """Whether one of the topics has subscribers."""
-        if self._odometry is not None and self._odometry.wanted():
-            return True
-        return self._joint_states is not None and self._joint_states.wanted()
-
     def publish(self, time_ns: int) -> None:
         """Publishes on the topics that have subscribers."""
         if self._joint_states is not None and self._joint_states.wanted():
@@ -127,10 +123,9 @@ class Drive(Component):
             self.command(0.0, 0.0, 0.0)
 
     def _control(self) -> None:
-        now = self.part.time_ns
-        seconds = 0.0 if self._updated_ns is None else (now - self._updated_ns) * 1e-9
+        now, before = self.part.time_ns, self._updated_ns
         self._updated_ns = now
-        self.update(seconds)
+        self.update(0.0 if before is None else (now - before) * 1e-9)
 
     def _publish(self) -> None:
         self.publish(self.part.time_ns)

@@ -35,7 +35,7 @@ class PlanarDrive(Component):
             self._base = self.link_or_root(config.odometry.base)
             self._odometry = self.add(Odometry(scope, config.odometry))
             rate = config.odometry.rate
-            self.part.schedule(rate, after=self._publish, active=self._odometry.wanted)
+            self.part.schedule(rate, after=self._publish, topics=self._odometry.publishers)
 
     def _publish(self) -> None:
         self._odometry.publish(self.part.time_ns, *planar_motion(self._base))

@@ -61,7 +61,7 @@ class SuctionCup(Component):
         part.schedule(
             0, before=self._grip, active=lambda: self._on and self._attachment.held is None
         )
-        part.schedule(0, after=self._publish, active=lambda: self._publisher.wanted)
+        part.schedule(0, after=self._publish, topics=self.publishers)
 
     def reset(self) -> None:
         """Switches the cup off."""

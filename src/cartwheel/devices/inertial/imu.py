@@ -101,7 +101,7 @@ class Imu(Component):
         if config.bias_topic is not None:
             self._biases = self.advertise(config.bias_topic, _IMU, rate=rate)
         self._offer_services()
-        part.schedule(config.rate, after=self._measure, active=self._wanted)
+        part.schedule(config.rate, after=self._measure, topics=self.publishers)
 
     def reset(self) -> None:
         """Starts new drifts."""
@@ -149,10 +149,6 @@ class Imu(Component):
         if self._rate is not None:
             self._rate.put((0.0, 0.0, 0.0))
         return message_class(f"{_EMPTY}_Response")()
-
-    def _wanted(self) -> bool:
-        biases = self._biases
-        return self._publisher.wanted or (biases is not None and biases.wanted)
 
     def _measure(self) -> None:
         config, unit = self._config, self._unit

@@ -52,7 +52,7 @@ class JointStates(Component):
     def schedule(self) -> None:
         """Publishes at the rate from now on, while the topic has subscribers."""
         self.part.schedule(
-            self._rate, after=lambda: self.publish(self.part.time_ns), active=self.wanted
+            self._rate, after=lambda: self.publish(self.part.time_ns), topics=self.publishers
         )
 
     def wanted(self) -> bool:

@@ -93,9 +93,7 @@ class WheelSlip(Component):
         if config.topic is not None:
             self._WheelSlip = message_class(_MESSAGE)
             self._publisher = self.advertise(config.topic, _MESSAGE, rate=config.rate or None)
-            self.part.schedule(
-                config.rate, after=self._publish, active=lambda: self._publisher.wanted
-            )
+            self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
         if config.reconfigured_as is not None:
             self.reconfigure(config.reconfigured_as, _PARAMETERS, self._on_change)
 

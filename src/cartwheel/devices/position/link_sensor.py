@@ -48,8 +48,7 @@ class LinkSensor(Component):
         self._frame = self.frame(config.frame)
         self._error = sensor_error(self.part, config.error)
         self._rate = config.rate
-        self._publishers: list[Publisher] = []
-        self.part.schedule(config.rate, after=self._measure, active=self._wanted)
+        self.part.schedule(config.rate, after=self._measure, topics=self.publishers)
 
     def reset(self) -> None:
         """Starts a new drift."""
@@ -62,12 +61,7 @@ class LinkSensor(Component):
 
     def _offer(self, topic: str, kind: str, qos: Qos = "sensor") -> Publisher:
         """Advertises one of the sensor's topics."""
-        publisher = self.advertise(topic, kind, rate=self._rate or None, qos=qos)
-        self._publishers.append(publisher)
-        return publisher
-
-    def _wanted(self) -> bool:
-        return any(publisher.wanted for publisher in self._publishers)
+        return self.advertise(topic, kind, rate=self._rate or None, qos=qos)
 
     def _header(self) -> Any:
         return header(self.part.time_ns, self._frame)

@@ -81,7 +81,7 @@ class ModelPoses(Component):
         self.part.schedule(
             rate,
             after=lambda: self._publish(publisher, transforms),
-            active=lambda: publisher.wanted,
+            topics=[publisher],
         )
 
     def _publish(self, publisher: Publisher, transforms: list[_Transform]) -> None:

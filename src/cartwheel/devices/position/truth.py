@@ -69,7 +69,7 @@ class GroundTruth(Component):
         self._reference = part.link(config.reference) if config.reference is not None else None
         self._rotation = quat_from_rpy(*config.rotation)
         self._odometry = self.add(Odometry(scope, config.odometry))
-        part.schedule(config.odometry.rate, after=self._publish, active=self._odometry.wanted)
+        part.schedule(config.odometry.rate, after=self._publish, topics=self._odometry.publishers)
 
     def _publish(self) -> None:
         config, link = self._config, self._link
@@ -150,10 +150,11 @@ class BaseTruth(Component):
         self._config = config
         self._link = self.part.link(config.link, origin=self.origin)
         self._outputs = [self.add(Odometry(scope, output)) for output in config.outputs]
-        self.part.schedule(config.rate, after=self._publish, active=self._wanted)
-
-    def _wanted(self) -> bool:
-        return any(output.wanted() for output in self._outputs)
+        self.part.schedule(
+            config.rate,
+            after=self._publish,
+            topics=[each for output in self._outputs for each in output.publishers],
+        )
 
     def _publish(self) -> None:
         config = self._config

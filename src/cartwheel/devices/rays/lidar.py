@@ -44,13 +44,7 @@ class Lidar(Component):
             )
             for output in config.outputs
         ]
-        self.part.schedule(rate, after=self._publish, active=self._wanted)
-
-    def _wanted(self) -> bool:
-        for _, publisher in self._outputs:  # noqa: SIM110 - any() costs more than the answer
-            if publisher.wanted:
-                return True
-        return False
+        self.part.schedule(rate, after=self._publish, topics=self.publishers)
 
     def _publish(self) -> None:
         moment = header(self.part.time_ns, self._frame)

@@ -70,7 +70,7 @@ class RangeFinder(Component):
         self._publisher = self.advertise(
             config.topic, "sensor_msgs/msg/Range", rate=config.rate or None, qos="sensor"
         )
-        self.part.schedule(config.rate, after=self._publish, active=lambda: self._publisher.wanted)
+        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
 
     def reset(self) -> None:
         """Starts a new drift."""

@@ -66,9 +66,9 @@ class Guard:
         Raises:
             DivergedError: The state is no longer finite.
         """
-        # A non-finite value makes the sum non-finite: cheaper than checking each value.
-        with np.errstate(over="ignore", invalid="ignore"):
-            size = self._qpos.dot(self._qpos) + self._qvel.dot(self._qvel)
+        # A non-finite value makes the sum non-finite: cheaper than checking each value. Unlike
+        # NumPy, MuJoCo does not warn of an overflow.
+        size = mujoco.mju_dot(self._qpos, self._qpos) + mujoco.mju_dot(self._qvel, self._qvel)
         if not size < _HUGE**2:
             raise self._diverged(place_of)
         counts = self._counts.tolist()

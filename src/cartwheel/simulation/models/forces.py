@@ -64,11 +64,8 @@ class Forces:
         self._wrenches: dict[int, Array] = {}
         self._efforts: dict[int, Array] = {}
         """Current pushes by body and by degree of freedom."""
-
-    @property
-    def active(self) -> bool:
+        self.active = False
         """Whether `serve` has anything to do."""
-        return bool(self._pushes or self._wrenches or self._efforts)
 
     def wrench(
         self,
@@ -128,6 +125,7 @@ class Forces:
     def bind(self) -> None:
         """Recomputes all forces after the engine's state was replaced, which cleared them."""
         self._wrenches, self._efforts, self._due = {}, {}, 0
+        self.active = bool(self._pushes)
 
     def serve(self) -> int:
         """Sets the forces for the step that begins now.
@@ -158,6 +156,7 @@ class Forces:
         _exchange(engine.data.xfrc_applied, self._wrenches, wrenches)
         _exchange(engine.data.qfrc_applied.reshape(-1, 1), self._efforts, efforts)
         self._wrenches, self._efforts = wrenches, efforts
+        self.active = bool(self._pushes or wrenches or efforts)
         self._due = engine.step + steady
         return self._due
 
@@ -178,6 +177,7 @@ class Forces:
             )
         )
         self._due = 0
+        self.active = True
         engine.commanded += 1
 
     def _keep(self, wanted: Callable[[Push], bool]) -> None:

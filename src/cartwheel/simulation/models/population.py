@@ -47,6 +47,8 @@ class Population:
         self.world_tasks: list[Task] = []
         """Tasks that belong to no model and no plugin."""
         self.schedule = Schedule()
+        self.subscribers_changed = False
+        """Whether tasks may have to sleep or wake. Other threads may set it."""
         self._version = 0
         self._added: tuple[Added, ...] = ()
         """What was added to the descriptions of the compiled models."""
@@ -182,6 +184,7 @@ class Population:
 
     def gather_tasks(self) -> None:
         """Creates a new schedule after tasks or the step length changed."""
+        self.subscribers_changed = False
         tasks = [task for resident in self.everyone() for task in resident.part.tasks]
         self.schedule = Schedule(
             [*self.world_tasks, *tasks],
