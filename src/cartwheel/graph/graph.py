@@ -76,9 +76,8 @@ class Graph:
         the graph."""
         self.on_error: OnError = _raise
         """Called on the owner's thread with the exception of a subscription's callback."""
-        self.on_demand: Callable[[], None] = _nothing
-        """Called when a publisher's `wanted` changes, on any thread, with the graph locked. It must
-        return at once."""
+        self.on_demand: Callable[[], None] = lambda: None
+        """Called when `wanted` of a publisher changes; otherwise like a function of `on_change`."""
         self.on_change: list[Callable[[], None]] = []
         """Called after each change that `changed` counts, on any thread, with the graph locked.
         The functions must return at once."""
@@ -95,17 +94,13 @@ class Graph:
             self.post = _refuse
             self.post_read = None
             self.on_change.clear()
-            self.on_demand = _nothing
+            self.on_demand = lambda: None
             self.on_error = _raise
             self.joint_inputs.close()
             for table in (self._topics, self._services, self._actions):
                 table.clear()
             for topic in topics:
-                topic.publishers = ()
-                topic.subscriptions = ()
-                topic.callbacks = ()
-                topic.latched = None
-                topic.failed = _raise
+                topic.forget()
             self.static_transforms.forget()
         for box in boxes:
             box.close()
@@ -385,20 +380,9 @@ class Graph:
             callback()
 
     def _changed(self, topic: Topic) -> None:
-        topic.callbacks = tuple(subscription.callback for subscription in topic.subscriptions)
-        # The publishers cache the value, because they check it several times per message.
-        demand = False
-        for publisher in topic.publishers:
-            wanted = bool(topic.subscriptions) or publisher.qos == "latched"
-            demand = demand or wanted != publisher.wanted
-            publisher.wanted = wanted
-        if demand:
+        if topic.update():
             self.on_demand()
         self._notify()
-
-
-def _nothing() -> None:
-    """What an unused graph calls."""
 
 
 def _at_once(function: Callable[[], None]) -> None:

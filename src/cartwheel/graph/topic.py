@@ -77,6 +77,25 @@ class Topic:
             dropped=tuple(subscription.dropped() for subscription in self.subscriptions),
         )
 
+    def update(self) -> bool:
+        """Updates the callbacks and `Publisher.wanted`; returns whether the latter has changed.
+
+        Publishers cache the value, because they check it several times per message.
+        """
+        self.callbacks = tuple(subscription.callback for subscription in self.subscriptions)
+        changed = False
+        for publisher in self.publishers:
+            wanted = bool(self.subscriptions) or publisher.qos == "latched"
+            changed = changed or wanted != publisher.wanted
+            publisher.wanted = wanted
+        return changed
+
+    def forget(self) -> None:
+        """Clears all references when the graph is closed."""
+        self.publishers, self.subscriptions, self.callbacks = (), (), ()
+        self.latched = None
+        self.failed = _raise
+
     def deliver(self, message: Any) -> None:
         """Delivers a message to every subscriber. Call it on the owner's thread."""
         for callback in self.callbacks:
@@ -207,3 +226,7 @@ class Service:
     handler: Handler
     node: str
     threaded: bool = False
+
+
+def _raise(*call: Any) -> None:
+    raise call[-1]
