@@ -49,6 +49,17 @@ def load(text: str) -> Any:
     return yaml.load(text, Loader=loader())  # noqa: S506 (a SafeLoader with bounds)
 
 
+def fault(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> tuple[str, int]:
+    """Returns why a file cannot be read as YAML, as a sentence, and the line; 0 if unknown."""
+    if isinstance(error, OSError):
+        return f"the file cannot be read: {error.strerror or error}", 0
+    if isinstance(error, UnicodeDecodeError):
+        return "the file is not a text file", 0
+    mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None)
+    text = f"the file is not valid YAML{f': {problem}' if problem else ''}"
+    return text, mark.line + 1 if mark is not None else 0
+
+
 @lru_cache(maxsize=1)
 def loader() -> type[yaml.SafeLoader]:
     """A `yaml.SafeLoader` class with limits, for ``yaml.load`` and ``yaml.compose``.

@@ -9,6 +9,7 @@ import numpy as np
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.odometry import Odometry, OdometryConfig
+from cartwheel.devices.transforms import transform_stamped
 from cartwheel.geometry import Array, Quat, quat_multiply, quat_normalize
 from cartwheel.messages import header, message_class
 
@@ -76,9 +77,8 @@ class PoseSensor(Component):
         )
         self._classes = {
             name: message_class(f"geometry_msgs/msg/{name}")
-            for name in ("Pose", "Point", "Quaternion", "PoseWithCovariance", "Vector3",
-                         "PoseWithCovarianceStamped", "PointStamped", "Transform",
-                         "TransformStamped")
+            for name in ("Pose", "Point", "Quaternion", "PoseWithCovariance",
+                         "PoseWithCovarianceStamped", "PointStamped")
         }  # fmt: skip
         self._others = {
             kind: self.advertise(topic, f"geometry_msgs/msg/{kind}")
@@ -126,11 +126,7 @@ class PoseSensor(Component):
                 head, classes["PoseWithCovariance"](pose, self._covariance)
             ),
             "PointStamped": classes["PointStamped"](head, pose.position),
-            "TransformStamped": classes["TransformStamped"](
-                head,
-                self._frames[1],
-                classes["Transform"](classes["Vector3"](x, y, z), pose.orientation),
-            ),
+            "TransformStamped": transform_stamped(head, self._frames[1], (x, y, z), turn),
         }
         for kind in wanted:
             self._others[kind].publish(messages[kind])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.bases.hazards import nearest
 from cartwheel.devices.rays.scan import Scanner, ScannerConfig
-from cartwheel.messages import header, message_class
+from cartwheel.devices.topic_sensor import TopicSensor
+from cartwheel.messages import message_class
 
 _MESSAGE = "irobot_create_msgs/msg/IrIntensity"
 _BRIGHTEST = 3500.0
@@ -27,23 +28,18 @@ class IrIntensityConfig:
     """Publish rate, Hz; 0: every step."""
 
 
-class IrIntensity(Component):
+class IrIntensity(TopicSensor):
     """Publishes the intensity of the light that the nearest obstacle reflects."""
 
     def __init__(self, scope: Scope, config: IrIntensityConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         self._scanner = Scanner(self.part, config.scanner)
-        self._frame = self.frame(config.frame)
         self._IrIntensity = message_class(_MESSAGE)
-        self._publisher = self.advertise(
-            config.topic, _MESSAGE, rate=config.rate or None, qos="sensor"
-        )
-        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
+        self._publisher = self._offer(config.topic, _MESSAGE)
 
-    def _publish(self) -> None:
+    def _measure(self) -> None:
         value = intensity(nearest(self._scanner), self._scanner.pattern.maximum)
-        head = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._IrIntensity(head, int(value)))
+        self._publisher.publish(self._IrIntensity(self._header(), int(value)))
 
 
 def intensity(distance: float, maximum: float) -> float:

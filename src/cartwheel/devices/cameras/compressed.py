@@ -22,10 +22,26 @@ _FORMATS = ("jpeg", "png")
 _INVERSE = 1
 """Value of the header of compressed depths that selects inverse quantisation."""
 
+
+def _switch(name: str, *, default: bool, description: str) -> ReconfigureParameter:
+    return ReconfigureParameter(name=name, type="bool", default=default, description=description)
+
+
+def _number(
+    name: str, default: float, minimum: float, maximum: float, description: str
+) -> ReconfigureParameter:
+    return ReconfigureParameter(
+        name=name,
+        type="int" if isinstance(default, int) else "double",
+        default=default,
+        minimum=minimum,
+        maximum=maximum,
+        description=description,
+    )
+
+
 PARAMETERS = (
-    ReconfigureParameter(
-        name="enable", type="bool", default=True, description="Publish compressed images"
-    ),
+    _switch("enable", default=True, description="Publish compressed images"),
     ReconfigureParameter(
         name="format",
         type="str",
@@ -33,43 +49,22 @@ PARAMETERS = (
         description="Compression format",
         edit_method=choices(*_FORMATS, description="JPEG is lossy, PNG is lossless"),
     ),
-    ReconfigureParameter(
-        name="jpeg_quality",
-        type="int",
-        default=80,
-        minimum=1,
-        maximum=100,
-        description="JPEG quality; 100 is the best",
+    _number("jpeg_quality", 80, 1, 100, "JPEG quality; 100 is the best"),
+    _switch("jpeg_progressive", default=False, description="Progressive JPEG"),
+    _switch("jpeg_optimize", default=False, description="Smaller but slower JPEG"),
+    _number(
+        "jpeg_restart_interval",
+        0,
+        0,
+        65535,
+        "Blocks between JPEG restart markers; 0 for no markers",
     ),
-    ReconfigureParameter(
-        name="jpeg_progressive", type="bool", default=False, description="Progressive JPEG"
-    ),
-    ReconfigureParameter(
-        name="jpeg_optimize", type="bool", default=False, description="Smaller but slower JPEG"
-    ),
-    ReconfigureParameter(
-        name="jpeg_restart_interval",
-        type="int",
-        default=0,
-        minimum=0,
-        maximum=65535,
-        description="Blocks between JPEG restart markers; 0 for no markers",
-    ),
-    ReconfigureParameter(
-        name="png_level",
-        type="int",
-        default=9,
-        minimum=1,
-        maximum=9,
-        description="PNG compression level; 9 gives the smallest images",
-    ),
+    _number("png_level", 9, 1, 9, "PNG compression level; 9 gives the smallest images"),
 )
 """Names, types, defaults and limits are those of compressed_image_transport."""
 
 DEPTH_PARAMETERS = (
-    ReconfigureParameter(
-        name="enable", type="bool", default=True, description="Publish compressed depths"
-    ),
+    _switch("enable", default=True, description="Publish compressed depths"),
     ReconfigureParameter(
         name="format",
         type="str",
@@ -77,30 +72,9 @@ DEPTH_PARAMETERS = (
         description="Compression format of depths",
         edit_method=choices("png", "rvl", description="Both are lossless"),
     ),
-    ReconfigureParameter(
-        name="depth_max",
-        type="double",
-        default=10.0,
-        minimum=1.0,
-        maximum=100.0,
-        description="Maximum depth, m",
-    ),
-    ReconfigureParameter(
-        name="depth_quantization",
-        type="double",
-        default=100.0,
-        minimum=1.0,
-        maximum=150.0,
-        description="Depth at which the quantisation step is 1 m",
-    ),
-    ReconfigureParameter(
-        name="png_level",
-        type="int",
-        default=1,
-        minimum=1,
-        maximum=9,
-        description="PNG compression level; 9 gives the smallest images",
-    ),
+    _number("depth_max", 10.0, 1.0, 100.0, "Maximum depth, m"),
+    _number("depth_quantization", 100.0, 1.0, 150.0, "Depth at which the quantisation step is 1 m"),
+    _number("png_level", 1, 1, 9, "PNG compression level; 9 gives the smallest images"),
 )
 """Names, types, defaults and limits are those of compressed_depth_image_transport."""
 

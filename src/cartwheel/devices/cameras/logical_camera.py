@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
+from cartwheel.devices.topic_sensor import TopicSensor
 from cartwheel.geometry import Pose, Vec3
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 _IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
 
@@ -52,7 +53,7 @@ def in_view(
     return near <= x <= far and abs(y) <= half_width * x and abs(z) <= half_height * x
 
 
-class LogicalCamera(Component):
+class LogicalCamera(TopicSensor):
     """Publishes the models whose origin is in view, each with its pose relative to the camera.
 
     Models do not occlude each other.
@@ -63,22 +64,18 @@ class LogicalCamera(Component):
     """
 
     def __init__(self, scope: Scope, config: LogicalCameraConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         self._config = config
         self._half_width = math.tan(config.horizontal_fov / 2)
         self._half_height = self._half_width / config.aspect_ratio
         self._link = self.part.link(config.link)
-        self._frame = self.frame(config.frame)
         self._Image, self._Model = message_class(_IMAGE), message_class(f"{_IMAGE}Model")
         self._Pose = message_class("geometry_msgs/msg/Pose")
         self._Point = message_class("geometry_msgs/msg/Point")
         self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._publisher = self.advertise(
-            config.topic, _IMAGE, rate=config.rate or None, qos="sensor"
-        )
-        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
+        self._publisher = self._offer(config.topic, _IMAGE)
 
-    def _publish(self) -> None:
+    def _measure(self) -> None:
         camera = self._link.pose @ self._config.pose
         to_camera = camera.inverse()
         relative = ((name, to_camera @ pose) for name, pose in self.part.models().items())
@@ -87,8 +84,7 @@ class LogicalCamera(Component):
             for name, pose in relative
             if self._sees(pose.position)
         ]
-        head = header(self.part.time_ns, self._frame)
-        self._publisher.publish(self._Image(head, self._pose_message(camera), models))
+        self._publisher.publish(self._Image(self._header(), self._pose_message(camera), models))
 
     def _sees(self, position: Vec3) -> bool:
         config = self._config

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
+from cartwheel.devices.topic_sensor import TopicSensor
 from cartwheel.geometry import Array
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 from cartwheel.simulation import Contact
 
 
@@ -27,7 +28,7 @@ class BumperConfig:
     """Publish rate, Hz; 0: every step."""
 
 
-class Bumper(Component):
+class Bumper(TopicSensor):
     """Publishes the contacts of collisions, grouped by pairs of collisions.
 
     Messages are also published without contact. The field ``states`` is then empty.
@@ -38,28 +39,22 @@ class Bumper(Component):
     """
 
     def __init__(self, scope: Scope, config: BumperConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         self._collisions = config.collisions
-        self._frame = self.frame(config.frame)
         self._ContactsState = message_class("gazebo_msgs/msg/ContactsState")
         self._ContactState = message_class("gazebo_msgs/msg/ContactState")
         self._Wrench = message_class("geometry_msgs/msg/Wrench")
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._publisher = self.advertise(
-            config.topic, "gazebo_msgs/msg/ContactsState", rate=config.rate or None
-        )
-        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
+        self._publisher = self._offer(config.topic, "gazebo_msgs/msg/ContactsState", qos="default")
 
-    def _publish(self) -> None:
+    def _measure(self) -> None:
         pairs: dict[tuple[str, str], list[Contact]] = {}
         for contact in self.part.contacts(self._collisions):
             pairs.setdefault((contact.first, contact.second), []).append(contact)
         states = [
             self._state(first, second, pairs[first, second]) for first, second in sorted(pairs)
         ]
-        self._publisher.publish(
-            self._ContactsState(header=header(self.part.time_ns, self._frame), states=states)
-        )
+        self._publisher.publish(self._ContactsState(header=self._header(), states=states))
 
     def _state(self, first: str, second: str, contacts: list[Contact]) -> Any:
         force = np.sum([contact.force for contact in contacts], axis=0)

@@ -12,6 +12,7 @@ import numpy as np
 from cartwheel.codes import running
 from cartwheel.component import Component, Scope
 from cartwheel.devices.elementwise import Number, sqrt
+from cartwheel.devices.transforms import TF_MESSAGE, transform_stamped
 from cartwheel.errors import PluginError
 from cartwheel.geometry import Array, Quat, quat_conjugate, quat_multiply, rotate
 from cartwheel.graph.frames import Frames
@@ -116,12 +117,8 @@ class FrameSpring(Component):
             )
         self._applied = part.wrench(config.link, origin=origin)
         self._frames = self.keep(Frames(self.graph, self.node))
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._Transform = message_class("geometry_msgs/msg/Transform")
-        self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
-        self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
-        self._publisher = self.advertise("/tf", "tf2_msgs/msg/TFMessage")
+        self._TFMessage = message_class(TF_MESSAGE)
+        self._publisher = self.advertise("/tf", TF_MESSAGE)
         part.schedule(0, before=self._pull)
         part.schedule(0, after=self._publish, topics=self.publishers)
 
@@ -161,12 +158,9 @@ class FrameSpring(Component):
     def _publish(self) -> None:
         # This device also receives this transform, which has no effect because its parent is the
         # world.
-        place, orientation = self._link.place()
-        transform = self._Transform(self._Vector3(*place), self._Quaternion(*orientation))
         moment = header(self.part.time_ns, _WORLD)
-        self._publisher.publish(
-            self._TFMessage([self._TransformStamped(moment, self._config.actual, transform)])
-        )
+        transform = transform_stamped(moment, self._config.actual, *self._link.place())
+        self._publisher.publish(self._TFMessage([transform]))
 
 
 def spring_force(

@@ -7,15 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.contact.loads import (
     ContactForceConfig,
     JointLoadConfig,
     JointReactionConfig,
     LinkLoadConfig,
 )
+from cartwheel.devices.topic_sensor import TopicSensor
 from cartwheel.graph import Qos
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 WRENCH_STAMPED = "geometry_msgs/msg/WrenchStamped"
 
@@ -38,7 +39,7 @@ class WrenchSensorConfig:
     """Quality of service on ROS 2."""
 
 
-class WrenchSensor(Component):
+class WrenchSensor(TopicSensor):
     """Publishes a measured force and torque.
 
     Args:
@@ -50,21 +51,17 @@ class WrenchSensor(Component):
     """
 
     def __init__(self, scope: Scope, config: WrenchSensorConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         self._load = config.load.load(self.part, self.origin)
-        self._frame = self.frame(config.frame)
         self._noise = config.noise
-        self._publisher = self.advertise(
-            config.topic, WRENCH_STAMPED, rate=config.rate or None, qos=config.qos
-        )
-        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
+        self._publisher = self._offer(config.topic, WRENCH_STAMPED, config.qos)
 
-    def _publish(self) -> None:
+    def _measure(self) -> None:
         values = self._load.measure()
         if self._noise > 0:
             random = self.part.random(f"force {self._publisher.topic}")
             values = (values + random.normal(0.0, self._noise, 6)).tolist()
-        self._publisher.publish(wrench_stamped(header(self.part.time_ns, self._frame), values))
+        self._publisher.publish(wrench_stamped(self._header(), values))
 
 
 def wrench_stamped(moment: Any, values: Sequence[float]) -> Any:

@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.elementwise import Number, cos, sin
 from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit, InertialUnitConfig
 from cartwheel.devices.noise import DriftingError, DriftingErrorConfig, VectorNoise
+from cartwheel.devices.topic_sensor import TopicSensor
 from cartwheel.geometry import (
     IDENTITY,
     Array,
@@ -24,7 +25,7 @@ from cartwheel.geometry import (
     rotate,
 )
 from cartwheel.graph import Publisher
-from cartwheel.messages import header, message_class
+from cartwheel.messages import message_class
 
 _IMU = "sensor_msgs/msg/Imu"
 _EMPTY = "std_srvs/srv/Empty"
@@ -72,7 +73,7 @@ class ImuConfig:
     """Service (SetBias) that sets the angular velocity's drift. None: not offered."""
 
 
-class Imu(Component):
+class Imu(TopicSensor):
     """Publishes angular velocity, acceleration and orientation of an IMU on a link.
 
     Args:
@@ -84,24 +85,21 @@ class Imu(Component):
     """
 
     def __init__(self, scope: Scope, config: ImuConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         part = self.part
         self._config = config
         self._unit = InertialUnit(part, config.unit, origin=self.origin)
-        self._frame = self.frame(config.frame)
         self._acceleration, self._rate, self._yaw = (
             DriftingError(part, error) if error is not None else None
             for error in (config.acceleration_error, config.rate_error, config.yaw_error)
         )
         self._strength = math.hypot(*part.world.gravity)
         self._covariances = self._stated_covariances()
-        rate = config.rate or None
-        self._publisher = self.advertise(config.topic, _IMU, rate=rate, qos="sensor")
+        self._publisher = self._offer(config.topic, _IMU)
         self._biases: Publisher | None = None
         if config.bias_topic is not None:
-            self._biases = self.advertise(config.bias_topic, _IMU, rate=rate)
+            self._biases = self._offer(config.bias_topic, _IMU, qos="default")
         self._offer_services()
-        part.schedule(config.rate, after=self._measure, topics=self.publishers)
 
     def reset(self) -> None:
         """Starts new drifts."""
@@ -168,7 +166,7 @@ class Imu(Component):
         if self._yaw is not None and self._acceleration is not None:
             error = self._orientation_error(self._yaw, self._acceleration)
             orientation = quat_multiply(error, orientation)
-        moment = header(self.part.time_ns, self._frame)
+        moment = self._header()
         if self._publisher.wanted:
             self._publisher.publish(
                 imu_message(moment, orientation, rate, acceleration, self._covariances)

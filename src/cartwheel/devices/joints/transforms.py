@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from cartwheel.messages import header, message_class
+from cartwheel.devices.transforms import transform_stamped
+from cartwheel.messages import header
 
 if TYPE_CHECKING:
     from cartwheel.component import Component
@@ -29,15 +30,9 @@ class JointTransforms:
             )
             for name in joints
         ]
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._Transform = message_class("geometry_msgs/msg/Transform")
-        self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
 
     def at(self, time_ns: int) -> list[Any]:
         """Returns the current ``TransformStamped`` messages."""
-        Vector3, Quaternion, Transform = self._Vector3, self._Quaternion, self._Transform
-        TransformStamped = self._TransformStamped
         sent, of, head = [], None, None
         for joint, parent, child in self._joints:
             if parent != of:
@@ -45,7 +40,5 @@ class JointTransforms:
                 # our joint states. Ours is a nanosecond later, so that tf does not warn about
                 # repeated data.
                 of, head = parent, header(time_ns + 1, parent)
-            where, turned = joint.child_place()
-            moved = Transform(Vector3(*where), Quaternion(*turned))
-            sent.append(TransformStamped(head, child, moved))
+            sent.append(transform_stamped(head, child, *joint.child_place()))
         return sent

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from typing import Any, Protocol
+from typing import Protocol
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.noise import ErrorConfig, sensor_error
-from cartwheel.graph import Publisher, Qos
-from cartwheel.messages import header
+from cartwheel.devices.topic_sensor import TopicSensor
 
 
 class LinkSensorConfig(Protocol):
@@ -31,8 +29,8 @@ class LinkSensorConfig(Protocol):
         """Errors of the measured values."""
 
 
-class LinkSensor(Component):
-    """A sensor on a link. It measures at its rate while one of its topics has subscribers.
+class LinkSensor(TopicSensor):
+    """A sensor on a link, with errors.
 
     Args:
         scope: The sensor's model and names.
@@ -43,25 +41,11 @@ class LinkSensor(Component):
     """
 
     def __init__(self, scope: Scope, config: LinkSensorConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         self._link = self.part.link(config.link, origin=self.origin)
-        self._frame = self.frame(config.frame)
         self._error = sensor_error(self.part, config.error)
-        self._rate = config.rate
-        self.part.schedule(config.rate, after=self._measure, topics=self.publishers)
 
     def reset(self) -> None:
         """Starts a new drift."""
         super().reset()
         self._error.restart()
-
-    @abstractmethod
-    def _measure(self) -> None:
-        """Publishes the messages for the current state."""
-
-    def _offer(self, topic: str, kind: str, qos: Qos = "sensor") -> Publisher:
-        """Advertises one of the sensor's topics."""
-        return self.advertise(topic, kind, rate=self._rate or None, qos=qos)
-
-    def _header(self) -> Any:
-        return header(self.part.time_ns, self._frame)

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from cartwheel.component import Component, Scope
+from cartwheel.devices.transforms import TF_MESSAGE, TRANSFORM_STAMPED, transform_stamped
 from cartwheel.geometry import Pose
 from cartwheel.graph import Publisher
 from cartwheel.messages import header, message_class
@@ -61,11 +62,7 @@ class ModelPoses(Component):
         self._links = {link.name: part.link(link.name) for link in part.description.links}
         self._root = self._links[part.description.canonical_link]
         self._to_model = part.description.canonical_pose.inverse()
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._Transform = message_class("geometry_msgs/msg/Transform")
-        self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
-        self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
+        self._TFMessage = message_class(TF_MESSAGE)
         transforms = list(self._transforms())
         if config.static_topic is not None:
             moving = self._moving()
@@ -75,8 +72,7 @@ class ModelPoses(Component):
         self._offer(config.topic, transforms, config.rate)
 
     def _offer(self, topic: str, transforms: list[_Transform], rate: float) -> None:
-        one = "geometry_msgs/msg/TransformStamped"
-        kind = "tf2_msgs/msg/TFMessage" if self._config.one_message else one
+        kind = TF_MESSAGE if self._config.one_message else TRANSFORM_STAMPED
         publisher = self.advertise(topic, kind, rate=rate or None)
         self.part.schedule(
             rate,
@@ -94,10 +90,8 @@ class ModelPoses(Component):
 
     def _message(self, frame: str, child: str, current: Callable[[], Pose]) -> Any:
         pose = current()
-        transform = self._Transform(
-            self._Vector3(*pose.position), self._Quaternion(*pose.orientation)
-        )
-        return self._TransformStamped(header(self.part.time_ns, frame), child, transform)
+        moment = header(self.part.time_ns, frame)
+        return transform_stamped(moment, child, pose.position, pose.orientation)
 
     def _model(self) -> Pose:
         return self._root.pose @ self._to_model

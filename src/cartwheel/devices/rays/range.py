@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cartwheel.component import Component, Scope
+from cartwheel.component import Scope
 from cartwheel.devices.noise import DriftingError, DriftingErrorConfig
 from cartwheel.devices.rays.messages import range_message
 from cartwheel.devices.rays.scan import Scanner, ScannerConfig
-from cartwheel.messages import header
+from cartwheel.devices.topic_sensor import TopicSensor
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,7 +39,7 @@ class RangeFinderConfig:
     """Inverse of the drift's time constant, 1/s."""
 
 
-class RangeFinder(Component):
+class RangeFinder(TopicSensor):
     """Publishes the smallest range of a scan, or the maximum range if nothing is hit.
 
     The noise is that of one range: the minimum over rays with noise of their own would be too
@@ -51,10 +51,9 @@ class RangeFinder(Component):
     """
 
     def __init__(self, scope: Scope, config: RangeFinderConfig) -> None:
-        super().__init__(scope)
+        super().__init__(scope, config.frame, config.rate)
         self._config = config
         self._scanner = Scanner(self.part, config.scanner)
-        self._frame = self.frame(config.frame)
         self._error = DriftingError(
             self.part,
             DriftingErrorConfig(
@@ -67,17 +66,14 @@ class RangeFinder(Component):
                 scale=[1.0],
             ),
         )
-        self._publisher = self.advertise(
-            config.topic, "sensor_msgs/msg/Range", rate=config.rate or None, qos="sensor"
-        )
-        self.part.schedule(config.rate, after=self._publish, topics=self.publishers)
+        self._publisher = self._offer(config.topic, "sensor_msgs/msg/Range")
 
     def reset(self) -> None:
         """Starts a new drift."""
         super().reset()
         self._error.restart()
 
-    def _publish(self) -> None:
+    def _measure(self) -> None:
         config, pattern = self._config, self._scanner.pattern
         ranges = self._scanner.measure(noisy=False).ranges
         value = float(np.clip(ranges.min(), pattern.minimum, pattern.maximum))
@@ -86,7 +82,7 @@ class RangeFinder(Component):
                 (value,) = self._scanner.error.add([value])
             (value,) = self._error.add([value])
             value = min(max(value, pattern.minimum), pattern.maximum)
-        moment = header(self.part.time_ns, self._frame)
+        fov, infrared = config.fov, config.infrared
         self._publisher.publish(
-            range_message(moment, pattern, value, fov=config.fov, infrared=config.infrared)
+            range_message(self._header(), pattern, value, fov=fov, infrared=infrared)
         )

@@ -33,17 +33,9 @@ def read_bridge(path: Path) -> list[Bridged]:
         loader = yaml_text.loader()(yaml_text.read(path))
         root = loader.get_single_node()
         entries = _entries(loader, root)
-    except OSError as error:
-        raise _invalid(f"the file cannot be read: {error.strerror or error}", origin) from None
-    except UnicodeDecodeError:
-        raise _invalid("the file is not a text file", origin) from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None)
-        line = mark.line + 1 if mark is not None else 0
-        place = Origin(file=str(path), line=line)
-        text = f"the file is not valid YAML{f': {problem}' if problem else ''}"
-        raise _invalid(text, place) from None
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        text, line = yaml_text.fault(error)
+        raise _invalid(text, Origin(file=str(path), line=line)) from None
     if entries is None:
         raise _invalid(
             "the file is not a list of topics",

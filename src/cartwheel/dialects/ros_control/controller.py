@@ -6,6 +6,7 @@ import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
+from cartwheel.codes import devices
 from cartwheel.component import Component
 from cartwheel.dialects.ros_control.chaining import Reference
 from cartwheel.dialects.ros_control.hardware import JointHardware
@@ -204,6 +205,14 @@ class Controller(Component):
     def publish_command(self, topic: str, type_name: str, **fields: object) -> None:
         """Publishes a message on one of the controller's own command topics."""
         self.graph.publish(self.resolve(topic), type_name, message_class(type_name)(**fields))
+
+    def warn_ignored(self, name: str) -> None:
+        """Warns that a parameter has no effect."""
+        self.warn(
+            devices.CONTROLLER_PARAMETER_UNKNOWN,
+            f'the parameter "{name}" has no effect',
+            values={"parameters": (name,)},
+        )
 
     def _leave_joints(self) -> None:
         if self._input is not None:

@@ -101,17 +101,9 @@ def read_yaml(path: Path) -> dict[str, Any]:
         if node is not None and "ros__parameters" in text:
             _join(node, set())
         content = loader.construct_document(node) if node is not None else None
-    except OSError as error:
-        raise _unreadable(f"the file cannot be read: {error.strerror or error}", origin) from None
-    except UnicodeDecodeError:
-        raise _unreadable("the file is not a text file", origin) from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = mark.line + 1 if mark is not None else 0
-        problem = getattr(error, "problem", None)
-        text = f"the file is not valid YAML{f': {problem}' if problem else ''}"
-        place = Origin(file=str(path), line=line)
-        raise _unreadable(text, place) from None
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        text, line = yaml_text.fault(error)
+        raise _unreadable(text, Origin(file=str(path), line=line)) from None
     if content is None:
         return {}
     if not isinstance(content, dict):

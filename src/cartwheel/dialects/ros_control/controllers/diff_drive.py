@@ -15,7 +15,11 @@ from cartwheel.devices.drives.differential import (
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
-from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import (
+    open_loop_parameter,
+    position_feedback_parameter,
+    wheel_odometry,
+)
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
@@ -80,14 +84,8 @@ class DiffDriveParameters(FramePrefixParameters):
     )
     linear: Limits = parameter("linear/x", read=read_limits, doc="Limits of the forward speed.")
     angular: Limits = parameter("angular/z", read=read_limits, doc="Limits of the turning rate.")
-    open_loop: bool = parameter(
-        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
-    )
-    position_feedback: bool = parameter(
-        "position_feedback",
-        default=True,
-        doc="Compute odometry from wheel positions instead of velocities.",
-    )
+    open_loop: bool = open_loop_parameter()
+    position_feedback: bool = position_feedback_parameter(default=True)
     timeout: float = parameter(
         "cmd_vel_timeout", default=0.5, unit="s", doc="Time after which a command expires."
     )

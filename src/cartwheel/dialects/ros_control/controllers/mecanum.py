@@ -219,17 +219,10 @@ class MecanumDriveController(WheelController):
         )
         self._frame = prefix + given.odom_frame
         self._state = self.advertise("controller_state", _STATE) if nested else None
-        if husarion:
-            for name, wanted in (
-                ("open_loop", given.open_loop),
-                ("publish_limited_velocity", given.publish_limited),
-            ):
-                if wanted:
-                    self.warn(
-                        devices.CONTROLLER_PARAMETER_UNKNOWN,
-                        f'the parameter "{name}" has no effect',
-                        values={"parameters": (name,)},
-                    )
+        if husarion and given.open_loop:
+            self.warn_ignored("open_loop")
+        if husarion and given.publish_limited:
+            self.warn_ignored("publish_limited_velocity")
         wheels = [(joint,) for joint in self._joints]
         self._wheels = MecanumWheels(config, wheels, self.robot.push, self._odometry.reckoning)
         if self.robot.push is None and not has_rollers(description):

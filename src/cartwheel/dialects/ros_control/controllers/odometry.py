@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -53,6 +54,18 @@ class OdometryParameters:
         default=10,
         doc="Number of measurements over which the velocity is averaged.",
     )
+
+
+def open_loop_parameter() -> Any:
+    """Whether the odometry is that of the commands."""
+    doc = "Compute odometry from commands instead of measurements."
+    return parameter("open_loop", default=False, doc=doc)
+
+
+def position_feedback_parameter(*, default: bool) -> Any:
+    """Whether the odometry is that of wheel positions."""
+    doc = "Compute odometry from wheel positions instead of velocities."
+    return parameter("position_feedback", default=default, doc=doc)
 
 
 def wheel_odometry(

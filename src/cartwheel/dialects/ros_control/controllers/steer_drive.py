@@ -8,7 +8,11 @@ from typing import ClassVar
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.steered_wheels import SteeredByAngle, SteeredByAngleConfig
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
-from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters, wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import (
+    OdometryParameters,
+    open_loop_parameter,
+    wheel_odometry,
+)
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
@@ -65,9 +69,7 @@ class SteerDriveParameters(OdometryParameters):
     )
     linear: Limits = parameter("linear/x", read=read_limits, doc="Limits of the forward speed.")
     angular: Limits = parameter("angular/z", read=read_limits, doc="Limits of the steering angle.")
-    open_loop: bool = parameter(
-        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
-    )
+    open_loop: bool = open_loop_parameter()
     timeout: float = parameter(
         "cmd_vel_timeout", default=0.5, unit="s", doc="Time after which a command expires."
     )

@@ -10,7 +10,12 @@ import numpy as np
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.steered_wheels import SteeredAxle, SteeredAxleConfig
-from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters, wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import (
+    OdometryParameters,
+    open_loop_parameter,
+    position_feedback_parameter,
+    wheel_odometry,
+)
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import (
@@ -92,14 +97,8 @@ class SteeringParameters(OdometryParameters):
         positive=True,
         doc="Radius of the driven wheels.",
     )
-    open_loop: bool = parameter(
-        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
-    )
-    position_feedback: bool = parameter(
-        "position_feedback",
-        default=False,
-        doc="Compute odometry from wheel positions instead of velocities.",
-    )
+    open_loop: bool = open_loop_parameter()
+    position_feedback: bool = position_feedback_parameter(default=False)
     timeout: float = parameter(
         "reference_timeout", default=1.0, unit="s", doc="Time after which a reference expires."
     )

@@ -6,11 +6,14 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.codes import devices
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.steered_wheels import SteeredWheel, SteeredWheelConfig
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
-from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters, wheel_odometry
+from cartwheel.dialects.ros_control.controllers.odometry import (
+    OdometryParameters,
+    open_loop_parameter,
+    wheel_odometry,
+)
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.dialects.ros_control.controllers.wheels import LEFT, UP, check_axis
@@ -53,9 +56,7 @@ class TricycleParameters(OdometryParameters):
     steering_upper: float = parameter(
         "steering/max_position", default=math.inf, unit="rad", doc="Maximum steering angle."
     )
-    open_loop: bool = parameter(
-        "open_loop", default=False, doc="Compute odometry from commands instead of measurements."
-    )
+    open_loop: bool = open_loop_parameter()
     timeout: float = parameter(
         "cmd_vel_timeout", default=500.0, unit="ms", doc="Time after which a command expires."
     )
@@ -90,16 +91,10 @@ class TricycleController(WheelController):
             steering_rate=given.steering_rate,
             steering_range=(given.steering_lower, given.steering_upper),
         )
-        for name, wanted in (
-            ("publish_ackermann_command", given.publish_command),
-            ("odom_only_twist", given.only_twist),
-        ):
-            if wanted:
-                self.warn(
-                    devices.CONTROLLER_PARAMETER_UNKNOWN,
-                    f'the parameter "{name}" has no effect',
-                    values={"parameters": (name,)},
-                )
+        if given.publish_command:
+            self.warn_ignored("publish_ackermann_command")
+        if given.only_twist:
+            self.warn_ignored("odom_only_twist")
         timeout = given.timeout / 1000.0
         self._command = TwistCommand(self, "cmd_vel", timeout=timeout, stamped=given.stamped)
         self._odometry = wheel_odometry(self, given)
