@@ -20,7 +20,7 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.tags import tags_of
-from cartwheel.dialects.world_plugins import BUILT_IN, Faults, create
+from cartwheel.dialects.world_plugins import BUILT_IN, Faults, create, misplaced
 from cartwheel.errors import CartwheelError, StaticModelError
 from cartwheel.similar_names import meant_one
 from cartwheel.simulation import Part
@@ -63,15 +63,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             if plugin is None:
                 _report_unknown(part, tag, sensor, more)
             elif plugin.for_world or (plugin.for_sensor and sensor is None):
-                place = "world" if plugin.for_world else "sensor"
-                part.report(
-                    devices.PLUGIN_MISPLACED.diagnostic(
-                        f'plugin "{tag.filename}" has no effect here because it must be inside a '
-                        f"<{place}>",
-                        origin=tag.origin,
-                        values={"name": tag.filename, "place": place},
-                    )
-                )
+                part.report(misplaced(tag, "world" if plugin.for_world else "sensor"))
             else:
                 forgiven = _ANY if lenient or own_system else _HARMLESS
                 plugins += create(part, shared, plugin, tag, sensor, forgiven=forgiven)

@@ -272,6 +272,26 @@ def number(
     return _number(element, element.text.strip(), least, most, endless=endless)
 
 
+def number_at(
+    element: Element | None, path: str, default: float = 0.0, *, endless: bool = False
+) -> float:
+    """Reads the number in a child; the default without the child or its parent. See `number`."""
+    child = element.find(path) if element is not None else None
+    return number(child, endless=endless) if child is not None else default
+
+
+def required(element: Element, name: str) -> Element:
+    """Returns a child.
+
+    Raises:
+        PluginError: The child is missing.
+    """
+    child = element.find(name)
+    if child is None:
+        raise missing(element.tag, name, element.origin)
+    return child
+
+
 def vector(element: Element, size: int) -> tuple[float, ...]:
     """Reads the numbers in an element, separated by white space.
 

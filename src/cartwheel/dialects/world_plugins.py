@@ -32,6 +32,15 @@ BUILT_IN = {
 """Plugins for physics, spawning, time and sensors, which Cartwheel always provides."""
 
 
+def misplaced(tag: PluginTag, place: str) -> Diagnostic:
+    """Returns the diagnostic for a plugin that must be inside of a different element."""
+    return devices.PLUGIN_MISPLACED.diagnostic(
+        f'plugin "{tag.filename}" has no effect here because it must be inside a <{place}>',
+        origin=tag.origin,
+        values={"name": tag.filename, "place": place},
+    )
+
+
 def create(
     part: Part,
     shared: Shared,
@@ -106,14 +115,7 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
                 )
             )
         elif not plugin.for_world:
-            part.report(
-                devices.PLUGIN_MISPLACED.diagnostic(
-                    f'plugin "{tag.filename}" has no effect here because it must be inside a '
-                    "<model>",
-                    origin=tag.origin,
-                    values={"name": tag.filename, "place": "model"},
-                )
-            )
+            part.report(misplaced(tag, "model"))
         else:
             behaviours += create(part, shared, plugin, tag)
     return behaviours

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from cartwheel.devices.position.barometer import PressureSensor, PressureSensorConfig
 from cartwheel.dialects.gz.sensor_tags import GzSensor, frame_tag, topic_tag
-from cartwheel.dialects.tags import number
+from cartwheel.dialects.tags import number_at
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,12 +28,10 @@ class AirPressure(GzSensor[AirPressureParameters]):
 
     def configure(self) -> None:
         sensor = self.sensor
-        reference = sensor.element.find("air_pressure/reference_altitude")
-        elevation = number(reference) if reference is not None else 0.0
         device = PressureSensorConfig(
             link=sensor.link,
             mount=sensor.pose.position,
-            elevation=elevation,
+            elevation=number_at(sensor.element, "air_pressure/reference_altitude"),
             topic=self.topic("air_pressure"),
             frame=self.frame_id,
             rate=sensor.update_rate,

@@ -10,7 +10,7 @@ from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.devices.grips.grasp import Grasp, GraspConfig, HandConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import SMALLEST, missing, tag
+from cartwheel.dialects.tags import SMALLEST, missing, required, tag
 
 _EVENTS = "/gazebo_grasp_plugin_event_republisher/grasp_events"
 
@@ -107,15 +107,8 @@ class GraspFix(Plugin[GraspFixParameters]):
 
 
 def _hand(element: Element) -> HandConfig:
-    names = {}
-    for name in ("arm_name", "palm_link"):
-        child = element.find(name)
-        if child is None:
-            raise missing("arm", name, element.origin)
-        names[name] = child.text.strip()
+    name, palm = (required(element, each).text.strip() for each in ("arm_name", "palm_link"))
     fingers = tuple(each.text.strip() for each in element.find_all("gripper_link"))
     if not fingers:
         raise missing("arm", "gripper_link", element.origin)
-    return HandConfig(
-        name=names["arm_name"], palm=names["palm_link"], fingers=fingers, origin=element.origin
-    )
+    return HandConfig(name=name, palm=palm, fingers=fingers, origin=element.origin)

@@ -99,30 +99,25 @@ class LinkAttacherRos2(_LinkAttacher):
         self.serve("DETACHLINK", kinds[1], self._detach)
 
     def _attach(self, request: Any) -> Any:
-        try:
-            one, two = self._both(request)
-        except UnknownNameError as error:
-            return self._Attached(success=False, message=f"{error.message}. {error.hint}")
-        if self.attacher.attached(one, two):
-            return self._Attached(success=False, message=f"{_pair(one, two)} are already attached")
-        self.attacher.attach(one, two)
-        return self._Attached(success=True, message=f"attached {_pair(one, two)}")
+        return self._Attached(**self._change(request, attach=True))
 
     def _detach(self, request: Any) -> Any:
+        return self._Detached(**self._change(request, attach=False))
+
+    def _change(self, request: Any, *, attach: bool) -> dict[str, Any]:
+        """Attaches or detaches two links; returns the fields of the response."""
         try:
             one, two = self._both(request)
         except UnknownNameError as error:
-            return self._Detached(success=False, message=f"{error.message}. {error.hint}")
-        if not self.attacher.attached(one, two):
-            return self._Detached(success=False, message=f"{_pair(one, two)} are not attached")
-        self.attacher.detach(one, two)
-        return self._Detached(success=True, message=f"detached {_pair(one, two)}")
+            return {"success": False, "message": f"{error.message}. {error.hint}"}
+        pair = " and ".join("::".join(place) for place in (one, two))
+        if self.attacher.attached(one, two) == attach:
+            state = "already" if attach else "not"
+            return {"success": False, "message": f"{pair} are {state} attached"}
+        (self.attacher.attach if attach else self.attacher.detach)(one, two)
+        return {"success": True, "message": f"{'attached' if attach else 'detached'} {pair}"}
 
     def _both(self, request: Any) -> tuple[Place, Place]:
         return self._places(
             request.model1_name, request.link1_name, request.model2_name, request.link2_name
         )
-
-
-def _pair(one: Place, two: Place) -> str:
-    return " and ".join("::".join(place) for place in (one, two))

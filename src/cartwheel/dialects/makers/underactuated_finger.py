@@ -9,7 +9,7 @@ from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.finger import Finger, FingerConfig, FingerJointConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import invalid, missing, number, tag
+from cartwheel.dialects.tags import invalid, number, required, tag
 from cartwheel.simulation.limits import FARTHEST
 
 _LEAST_SCALE = 1 / FARTHEST
@@ -54,15 +54,9 @@ class UnderactuatedFinger(Plugin[UnderactuatedFingerParameters]):
 
 
 def _joint(element: Element) -> FingerJointConfig:
-    children = {}
-    for each in ("name", "scale_factor"):
-        child = element.find(each)
-        if child is None:
-            raise missing("virtualJoint", each, element.origin)
-        children[each] = child
-    scale = number(children["scale_factor"], least=-FARTHEST, most=FARTHEST)
+    name, factor = required(element, "name"), required(element, "scale_factor")
+    scale = number(factor, least=-FARTHEST, most=FARTHEST)
     if abs(scale) < _LEAST_SCALE:
         wanted = f"at least {_LEAST_SCALE:g} or at most {-_LEAST_SCALE:g}"
-        raise invalid("scale_factor", scale, wanted, children["scale_factor"].origin)
-    name = children["name"].text.strip()
-    return FingerJointConfig(name=name, scale=scale, origin=element.origin)
+        raise invalid("scale_factor", scale, wanted, factor.origin)
+    return FingerJointConfig(name=name.text.strip(), scale=scale, origin=element.origin)

@@ -105,11 +105,7 @@ class HardwareComponents:
         commands = [
             one for name in self._systems for one in self._command_interfaces(name, claimed)
         ]
-        states = [
-            _interface(each, available=self._states[name] != 1)
-            for name, interfaces in self._measures.items()
-            for each in interfaces
-        ]
+        states = [one for name in self._systems for one in self._state_interfaces(name)]
         return commands, states
 
     def messages(self, controllers: Iterable[Controller], rate: int) -> list[Any]:
@@ -125,13 +121,14 @@ class HardwareComponents:
                 plugin_name=hardware_of(system),
                 state=self.state(name),
                 command_interfaces=self._command_interfaces(name, claimed),
-                state_interfaces=[
-                    _interface(each, available=self._states[name] != 1)
-                    for each in self._measures[name]
-                ],
+                state_interfaces=self._state_interfaces(name),
             )
             for name, system in self._systems.items()
         ]
+
+    def _state_interfaces(self, name: str) -> list[Any]:
+        available = self._states[name] != 1
+        return [_interface(each, available=available) for each in self._measures[name]]
 
     def _command_interfaces(self, name: str, claimed: set[str]) -> list[Any]:
         active = self._states[name] == _ACTIVE

@@ -24,7 +24,7 @@ def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
         robot: The robot that the controllers belong to.
     """
     prefixes: dict[str, set[str]] = {}
-    for text in _texts(content):
+    for text in texts(content):
         for name, rest in _BEFORE_NAME.findall(text):
             able = {
                 joint.name.removesuffix(rest) for joint in robot.joints if joint.name.endswith(rest)
@@ -35,13 +35,14 @@ def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
     return {**shortest, **robot.arguments}
 
 
-def _texts(content: Any) -> Iterator[str]:
+def texts(content: Any) -> Iterator[str]:
+    """Yields the strings in nested mappings and lists, with the keys."""
     if isinstance(content, str):
         yield content
     elif isinstance(content, Mapping):
         for key, value in content.items():
-            yield from _texts(key)
-            yield from _texts(value)
+            yield str(key)
+            yield from texts(value)
     elif isinstance(content, list):
         for value in content:
-            yield from _texts(value)
+            yield from texts(value)

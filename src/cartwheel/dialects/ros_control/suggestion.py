@@ -18,6 +18,7 @@ from cartwheel.dialects.ros_control.files import (
     ros1_entries,
     ros2_file,
 )
+from cartwheel.dialects.ros_control.launch_arguments import texts
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
 from cartwheel.dialects.tags import roles_of
 from cartwheel.errors import CartwheelError
@@ -96,7 +97,7 @@ def with_controllers(
         values = [entry.values for entry in entries]
         if not ros2:
             values.append(content.get(PARAMETERS, {}))
-        words = {word for each in values for word in _words(each)}
+        words = {word for each in values for word in texts(each)}
         named = any(_names(word, joint) for joint in joints for word in words)
         broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
         if named or broadcasts:
@@ -145,15 +146,3 @@ def _names(word: str, joint: str) -> bool:
     """Whether a word contains a joint's name, or ends like it after ``$(arg prefix)``."""
     rest = _ARGUMENT.sub("", word)
     return joint in word or (rest != word and len(rest) > 1 and joint.endswith(rest))
-
-
-def _words(values: Any) -> Iterator[str]:
-    if isinstance(values, str):
-        yield values
-    elif isinstance(values, Mapping):
-        for key, value in values.items():
-            yield str(key)
-            yield from _words(value)
-    elif isinstance(values, list):
-        for value in values:
-            yield from _words(value)

@@ -8,7 +8,7 @@ from cartwheel.codes import devices
 from cartwheel.description.model import Element, Sensor
 from cartwheel.devices.rays.scan import LEVEL, ScannerConfig, ScanPattern, Sweep
 from cartwheel.dialects.sdf.noise import read_noise
-from cartwheel.dialects.tags import number
+from cartwheel.dialects.tags import number_at
 from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _MOST_RAYS = 1_000_000
@@ -68,8 +68,8 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
             hint="Lower <samples>.",
         )
     limits = ray.find("range")
-    minimum = _number(limits, "min", 0.0)
-    maximum = _number(limits, "max", 0.0, endless=True)
+    minimum = number_at(limits, "min", 0.0)
+    maximum = number_at(limits, "max", 0.0, endless=True)
     if minimum < 0 or maximum <= minimum:
         raise PluginError(
             f'the range of sensor "{sensor.name}" must satisfy 0 <= <min> < <max> '
@@ -89,9 +89,9 @@ def read_pattern(sensor: Sensor, report: Callable[[Diagnostic], None]) -> ScanPa
 
 
 def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: int) -> Sweep:
-    asked = _number(element, "samples", samples)
-    resolution = _number(element, "resolution", 1.0)
-    first, last = _number(element, "min_angle", 0.0), _number(element, "max_angle", 0.0)
+    asked = number_at(element, "samples", samples)
+    resolution = number_at(element, "resolution", 1.0)
+    first, last = number_at(element, "min_angle", 0.0), number_at(element, "max_angle", 0.0)
     if not 1 <= asked <= _MOST_RAYS:
         raise PluginError(
             f"<samples> must be between 1 and {_MOST_RAYS:,} (got {asked:g})",
@@ -145,8 +145,3 @@ def _sweep(element: Element, report: Callable[[Diagnostic], None], *, samples: i
 def _place(element: Element, tag: str) -> Origin:
     child = element.find(tag)
     return child.origin if child is not None else element.origin
-
-
-def _number(element: Element | None, tag: str, default: float, *, endless: bool = False) -> float:
-    child = element.find(tag) if element is not None else None
-    return number(child, endless=endless) if child is not None else default

@@ -6,7 +6,7 @@ import math
 
 from cartwheel.description.model import Element
 from cartwheel.devices.position.geodesy import Datum
-from cartwheel.dialects.tags import number
+from cartwheel.dialects.tags import number_at
 
 
 def read_datum(spherical: Element | None) -> Datum | None:
@@ -17,14 +17,9 @@ def read_datum(spherical: Element | None) -> Datum | None:
     """
     if spherical is None:
         return None
-
-    def stated(name: str) -> float:
-        child = spherical.find(name)
-        return number(child) if child is not None else 0.0
-
     return Datum(
-        latitude=math.radians(stated("latitude_deg")),
-        longitude=math.radians(stated("longitude_deg")),
-        height=stated("elevation"),
-        heading=math.radians(stated("heading_deg")),
+        latitude=math.radians(number_at(spherical, "latitude_deg")),
+        longitude=math.radians(number_at(spherical, "longitude_deg")),
+        height=number_at(spherical, "elevation"),
+        heading=math.radians(number_at(spherical, "heading_deg")),
     )

@@ -14,7 +14,7 @@ from cartwheel.devices.mechanisms.wheel_slip import (
 )
 from cartwheel.dialects.common_tags import publish_rate_tag
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import number, tag
+from cartwheel.dialects.tags import number_at, tag
 from cartwheel.errors import PluginError
 
 _DIRECTIONS = ("lateral", "longitudinal")
@@ -96,8 +96,8 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
                 origin=origin,
                 values={"parameter": "link_name"},
             )
-        radius = _number(element, "wheel_radius") or self._radius(name)
-        normal = _number(element, "wheel_normal_force")
+        radius = number_at(element, "wheel_radius") or self._radius(name)
+        normal = number_at(element, "wheel_normal_force")
         if radius <= 0 or normal <= 0:
             raise PluginError(
                 f'wheel "{name}" requires a positive <wheel_radius> and <wheel_normal_force>',
@@ -108,7 +108,7 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
         compliance = {}
         for direction in _DIRECTIONS:
             parameter = f"slip_compliance_{direction}"
-            value = _number(element, parameter)
+            value = number_at(element, parameter)
             if value < 0:
                 self.warn(
                     devices.PLUGIN_PARAMETER_INVALID,
@@ -127,9 +127,3 @@ class WheelSlipPlugin(Plugin[WheelSlipParameters]):
         shapes = [each.shape for each in link.collisions] if link is not None else []
         round_ones = [shape for shape in shapes if isinstance(shape, Cylinder | Sphere)]
         return round_ones[0].radius if round_ones else 0.0
-
-
-def _number(element: Element, name: str) -> float:
-    """Returns the number in a child element; 0 if the element does not exist."""
-    child = element.find(name)
-    return number(child) if child is not None else 0.0

@@ -10,7 +10,7 @@ from cartwheel.codes import devices
 from cartwheel.description.model import Element
 from cartwheel.devices.mechanisms.winch import RopeConfig, Winch, WinchConfig
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import invalid, number, tag, vector
+from cartwheel.dialects.tags import invalid, number_at, tag, vector
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.simulation.limits import FARTHEST
 
@@ -106,7 +106,7 @@ class Harness(Plugin[HarnessParameters]):
             axis_place = axis.origin if axis is not None else element.origin
             raise invalid("xyz", texts["axis/xyz"], "a vector with a positive length", axis_place)
         limits = [
-            self._limit(element, f"axis/limit/{what}", default)
+            number_at(element, f"axis/limit/{what}", default, endless=True)
             for what, default in (("lower", -math.inf), ("upper", math.inf))
         ]
         return name, RopeConfig(
@@ -115,10 +115,6 @@ class Harness(Plugin[HarnessParameters]):
             limits=(min(limits[0], 0.0), max(limits[1], 0.0)),
             origin=element.origin,
         )
-
-    def _limit(self, element: Element, path: str, default: float) -> float:
-        child = element.find(path)
-        return number(child, endless=True) if child is not None else default
 
     def _index(self, name: str, names: list[str]) -> int:
         if name not in names:
