@@ -12,7 +12,7 @@ from cartwheel.gazebo.metrics import Metrics
 from cartwheel.gazebo.physics import Physics
 from cartwheel.gazebo.properties import Properties
 from cartwheel.gazebo.reconfigure import PhysicsReconfigure
-from cartwheel.gazebo.requests import REPORTED, answering
+from cartwheel.gazebo.requests import REPORTED, answering, camel
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.gazebo.state import StateCommands, States, StateTopics
 from cartwheel.graph import Service
@@ -45,7 +45,7 @@ class GazeboApi:
             self._states,
             Properties(simulation, entities),
             self._physics,
-            Pushes(simulation, entities, self._tell),
+            Pushes(simulation, entities),
         )
         self._services: list[Service] = []
         self._topics: list[StateTopics | StateCommands | Metrics | PhysicsReconfigure] = []
@@ -92,4 +92,4 @@ def _title(name: str) -> str:
     """The start of Gazebo's status messages."""
     if name.startswith("spawn_"):
         return "SpawnModel"
-    return "".join(word.capitalize() for word in name.split("_"))
+    return camel(name)

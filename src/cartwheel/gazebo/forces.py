@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from cartwheel.codes.graph import ENTITY_FIXED, SERVICE_FAILED
-from cartwheel.errors import CartwheelError, Diagnostic, GraphError
+from cartwheel.codes.graph import ENTITY_FIXED
+from cartwheel.errors import GraphError
 from cartwheel.gazebo.entities import INERTIAL, Entities
-from cartwheel.gazebo.requests import Answer, Offer, vector
+from cartwheel.gazebo.requests import Answer, Offer, named, vector
 from cartwheel.geometry import rotate
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation import Simulation
@@ -26,31 +25,24 @@ class Pushes:
     ``applyBodyWrench``; gazebo_ros_force_system.
     """
 
-    def __init__(
-        self, simulation: Simulation, entities: Entities, report: Callable[[Diagnostic], None]
-    ) -> None:
+    def __init__(self, simulation: Simulation, entities: Entities) -> None:
         self._simulation = simulation
         self._entities = entities
-        self._report = report
 
     def offers(self) -> list[Offer]:
         """The ROS 1 services."""
-        package = "gazebo_msgs/srv"
         return [
-            Offer("apply_body_wrench", f"{package}/ApplyBodyWrench", self.apply_body_wrench),
-            Offer("clear_body_wrenches", f"{package}/BodyRequest", self.clear_body_wrenches),
-            Offer("apply_joint_effort", f"{package}/ApplyJointEffort", self.apply_joint_effort),
-            Offer("clear_joint_forces", f"{package}/JointRequest", self.clear_joint_forces),
+            *named(self.apply_body_wrench, self.apply_joint_effort),
+            Offer("clear_body_wrenches", "gazebo_msgs/srv/BodyRequest", self.clear_body_wrenches),
+            Offer("clear_joint_forces", "gazebo_msgs/srv/JointRequest", self.clear_joint_efforts),
         ]
 
     def ros2_offers(self) -> list[Offer]:
         """The ROS 2 services."""
-        package = "gazebo_msgs/srv"
         return [
-            Offer("apply_link_wrench", f"{package}/ApplyLinkWrench", self.apply_link_wrench),
-            Offer("clear_link_wrenches", f"{package}/LinkRequest", self.clear_link_wrenches),
-            Offer("apply_joint_effort", f"{package}/ApplyJointEffort", self.apply_joint_effort),
-            Offer("clear_joint_efforts", f"{package}/JointRequest", self.clear_joint_efforts),
+            *named(self.apply_link_wrench, self.apply_joint_effort),
+            Offer("clear_link_wrenches", "gazebo_msgs/srv/LinkRequest", self.clear_link_wrenches),
+            Offer("clear_joint_efforts", "gazebo_msgs/srv/JointRequest", self.clear_joint_efforts),
         ]
 
     def apply_body_wrench(self, request: Any) -> Answer:
@@ -90,22 +82,13 @@ class Pushes:
         )
 
     def clear_body_wrenches(self, request: Any) -> Answer:
-        try:
-            model, link = self._entities.link(request.body_name)
-        except CartwheelError as error:
-            self._report(
-                SERVICE_FAILED.because(
-                    "/gazebo/clear_body_wrenches failed",
-                    error,
-                    values={"service": "/gazebo/clear_body_wrenches"},
-                )
-            )
-        else:
-            self._simulation.forces.clear_wrenches(model, link.name)
-        return Answer()
+        return self._clear_wrenches(request.body_name)
 
     def clear_link_wrenches(self, request: Any) -> Answer:
-        model, link = self._entities.link(request.link_name)
+        return self._clear_wrenches(request.link_name)
+
+    def _clear_wrenches(self, name: str) -> Answer:
+        model, link = self._entities.link(name)
         self._simulation.forces.clear_wrenches(model, link.name)
         return Answer()
 
@@ -129,21 +112,6 @@ class Pushes:
             model, joint.name, effort, start_ns=start, duration_ns=duration
         )
         return Answer("ApplyJointEffort: effort set", notes=notes)
-
-    def clear_joint_forces(self, request: Any) -> Answer:
-        try:
-            model, joint = self._entities.joint(request.joint_name)
-        except CartwheelError as error:
-            self._report(
-                SERVICE_FAILED.because(
-                    "/gazebo/clear_joint_forces failed",
-                    error,
-                    values={"service": "/gazebo/clear_joint_forces"},
-                )
-            )
-        else:
-            self._simulation.forces.clear_efforts(model, joint.name)
-        return Answer()
 
     def clear_joint_efforts(self, request: Any) -> Answer:
         model, joint = self._entities.joint(request.joint_name)

@@ -6,9 +6,7 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from cartwheel.codes.graph import PROPERTY_INVALID
-from cartwheel.errors import GraphError
-from cartwheel.gazebo.requests import Answer, Offer, vector, vector_message
+from cartwheel.gazebo.requests import Answer, Offer, refused, vector, vector_message
 from cartwheel.geometry import Vec3
 from cartwheel.messages import from_dict
 from cartwheel.simulation import RunState, Simulation
@@ -123,10 +121,10 @@ class Physics:
         """
         step_ns = to_ns(number(time_step, "time_step"))
         if not 1 <= step_ns <= to_ns(LONGEST_STEP):
-            raise GraphError(
+            raise refused(
                 f"time_step must be above 0 and at most {LONGEST_STEP:g} s (got {time_step:g} s)",
-                code=PROPERTY_INVALID,
-                values={"property": "time_step", "value": time_step},
+                "time_step",
+                value=time_step,
             )
         rate = number(max_update_rate, "max_update_rate", most=1e9)
         for name, value in ode.items():

@@ -13,7 +13,16 @@ from cartwheel.description.inertia import impossibility, principal_moments
 from cartwheel.description.model import Inertial, Joint, Light, RobotDescription
 from cartwheel.errors import GraphError, WorldError
 from cartwheel.gazebo.entities import Entities
-from cartwheel.gazebo.requests import Answer, Offer, pose, pose_message, vector
+from cartwheel.gazebo.requests import (
+    Answer,
+    Offer,
+    camel,
+    named,
+    pose,
+    pose_message,
+    refused,
+    vector,
+)
 from cartwheel.messages import message_class
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import STRONGEST, number
@@ -58,46 +67,26 @@ class Properties:
 
     def offers(self) -> list[Offer]:
         """The ROS 1 services."""
-        package = "gazebo_msgs/srv"
-        return [
-            Offer(
-                "get_model_properties", f"{package}/GetModelProperties", self.get_model_properties
-            ),
-            Offer(
-                "get_world_properties", f"{package}/GetWorldProperties", self.get_world_properties
-            ),
-            Offer("get_link_properties", f"{package}/GetLinkProperties", self.get_link_properties),
-            Offer("set_link_properties", f"{package}/SetLinkProperties", self.set_link_properties),
-            Offer(
-                "get_joint_properties", f"{package}/GetJointProperties", self.get_joint_properties
-            ),
-            Offer(
-                "set_joint_properties", f"{package}/SetJointProperties", self.set_joint_properties
-            ),
-            Offer(
-                "get_light_properties", f"{package}/GetLightProperties", self.get_light_properties
-            ),
-            Offer(
-                "set_light_properties", f"{package}/SetLightProperties", self.set_light_properties
-            ),
-        ]
+        return named(
+            self.get_model_properties,
+            self.get_world_properties,
+            self.get_link_properties,
+            self.set_link_properties,
+            self.get_joint_properties,
+            self.set_joint_properties,
+            self.get_light_properties,
+            self.set_light_properties,
+        )
 
     def ros2_offers(self) -> list[Offer]:
         """The ROS 2 services: some of the ROS 1 services, with separate types if they differ."""
         own = [
-            Offer(
-                "get_model_properties",
-                "gazebo_msgs/srv/GetModelProperties",
-                self.get_scoped_properties,
-            ),
-            Offer(
-                "set_joint_properties",
-                "gazebo_msgs_ros2/srv/SetJointProperties",
-                self.set_joint_properties,
-            ),
-            Offer(
-                "set_light_properties", "gazebo_msgs_ros2/srv/SetLightProperties", self.set_light
-            ),
+            Offer(name, f"{package}/srv/{camel(name)}", handler)
+            for name, package, handler in (
+                ("get_model_properties", "gazebo_msgs", self.get_scoped_properties),
+                ("set_joint_properties", "gazebo_msgs_ros2", self.set_joint_properties),
+                ("set_light_properties", "gazebo_msgs_ros2", self.set_light),
+            )
         ]
         without = {"get_world_properties", *(offer.name for offer in own)}
         return [*own, *(offer for offer in self.offers() if offer.name not in without)]
@@ -160,10 +149,10 @@ class Properties:
         inertial = None
         if link.inertial is not None or any(values.values()):
             if values["mass"] <= 0:
-                raise GraphError(
+                raise refused(
                     f"the mass must be above 0 (got {values['mass']:g})",
-                    code=PROPERTY_INVALID,
-                    values={"property": "mass", "value": values["mass"]},
+                    "mass",
+                    value=values["mass"],
                 )
             moments = principal_moments(
                 (values["ixx"], values["iyy"], values["izz"]),
@@ -216,10 +205,8 @@ class Properties:
         for field, value in driven.items():
             number(value, f"ode_joint_config.{field}", most=STRONGEST)
         if driven.get("fmax", 0.0) < 0:
-            raise GraphError(
-                f"fmax must not be negative (got {driven['fmax']:g})",
-                code=PROPERTY_INVALID,
-                values={"property": "fmax", "value": driven["fmax"]},
+            raise refused(
+                f"fmax must not be negative (got {driven['fmax']:g})", "fmax", value=driven["fmax"]
             )
         if changed != joint:
             description = self._entities.model(model)
@@ -321,10 +308,10 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
         if index < len(given["damping"]):
             damping = given["damping"][index]
             if damping < 0 or damping > _HEAVIEST:
-                raise GraphError(
+                raise refused(
                     f"damping must be between 0 and {_HEAVIEST:g} (got {damping:g})",
-                    code=PROPERTY_INVALID,
-                    values={"property": "damping", "value": damping},
+                    "damping",
+                    value=damping,
                 )
             changes["damping"] = damping
         for field, bound in (("hiStop", "upper"), ("loStop", "lower")):
@@ -335,10 +322,8 @@ def _joint_with(joint: Joint, given: Mapping[str, Sequence[float]]) -> tuple[Joi
         axes[index] = dataclasses.replace(axis, **changes)  # type: ignore[arg-type]
         lower, upper = axes[index].lower, axes[index].upper
         if lower is not None and upper is not None and lower > upper:
-            raise GraphError(
-                f"loStop {lower:g} is above hiStop {upper:g}",
-                code=PROPERTY_INVALID,
-                values={"property": "loStop", "lower": lower, "upper": upper},
+            raise refused(
+                f"loStop {lower:g} is above hiStop {upper:g}", "loStop", lower=lower, upper=upper
             )
     if joint.type == "continuous" and (given["hiStop"] or given["loStop"]):
         notes.append("hiStop and loStop have no effect on a continuous joint")

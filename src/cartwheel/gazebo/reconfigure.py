@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gazebo.physics import Physics
+from cartwheel.gazebo.requests import failed
 from cartwheel.graph import Graph
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, Value
 
@@ -117,11 +117,5 @@ class PhysicsReconfigure:
                 tell=False,
             )
         except CartwheelError as error:
-            self._report(
-                SERVICE_FAILED.because(
-                    "/gazebo/set_parameters failed",
-                    error,
-                    values={"service": "/gazebo/set_parameters"},
-                )
-            )
+            self._report(failed("/gazebo/set_parameters", error))
         return self._present()

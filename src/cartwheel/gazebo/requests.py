@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cartwheel.codes.graph import SERVICE_FAILED
-from cartwheel.errors import CartwheelError, Diagnostic, one_line
+from cartwheel.codes.graph import PROPERTY_INVALID, SERVICE_FAILED
+from cartwheel.errors import CartwheelError, Diagnostic, GraphError, one_line
 from cartwheel.geometry import IDENTITY, Pose, Vec3
 from cartwheel.messages import message_class, zero
 from cartwheel.simulation.limits import FARTHEST, number, rotation
@@ -38,6 +38,28 @@ class Offer:
     type: str
     handler: Handler
     threaded: bool = False
+
+
+def named(*handlers: Handler) -> list[Offer]:
+    """Services of gazebo_msgs with the names of their handlers."""
+    return [
+        Offer(each.__name__, f"gazebo_msgs/srv/{camel(each.__name__)}", each) for each in handlers
+    ]
+
+
+def camel(name: str) -> str:
+    """The name of a service as the name of a type: ``get_model_state`` as ``GetModelState``."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def failed(service: str, error: Exception) -> Diagnostic:
+    """The report of a request whose response cannot contain the reason."""
+    return SERVICE_FAILED.because(f"{service} failed", error, values={"service": service})
+
+
+def refused(message: str, name: str, **values: float) -> GraphError:
+    """An error in a property of a request."""
+    return GraphError(message, code=PROPERTY_INVALID, values={"property": name, **values})
 
 
 def answering(

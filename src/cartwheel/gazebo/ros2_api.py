@@ -55,7 +55,7 @@ class Ros2Api:
         self._spawning = Spawning(session, self._entities, package_path)
         self._states = States(session.simulation, self._entities)
         self._properties = Properties(session.simulation, self._entities)
-        self._pushes = Pushes(session.simulation, self._entities, self._tell)
+        self._pushes = Pushes(session.simulation, self._entities)
         self._world = WorldServices(session.simulation, self._entities, self._spawning, self._tell)
         self._interfaces = SimulationInterfaces(
             session, self._entities, self._spawning, self._states, package_path

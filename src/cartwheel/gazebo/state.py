@@ -7,10 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.codes.graph import REQUEST_INVALID, SERVICE_FAILED
+from cartwheel.codes.graph import REQUEST_INVALID
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.gazebo.entities import Entities, Motion
-from cartwheel.gazebo.requests import Answer, Offer, pose, pose_message, twist_message, vector
+from cartwheel.gazebo.requests import (
+    Answer,
+    Offer,
+    failed,
+    named,
+    pose,
+    pose_message,
+    twist_message,
+    vector,
+)
 from cartwheel.geometry import Pose, from_wxyz, rotate
 from cartwheel.graph import Graph, Subscription
 from cartwheel.messages import header, message_class
@@ -32,18 +41,13 @@ class States:
 
     def offers(self) -> list[Offer]:
         """The services."""
-        package = "gazebo_msgs/srv"
-        return [
-            Offer("get_model_state", f"{package}/GetModelState", self.get_model_state),
-            Offer("set_model_state", f"{package}/SetModelState", self.set_model_state),
-            Offer("get_link_state", f"{package}/GetLinkState", self.get_link_state),
-            Offer("set_link_state", f"{package}/SetLinkState", self.set_link_state),
-            Offer(
-                "set_model_configuration",
-                f"{package}/SetModelConfiguration",
-                self.set_model_configuration,
-            ),
-        ]
+        return named(
+            self.get_model_state,
+            self.set_model_state,
+            self.get_link_state,
+            self.set_link_state,
+            self.set_model_configuration,
+        )
 
     def model(self, name: str, frame: str) -> Motion:
         """Motion of a model relative to the world, a model or a link."""
@@ -282,10 +286,6 @@ class StateCommands:
             try:
                 handler(request(**{field: message}))
             except CartwheelError as error:
-                self._report(
-                    SERVICE_FAILED.because(
-                        f"/gazebo/{name} failed", error, values={"service": f"/gazebo/{name}"}
-                    )
-                )
+                self._report(failed(f"/gazebo/{name}", error))
 
         return take
