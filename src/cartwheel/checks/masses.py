@@ -12,7 +12,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.subject import Subject
 from cartwheel.description.elements.node import Node
 from cartwheel.description.inertia import impossibility, principal_moments
-from cartwheel.description.model import Box, Collision, Inertial, Link, Visual
+from cartwheel.description.model import MOMENTS, Box, Collision, Inertial, Link, Visual
 from cartwheel.description.sdf.links.inertia import inertial_of
 from cartwheel.description.solids import as_collision, bounds
 from cartwheel.errors import Origin
@@ -20,7 +20,6 @@ from cartwheel.geometry import Pose, Vec3
 
 LIGHT = 0.01
 """Fraction of the robot's mass below which a link's mass hardly matters, and is often arbitrary."""
-MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def moments_of(inertial: Node) -> Vec3 | None:

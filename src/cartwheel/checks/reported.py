@@ -15,6 +15,7 @@ from cartwheel.checks.subject import ABSENT, Subject
 from cartwheel.codes import codes_of, devices, files
 from cartwheel.codes import tags as codes
 from cartwheel.description.elements.node import Node
+from cartwheel.description.model import MOMENTS
 from cartwheel.errors import Diagnostic
 
 _ELSEWHERE = frozenset({*codes_of("robot"), devices.CONTACT_COLLISION_UNKNOWN})
@@ -31,7 +32,6 @@ _OF_URDF = (
     "hardwareInterface",
 )  # fmt: skip
 """Tags that are valid in URDF, but not directly in <robot>."""
-_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
@@ -160,7 +160,7 @@ def _calls_macro(subject: Subject, node: Node, diagnostic: Diagnostic) -> bool:
 def _from_urdf(subject: Subject, node: Node) -> str:
     """SDF text for an element with URDF attributes; empty for any other element."""
     known = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"),
-             "axis": ("xyz",), "inertia": _MOMENTS}.get(node.tag, ())  # fmt: skip
+             "axis": ("xyz",), "inertia": MOMENTS}.get(node.tag, ())  # fmt: skip
     attributes = {key: value for key, value in node.attributes.items() if key in known}
     if subject.is_urdf or node.children:
         return ""

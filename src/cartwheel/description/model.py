@@ -226,6 +226,10 @@ class Collision:
     origin: Origin
 
 
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+"""The fields of an `Inertial` that are its inertia matrix."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Inertial:
     mass: float
@@ -250,6 +254,11 @@ class Inertial:
     def products(self) -> Vec3:
         """ixy, ixz, iyz."""
         return self.ixy, self.ixz, self.iyz
+
+    def scaled(self, mass: float) -> dict[str, float]:
+        """The moments, by their names, of a body with the same shape and another mass."""
+        factor = mass / self.mass
+        return {key: getattr(self, key) * factor for key in MOMENTS}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from cartwheel.codes.graph import PROPERTY_INVALID
 from cartwheel.description.inertia import impossibility, principal_moments
-from cartwheel.description.model import Inertial, Joint, Light, RobotDescription
+from cartwheel.description.model import MOMENTS, Inertial, Joint, Light, RobotDescription
 from cartwheel.errors import GraphError, WorldError
 from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.requests import (
@@ -23,6 +23,7 @@ from cartwheel.gazebo.requests import (
     refused,
     vector,
 )
+from cartwheel.geometry import Pose
 from cartwheel.messages import message_class
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import STRONGEST, number
@@ -128,14 +129,9 @@ class Properties:
         fields: dict[str, Any] = {"gravity_mode": link.gravity}
         inertial = link.inertial
         if inertial is None:
-            fields["com"] = pose_message(
-                Inertial(mass=0, ixx=0, iyy=0, izz=0, origin=link.origin).pose
-            )
+            fields["com"] = pose_message(Pose())
             return Answer("GetLinkProperties: got properties", fields, ("the link has no mass",))
-        fields |= {
-            name: getattr(inertial, name)
-            for name in ("mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-        }
+        fields |= {name: getattr(inertial, name) for name in ("mass", *MOMENTS)}
         fields["com"] = pose_message(inertial.pose)
         return Answer("GetLinkProperties: got properties", fields)
 
@@ -143,7 +139,7 @@ class Properties:
         model, link = self._entities.link(request.link_name)
         values = {
             name: number(getattr(request, name), name, most=_HEAVIEST)
-            for name in ("mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+            for name in ("mass", *MOMENTS)
         }
         com = pose(request.com, "com")
         inertial = None
@@ -154,15 +150,12 @@ class Properties:
                     "mass",
                     value=values["mass"],
                 )
-            moments = principal_moments(
-                (values["ixx"], values["iyy"], values["izz"]),
-                (values["ixy"], values["ixz"], values["iyz"]),
-            )
+            inertial = Inertial(pose=com, origin=link.origin, **values)
+            moments = principal_moments(inertial.diagonal, inertial.products)
             if (reason := impossibility(moments)) is not None:
                 raise GraphError(
                     reason[0], code=PROPERTY_INVALID, hint=reason[1], values={"property": "inertia"}
                 )
-            inertial = Inertial(pose=com, origin=link.origin, **values)
         changed = dataclasses.replace(link, inertial=inertial, gravity=bool(request.gravity_mode))
         description = self._entities.model(model)
         if changed != link:

@@ -63,8 +63,7 @@ def inertial_text(inertial: Inertial) -> str:
     largest = max(i.diagonal)
     moments = " ".join(
         f'{key}="{value if abs(value) > 1e-4 * largest else 0:.4g}"'
-        for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-        for value in (getattr(i, key),)
+        for key, value in i.scaled(i.mass).items()
     )
     return (
         f'<inertial><origin xyz="{xyz}"/><mass value="{i.mass:.4g}"/><inertia {moments}/>'
@@ -90,9 +89,8 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
     stated = link.inertial
     assert stated is not None
     like = _of_shapes(link) or _speck(link.origin)
-    share = stated.mass / like.mass
-    values = {key: share * getattr(like, key) for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
-    inertial = replace(stated, pose=Pose(stated.pose.position), **values)
+    pose = Pose(stated.pose.position)
+    inertial = replace(stated, pose=pose, **like.scaled(stated.mass))
     ctx.report(
         robot.INERTIA_IMPOSSIBLE.diagnostic(
             f'link "{link.name}" moves, but its inertia is 0; Cartwheel computes the inertia from '

@@ -7,7 +7,7 @@ from dataclasses import replace
 from cartwheel.codes import robot
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
-from cartwheel.description.model import Inertial
+from cartwheel.description.model import MOMENTS, Inertial
 from cartwheel.description.urdf.context import UrdfContext, read_origin
 from cartwheel.errors import DescriptionError
 
@@ -17,10 +17,7 @@ def read_inertial(node: Node) -> Inertial:
     if mass > HEAVIEST:
         raise node.fail(f"a mass must be at most {HEAVIEST:g} kg (got {mass:g})")
     tensor = node.child("inertia")
-    values = {
-        key: tensor.number_of(key, 0.0) if tensor is not None else 0.0
-        for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-    }
+    values = {key: tensor.number_of(key, 0.0) if tensor is not None else 0.0 for key in MOMENTS}
     return Inertial(mass=mass, pose=read_origin(node), origin=node.origin, **values)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, spelling
+from cartwheel.checks import edits, nodes, spelling
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.merged_links import merged_root
@@ -59,10 +59,7 @@ def contact_never_fires(subject: Subject) -> Iterator[Diagnostic]:
             message=f'Gazebo 11 merges "{link}" into "{root}" and renames the collision '
             f'"{name}", so sensor "{sensor.name}" never reports a contact',
             values={"sensor": sensor.name, "collision": name, "link": link, "root": root},
-            origin=asked.origin,
-            instead=nodes.written("collision", {}, right),
-            place="element",
-            mark=name,
+            **edits.whole(asked, nodes.written("collision", {}, right), mark=name),
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, spelling
+from cartwheel.checks import edits, spelling
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.devices.sensor_ranges import elements_in, sensors_of
 from cartwheel.checks.subject import Subject
@@ -33,9 +33,6 @@ def image_format(subject: Subject) -> Iterator[Diagnostic]:
             yield devices_codes.IMAGE_FORMAT_UNKNOWN.diagnostic(
                 message=f'unknown image format "{name}"; R8G8B8 is used',
                 values={"format": name},
-                origin=image.origin,
-                instead=nodes.written("format", {}, near),
-                place="element",
-                mark=name,
+                **edits.text(image, near),
                 hint=f"Supported formats: {', '.join(FORMATS[:_LISTED])}, ….",
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks import edits, nodes, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
@@ -27,9 +27,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                         message=f"Gazebo 11 ignores <{name}>, so the wheel torque is "
                         f"{torque.default[0]:g} N m instead of {each.text.strip()} N m",
                         values={"tag": name, "plugin": drive.tag.name},
-                        origin=each.origin,
-                        instead=nodes.written(torque.tags[0], {}, each.text.strip()),
-                        place="element",
+                        **edits.whole(each, nodes.written(torque.tags[0], {}, each.text.strip())),
                     )
             legacy = element.find("legacyMode")
             if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
@@ -37,8 +35,6 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                     message="Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite "
                     "direction",
                     values={"tag": "legacyMode", "plugin": drive.tag.name},
-                    origin=legacy.origin,
-                    instead="<legacyMode>false</legacyMode>",
-                    place="element",
+                    **edits.whole(legacy, "<legacyMode>false</legacyMode>"),
                     hint="Swap the names of the two joints.",
                 )

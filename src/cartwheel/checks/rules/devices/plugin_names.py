@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from cartwheel.checks import plugin_tags
+from cartwheel.checks import edits, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
@@ -25,10 +25,7 @@ def plugin_unknown(subject: Subject) -> Iterator[Diagnostic]:
                     severity="warning",
                     message=f'Gazebo loads the file "{tag.filename}", but the plugin is in "{own}"',
                     values={"plugin": tag.filename, "meant": own},
-                    origin=tag.origin,
-                    instead=f'filename="{own}"',
-                    place="attribute",
-                    mark=tag.filename,
+                    **edits.attribute(tag, "filename", own, mark=tag.filename),
                 )
                 continue
             if plugin_tags.is_simulated(tag):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -40,10 +40,7 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
                 message=f"<{tag}> is {angle:g} rad, more than a full turn",
                 values={"tag": tag, "angle": angle},
                 hint="Is the angle in degrees?",
-                origin=found.origin,
-                instead=nodes.written(tag, {}, nodes.short(math.radians(angle))),
-                place="element",
-                mark=found.text.strip(),
+                **edits.text(found, nodes.short(math.radians(angle))),
             )
             return
     if first is not None and low is not None and high is not None and low > high:
@@ -52,10 +49,7 @@ def _arc(element: Element) -> Iterator[Diagnostic]:
             message=f"<min_angle> ({low:g} rad) is above <max_angle> ({high:g} rad), so the scan "
             "runs clockwise",
             values={"tag": "min_angle", "lower": low, "upper": high},
-            origin=first.origin,
-            instead=nodes.written("min_angle", {}, nodes.short(high)),
-            place="element",
-            mark=first.text.strip(),
+            **edits.text(first, nodes.short(high)),
             hint="Most programs expect counterclockwise scans. Also set <max_angle> to "
             f"{nodes.short(low)}.",
         )
@@ -70,10 +64,7 @@ def _span(element: Element) -> Iterator[Diagnostic]:
     yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
         message=f"<{near}> ({low:g} m) is not below <{far}> ({high:g} m)",
         values={"tag": near, "lower": low, "upper": high},
-        origin=first.origin,
-        instead=nodes.written(near, {}, nodes.short(high if 0 <= high < low else 0.1)),
-        place="element",
-        mark=first.text.strip(),
+        **edits.text(first, nodes.short(high if 0 <= high < low else 0.1)),
         hint=f"Also set <{far}> to {nodes.short(low)}." if 0 <= high < low else "",
     )
 
@@ -85,10 +76,7 @@ def _counts(element: Element, tags: tuple[str, ...]) -> Iterator[Diagnostic]:
             yield devices_codes.SENSOR_RANGE_INVALID.diagnostic(
                 message=f"<{tag}> is {value:g}, but must be at least 1",
                 values={"tag": tag, "value": value},
-                origin=found.origin,
-                instead=nodes.written(tag, {}, "640" if tag != "height" else "480"),
-                place="element",
-                mark=found.text.strip(),
+                **edits.text(found, "640" if tag != "height" else "480"),
             )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks import edits, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
@@ -40,10 +40,7 @@ def topic_twice(subject: Subject) -> Iterator[Diagnostic]:
                     message=f'the plugins "{other.name}" and "{tag.name}" both publish on '
                     f'"{topic}"',
                     values={"plugin": tag.name, "other": other.name, "topic": topic},
-                    origin=element.origin,
-                    instead=nodes.written(element.tag, {}, new),
-                    place="element",
-                    mark=element.text.strip(),
+                    **edits.text(element, new),
                     hint=f"The other plugin is defined at {other.origin}.",
                 )
 
@@ -70,10 +67,7 @@ def topic_invalid(subject: Subject) -> Iterator[Diagnostic]:
                 values={"tag": element.tag, "name": name},
                 hint="Names may contain letters, digits, _ and /, and no part may begin with a "
                 "digit.",
-                origin=element.origin,
-                instead=nodes.written(element.tag, {}, f"{source}{arrow}{good}"),
-                place="element",
-                mark=name,
+                **edits.text(element, f"{source}{arrow}{good}"),
             )
 
 

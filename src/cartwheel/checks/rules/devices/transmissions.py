@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, spelling
+from cartwheel.checks import edits, spelling
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject, is_known
@@ -45,10 +45,7 @@ def interface_unknown(subject: Subject) -> Iterator[Diagnostic]:
                 yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
                     message=f'the interface "{name}" does not exist',
                     values={"tag": "hardwareInterface", "interface": name, "meant": near},
-                    origin=element.origin,
-                    instead=nodes.written("hardwareInterface", {}, near),
-                    place="element",
-                    mark=name,
+                    **edits.text(element, near),
                 )
     for _, joint in _driven_by(subject, "ros2_control"):
         for element in joint.children:
@@ -59,10 +56,7 @@ def interface_unknown(subject: Subject) -> Iterator[Diagnostic]:
             yield devices_codes.INTERFACE_UNKNOWN.diagnostic(
                 message=f'the {element.tag} "{name}" does not exist',
                 values={"tag": element.tag, "interface": name, "meant": near},
-                origin=element.origin,
-                instead=f'name="{near}"',
-                place="attribute",
-                mark=name,
+                **edits.attribute(element, "name", near, mark=name),
             )
 
 

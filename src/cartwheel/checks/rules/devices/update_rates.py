@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks import edits, nodes, plugin_tags
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -24,10 +24,7 @@ def rate_above_physics(subject: Subject) -> Iterator[Diagnostic]:
                     message=f"the update rate of {rate:g} Hz exceeds the physics rate of "
                     f"{highest:g} steps per second",
                     values={"tag": element.tag, "rate": rate, "highest": highest},
-                    origin=element.origin,
-                    instead=nodes.written(element.tag, {}, nodes.short(highest)),
-                    place="element",
-                    mark=element.text.strip(),
+                    **edits.text(element, nodes.short(highest)),
                 )
 
 

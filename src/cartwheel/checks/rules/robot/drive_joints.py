@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes, plugin_tags, spelling
+from cartwheel.checks import plugin_tags
 from cartwheel.checks.rule import rule
+from cartwheel.checks.rules.devices.plugin_joints import unknown_joint
 from cartwheel.checks.subject import Subject, is_known
 from cartwheel.checks.wheels import drives_in
 from cartwheel.codes import robot as robot_codes
@@ -21,16 +22,7 @@ def drive_joint_unknown(subject: Subject) -> Iterator[Diagnostic]:
             name = element.text.strip()
             if element.tag not in tags or is_known(name, robot, subject):
                 continue
-            near = spelling.meant(name, robot.joint_names)
-            yield robot_codes.DRIVE_JOINT_UNKNOWN.diagnostic(
-                message=f'<{element.tag}> refers to the joint "{name}", which does not exist',
-                values={"tag": element.tag, "joint": name},
-                origin=element.origin,
-                instead=nodes.written(element.tag, dict(element.attributes), near) if near else "",
-                place="element" if near else "",
-                mark=name,
-                hint="" if near else spelling.nearest(name, robot.joint_names),
-            )
+            yield unknown_joint(robot_codes.DRIVE_JOINT_UNKNOWN, robot, element, name)
 
 
 @rule(robot_codes.DRIVE_JOINT_NOT_CONTINUOUS)

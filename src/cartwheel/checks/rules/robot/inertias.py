@@ -12,7 +12,6 @@ import numpy as np
 from cartwheel.checks import nodes
 from cartwheel.checks.masses import (
     LIGHT,
-    MOMENTS,
     in_fixed_groups,
     inertia_of_geometry,
     inertials,
@@ -27,7 +26,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.inertia import impossibility
-from cartwheel.description.model import Inertial, Link
+from cartwheel.description.model import MOMENTS, Inertial, Link
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.geometry import Vec3
@@ -200,7 +199,7 @@ def _inertia_text(like: Inertial | None, mass: float, *, sdf: bool = False) -> s
         moment = 0.4 * mass * (3 * mass / 4000 / math.pi) ** (2 / 3)
         values = dict.fromkeys(("ixx", "iyy", "izz"), moment)
     else:
-        values = {key: getattr(like, key) * mass / like.mass for key in MOMENTS}
+        values = like.scaled(mass)
     largest = max(values["ixx"], values["iyy"], values["izz"])
     shown = {
         key: nodes.short(value) if abs(value) > 1e-3 * largest else "0"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import joints_with_types
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -22,10 +22,9 @@ def axis_zero(subject: Subject) -> Iterator[Diagnostic]:
             yield robot_codes.AXIS_ZERO.diagnostic(
                 message=f'the axis of joint "{nodes.name_of(joint)}" has length 0',
                 values={"joint": nodes.name_of(joint)},
-                origin=axis.origin,
-                instead='xyz="0 1 0"' if nodes.name_of(joint) in wheels else 'xyz="0 0 1"',
-                place="attribute",
-                mark="xyz",
+                **edits.attribute(
+                    axis, "xyz", "0 1 0" if nodes.name_of(joint) in wheels else "0 0 1"
+                ),
             )
 
 
@@ -40,10 +39,7 @@ def axis_not_unit(subject: Subject) -> Iterator[Diagnostic]:
                 message=f'the axis of joint "{nodes.name_of(joint)}" has length {length:.3g} '
                 "instead of 1",
                 values={"joint": nodes.name_of(joint), "length": length},
-                origin=axis.origin,
-                instead=f'xyz="{unit}"',
-                place="attribute",
-                mark="xyz",
+                **edits.attribute(axis, "xyz", unit),
             )
 
 

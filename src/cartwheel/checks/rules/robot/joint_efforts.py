@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cartwheel.checks import nodes, plugin_tags
+from cartwheel.checks import edits, nodes, plugin_tags
 from cartwheel.checks.kinematic_tree import joints_with_types
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
@@ -35,10 +35,7 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 message=f'the effort limit of the driven joint "{name}" is 0, so Gazebo cannot '
                 "move the joint",
                 values={"joint": name, "attribute": "effort"},
-                origin=limit.origin,
-                instead=f'effort="{nodes.short(usual)}"',
-                place="attribute",
-                mark="effort",
+                **edits.attribute(limit, "effort", nodes.short(usual)),
                 hint="Cartwheel treats 0 as no limit. The suggested limit is twice the effort "
                 "required to hold the load. Replace it with the motor's actual limit.",
             )
@@ -47,10 +44,7 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 message=f'the velocity limit of the driven joint "{name}" is 0, so Gazebo cannot '
                 "move the joint",
                 values={"joint": name, "attribute": "velocity"},
-                origin=limit.origin,
-                instead=f'velocity="{"1" if slides else "10"}"',
-                place="attribute",
-                mark="velocity",
+                **edits.attribute(limit, "velocity", "1" if slides else "10"),
                 hint="Set the velocity limit to the motor's maximum speed.",
             )
 
@@ -65,10 +59,7 @@ def _torque_zero(subject: Subject) -> Iterator[Diagnostic]:
                     yield robot_codes.EFFORT_ZERO.diagnostic(
                         message=f"<{element.tag}> is 0 N m, so the wheels do not move",
                         values={"tag": element.tag, "plugin": drive.tag.name},
-                        origin=element.origin,
-                        instead=nodes.written(element.tag, {}, "5"),
-                        place="element",
-                        mark=element.text.strip(),
+                        **edits.text(element, "5"),
                         hint=f"Set <{element.tag}> to the motors' maximum torque.",
                     )
 

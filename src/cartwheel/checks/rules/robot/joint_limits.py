@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import joints_with_types
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -50,9 +50,7 @@ def limit_incomplete(subject: Subject) -> Iterator[Diagnostic]:
                 yield robot_codes.LIMIT_INCOMPLETE.diagnostic(
                     message=f'the <limit> of joint "{nodes.name_of(joint)}" has no {what}',
                     values={"joint": nodes.name_of(joint), "attribute": what},
-                    origin=limit.origin,
-                    instead=f'{what}="10"',
-                    place="attribute",
+                    **edits.attribute(limit, what, "10", mark=""),
                 )
 
 
@@ -64,10 +62,11 @@ def limit_reversed(subject: Subject) -> Iterator[Diagnostic]:
                 message=f'the lower limit of joint "{nodes.name_of(joint)}" is {lower:g}, '
                 f"which is above the upper limit of {upper:g}",
                 values={"joint": nodes.name_of(joint), "lower": lower, "upper": upper},
-                origin=limit.origin,
-                instead=nodes.changed(limit, lower=nodes.short(upper), upper=nodes.short(lower)),
-                place="element",
-                mark="lower",
+                **edits.whole(
+                    limit,
+                    nodes.changed(limit, lower=nodes.short(upper), upper=nodes.short(lower)),
+                    mark="lower",
+                ),
             )
 
 

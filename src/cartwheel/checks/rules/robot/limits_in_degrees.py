@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import joints_with_types
 from cartwheel.checks.rule import rule
 from cartwheel.checks.rules.robot.joint_limits import ranges_in_sdf
@@ -38,10 +38,11 @@ def limit_degrees(subject: Subject) -> Iterator[Diagnostic]:
                 f"rad, which is {max(stated) / 2 / math.pi:.3g} turns",
                 values={"joint": nodes.name_of(joint), "largest": max(stated)},
                 hint=_DEGREES,
-                origin=limit.origin,
-                instead=nodes.changed(limit, **radians),
-                place="element",
-                mark="lower" if values["lower"] else "upper",
+                **edits.whole(
+                    limit,
+                    nodes.changed(limit, **radians),
+                    mark="lower" if values["lower"] else "upper",
+                ),
             )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.masses import (
     LIGHT,
     in_fixed_groups,
@@ -47,10 +47,9 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
             message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo ignores '
             "the link and everything attached to it",
             values={"link": nodes.name_of(link), "mass": mass},
-            origin=place.origin,
-            instead=f'value="{nodes.short(-mass) if mass < 0 else _mass_of(subject, link)}"',
-            place="attribute",
-            mark="value",
+            **edits.attribute(
+                place, "value", nodes.short(-mass) if mass < 0 else _mass_of(subject, link)
+            ),
             hint="" if mass < 0 else "Set the mass in kg.",
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.kinematic_tree import elements_of
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -29,10 +29,7 @@ def name_twice(subject: Subject) -> Iterator[Diagnostic]:
                 message=f'two {tag}s have the name "{name}"',
                 values={"tag": tag, "name": name},
                 hint=f"The first definition is at {seen[name].origin}.",
-                origin=node.origin,
-                instead=f'name="{new}"',
-                place="attribute",
-                mark=f'name="{node.attributes["name"]}"',
+                **edits.attribute(node, "name", new, mark=f'name="{node.attributes["name"]}"'),
             )
 
 
@@ -46,7 +43,5 @@ def name_missing(subject: Subject) -> Iterator[Diagnostic]:
             yield robot_codes.NAME_MISSING.diagnostic(
                 message=f"this <{node.tag}> has no name",
                 values={"tag": node.tag},
-                origin=node.origin,
-                instead=f'name="{new}"',
-                place="attribute",
+                **edits.attribute(node, "name", new, mark=""),
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import (
@@ -43,9 +43,6 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'the left wheel joint "{left.name}" is to the right of "{right.name}", {why}',
             values={"left": left.name, "right": right.name},
-            origin=element.origin,
-            instead=nodes.written(element.tag, {}, right.name),
-            place="element",
-            mark=left.name,
+            **edits.whole(element, nodes.written(element.tag, {}, right.name), mark=left.name),
             hint="Swap the two names. Otherwise, the robot turns in the wrong direction.",
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST, is_converted
@@ -61,10 +61,7 @@ def place_millimetres(subject: Subject) -> Iterator[Diagnostic]:
             "its link",
             values={"tag": holder.tag, "distance": math.hypot(*xyz)},
             hint="Is the position in millimetres?",
-            origin=origin.origin,
-            instead=f'xyz="{metres}"',
-            place="attribute",
-            mark="xyz",
+            **edits.attribute(origin, "xyz", metres),
         )
 
 

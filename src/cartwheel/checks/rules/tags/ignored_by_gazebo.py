@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import edits, nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import tags as codes
@@ -22,15 +22,11 @@ def gazebo_ignores(subject: Subject) -> Iterator[Diagnostic]:
             if on_link and child.tag == "mu":
                 yield codes.GAZEBO_IGNORES.diagnostic(
                     message="Gazebo ignores <mu> in this element, so the friction coefficient is 1",
-                    origin=child.origin,
-                    instead=f"<mu1>{value}</mu1><mu2>{value}</mu2>",
-                    place="element",
+                    **edits.whole(child, f"<mu1>{value}</mu1><mu2>{value}</mu2>"),
                 )
             elif not on_link and child.tag == "selfCollide":
                 yield codes.GAZEBO_IGNORES.diagnostic(
                     message="Gazebo supports <selfCollide> only for links; for the whole robot, "
                     "use <self_collide>",
-                    origin=child.origin,
-                    instead=f"<self_collide>{value}</self_collide>",
-                    place="element",
+                    **edits.whole(child, f"<self_collide>{value}</self_collide>"),
                 )

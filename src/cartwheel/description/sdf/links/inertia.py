@@ -96,17 +96,7 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
 
 def weighing(inertial: Inertial, mass: float) -> Inertial:
     """The same body with a different density."""
-    factor = mass / inertial.mass
-    return replace(
-        inertial,
-        mass=mass,
-        ixx=inertial.ixx * factor,
-        iyy=inertial.iyy * factor,
-        izz=inertial.izz * factor,
-        ixy=inertial.ixy * factor,
-        ixz=inertial.ixz * factor,
-        iyz=inertial.iyz * factor,
-    )
+    return replace(inertial, mass=mass, **inertial.scaled(mass))
 
 
 def inertial_of(
