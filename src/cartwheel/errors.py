@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 from cartwheel.similar_names import LONGEST, SIMILAR, closest, suggested
 
@@ -36,6 +36,18 @@ element's closing tag, and ``after`` behind the element. In YAML, ``line`` repla
 for its indentation, and ``after`` is a new line below with the same indentation. If empty, the text
 shows what to write, but the exact location is unknown.
 """
+
+
+class Details(TypedDict, total=False):
+    """The optional arguments of `Code.diagnostic`."""
+
+    origin: Origin | None
+    hint: str
+    severity: Severity | None
+    mark: str
+    values: Mapping[str, Value] | None
+    instead: str
+    place: Place
 
 
 _CODES: dict[str, Code] = {}

@@ -6,12 +6,12 @@ import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from cartwheel.codes import tags as codes
 from cartwheel.codes.files import SDF_VERSION
 from cartwheel.description.elements.numbers import LARGEST, position
-from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.errors import Code, DescriptionError, Details, Diagnostic, Origin
 from cartwheel.geometry import Pose, Quat, quat_normalize
 from cartwheel.similar_names import meant, suggestion
 
@@ -43,6 +43,10 @@ class Context:
     def report(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic."""
         self.diagnostics.append(diagnostic)
+
+    def warn(self, code: Code, message: str, **details: Unpack[Details]) -> None:
+        """Adds a new diagnostic; see `Code.diagnostic`."""
+        self.report(code.diagnostic(message, **details))
 
 
 def not_simulated(message: str, node: Node) -> Diagnostic:

@@ -47,24 +47,22 @@ def mesh_gears(
             ends.append(_hinge(joints, link, reference))
         name = node.attributes.get("name", "")
         if ends[0] is None or ends[1] is None:
-            ctx.report(
-                ELEMENT_LEFT_OUT.diagnostic(
-                    f'the gearbox joint "{name}" has no effect: revolute joints must connect its '
-                    f'parent and child to the gearbox_reference_body "{reference}"',
-                    origin=node.origin,
-                    values={"tag": "joint", "name": name},
-                )
+            ctx.warn(
+                ELEMENT_LEFT_OUT,
+                f'the gearbox joint "{name}" has no effect: revolute joints must connect its '
+                f'parent and child to the gearbox_reference_body "{reference}"',
+                origin=node.origin,
+                values={"tag": "joint", "name": name},
             )
             continue
         first, second = ends[0], ends[1]
         if second[0].mimic is not None:
-            ctx.report(
-                ELEMENT_LEFT_OUT.diagnostic(
-                    f'the gearbox joint "{name}" has no effect: joint "{second[0].name}" already '
-                    "mimics another joint",
-                    origin=node.origin,
-                    values={"tag": "joint", "name": name},
-                )
+            ctx.warn(
+                ELEMENT_LEFT_OUT,
+                f'the gearbox joint "{name}" has no effect: joint "{second[0].name}" already '
+                "mimics another joint",
+                origin=node.origin,
+                values={"tag": "joint", "name": name},
             )
             continue
         in_model = frames.pose(frame, node.origin)

@@ -61,13 +61,12 @@ def add_joint(frames: Frames, node: Node, ctx: Context, joints: list[str]) -> st
         # Until 1.6, a joint could have the same name as a link, and many files use this.
         frame = joint_frame(name)
         if ctx.version >= (1, 7):
-            ctx.report(
-                tags.NAME_TAKEN.diagnostic(
-                    f'joint "{name}" has the same name as a link or frame',
-                    origin=node.origin,
-                    severity="warning",
-                    values={"name": name},
-                )
+            ctx.warn(
+                tags.NAME_TAKEN,
+                f'joint "{name}" has the same name as a link or frame',
+                origin=node.origin,
+                severity="warning",
+                values={"name": name},
             )
     child = node.require_child("child").text.strip()
     if child == WORLD and node.attributes.get("type") == "fixed":
@@ -146,24 +145,22 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
     axis, axis2 = node.child("axis"), node.child("axis2")
     first = Axis()
     if kind not in _WITHOUT_AXIS and axis is None:
-        ctx.report(
-            tags.DEFAULT_USED.diagnostic(
-                f'joint "{name}" has no <axis>, so the default in SDF, z, is used',
-                origin=node.origin,
-                values={"joint": name, "missing": "axis"},
-            )
+        ctx.warn(
+            tags.DEFAULT_USED,
+            f'joint "{name}" has no <axis>, so the default in SDF, z, is used',
+            origin=node.origin,
+            values={"joint": name, "missing": "axis"},
         )
     if axis is not None:
         first = _axis(axis, name, ctx, frames, in_model)
         if kind in _WITHOUT_AXIS:
             # Gazebo also ignores it: a ball joint with damping moves freely there.
             first = Axis()
-            ctx.report(
-                tags.NOT_SIMULATED.diagnostic(
-                    f'joint "{name}": the <axis> of a {written} joint has no effect',
-                    origin=axis.origin,
-                    values={"joint": name, "tag": "axis"},
-                )
+            ctx.warn(
+                tags.NOT_SIMULATED,
+                f'joint "{name}": the <axis> of a {written} joint has no effect',
+                origin=axis.origin,
+                values={"joint": name, "tag": "axis"},
             )
     second = None
     if kind == "universal":
@@ -173,12 +170,11 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
             along_y = abs(first.xyz[1]) > _ALONG
             second = Axis(xyz=(1.0, 0.0, 0.0) if along_y else (0.0, 1.0, 0.0))
             taken = "x" if along_y else "y"
-            ctx.report(
-                tags.DEFAULT_USED.diagnostic(
-                    f'joint "{name}" has no <axis2>, so {taken} is used',
-                    origin=node.origin,
-                    values={"joint": name, "missing": "axis2"},
-                )
+            ctx.warn(
+                tags.DEFAULT_USED,
+                f'joint "{name}" has no <axis2>, so {taken} is used',
+                origin=node.origin,
+                values={"joint": name, "missing": "axis2"},
             )
     mimic = _mimic(axis) if axis is not None else None
     ode = node.find("physics/ode")
@@ -193,14 +189,13 @@ def read_joint(node: Node, ctx: Context, frames: Frames, frame: str) -> Joint | 
         if suspension is not None:
             suspension.mark()
             if suspension.children:
-                ctx.report(
-                    tags.NOT_SIMULATED.diagnostic(
-                        f'joint "{name}": <suspension> has no effect because suspensions are rigid '
-                        "in Cartwheel",
-                        origin=suspension.origin,
-                        severity="warning",
-                        values={"joint": name, "tag": "suspension"},
-                    )
+                ctx.warn(
+                    tags.NOT_SIMULATED,
+                    f'joint "{name}": <suspension> has no effect because suspensions are rigid '
+                    "in Cartwheel",
+                    origin=suspension.origin,
+                    severity="warning",
+                    values={"joint": name, "tag": "suspension"},
                 )
     provide = node.find("physics/provide_feedback")
     if provide is not None:

@@ -75,14 +75,13 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         add_frame(frames, "link", link)
     for gripper in node.all("gripper"):
         gripper.mark()
-        ctx.report(
-            tags.NOT_SIMULATED.diagnostic(
-                "<gripper> has no effect because contacts do not attach objects",
-                origin=gripper.origin,
-                hint="Use the plugin libgazebo_grasp_fix.so to attach objects.",
-                severity="warning",
-                values={"tag": "gripper"},
-            )
+        ctx.warn(
+            tags.NOT_SIMULATED,
+            "<gripper> has no effect because contacts do not attach objects",
+            origin=gripper.origin,
+            hint="Use the plugin libgazebo_grasp_fix.so to attach objects.",
+            severity="warning",
+            values={"tag": "gripper"},
         )
     nested = [read_model(each, ctx, depth=depth + 1) for each in node.all("model")]
     for each in node.all("include"):

@@ -49,14 +49,13 @@ def read_sdf(
     if ctx.version < MODERN:
         root = as_modern(root)
     if ctx.version > NEWEST:
-        ctx.report(
-            files.SDF_VERSION.diagnostic(
-                f"SDF {ctx.version[0]}.{ctx.version[1]} is newer than {NEWEST[0]}.{NEWEST[1]}: "
-                "new elements are ignored",
-                origin=root.origin,
-                severity="info",
-                values={"stated": f"{ctx.version[0]}.{ctx.version[1]}"},
-            )
+        ctx.warn(
+            files.SDF_VERSION,
+            f"SDF {ctx.version[0]}.{ctx.version[1]} is newer than {NEWEST[0]}.{NEWEST[1]}: "
+            "new elements are ignored",
+            origin=root.origin,
+            severity="info",
+            values={"stated": f"{ctx.version[0]}.{ctx.version[1]}"},
         )
     worlds, models = root.all("world"), root.all("model")
     described: RobotDescription | WorldDescription
@@ -64,12 +63,11 @@ def read_sdf(
         for further in worlds[1:]:
             further.mark()
             name = further.attributes.get("name", "")
-            ctx.report(
-                tags.ELEMENT_LEFT_OUT.diagnostic(
-                    f'only one world can run at a time, so world "{name}" is ignored',
-                    origin=further.origin,
-                    values={"tag": "world", "name": name},
-                )
+            ctx.warn(
+                tags.ELEMENT_LEFT_OUT,
+                f'only one world can run at a time, so world "{name}" is ignored',
+                origin=further.origin,
+                values={"tag": "world", "name": name},
             )
         if models:
             raise models[0].fail(
@@ -82,14 +80,13 @@ def read_sdf(
         model = _whole(models[0], ctx)
         described = model.describe(model.frames.placed(model.pose, "", model.origin), ctx, text)
         if model.relative_to:
-            ctx.report(
-                tags.NAME_UNKNOWN.diagnostic(
-                    f'the pose of model "{model.name}" is relative to "{model.relative_to}", '
-                    "which exists only in a world",
-                    origin=model.origin,
-                    severity="warning",
-                    values={"name": model.relative_to, "meant": ""},
-                )
+            ctx.warn(
+                tags.NAME_UNKNOWN,
+                f'the pose of model "{model.name}" is relative to "{model.relative_to}", '
+                "which exists only in a world",
+                origin=model.origin,
+                severity="warning",
+                values={"name": model.relative_to, "meant": ""},
             )
     elif models:
         raise models[1].fail(

@@ -71,11 +71,10 @@ def name_apart(models: Iterable[Model], ctx: Context) -> None:
             numbers[name] = itertools.count(1)
             continue
         model.name = next(free for i in numbers[name] if (free := f"{name}_{i}") not in taken)
-        ctx.report(
-            NAME_TAKEN.diagnostic(
-                f'model "{name}" has the same name as another model and is renamed "{model.name}"',
-                origin=model.origin,
-                severity="warning",
-                values={"name": name, "renamed": model.name},
-            )
+        ctx.warn(
+            NAME_TAKEN,
+            f'model "{name}" has the same name as another model and is renamed "{model.name}"',
+            origin=model.origin,
+            severity="warning",
+            values={"name": name, "renamed": model.name},
         )

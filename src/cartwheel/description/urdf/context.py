@@ -6,24 +6,18 @@ from dataclasses import dataclass, field
 
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Material
-from cartwheel.errors import Diagnostic
+from cartwheel.description.sdf.context import Context, Version
 from cartwheel.geometry import Pose
 
 
-@dataclass(kw_only=True, slots=True)
-class UrdfContext:
-    """Shared state of the readers of one URDF."""
+@dataclass(slots=True)
+class UrdfContext(Context):
+    """Shared state of the readers of one URDF. SDF in its ``<gazebo>`` tags has this version."""
 
-    packages: Packages
+    version: Version = (1, 9)
     materials: dict[str, Material] = field(default_factory=dict)
     """Materials defined for the whole robot."""
-    diagnostics: list[Diagnostic] = field(default_factory=list)
-
-    def report(self, diagnostic: Diagnostic) -> None:
-        """Adds a diagnostic."""
-        self.diagnostics.append(diagnostic)
 
 
 def read_origin(node: Node) -> Pose:

@@ -91,14 +91,13 @@ def _spread(part: Sequence[Link], ctx: UrdfContext) -> Mapping[str, Link]:
     like = _of_shapes(link) or _speck(link.origin)
     pose = Pose(stated.pose.position)
     inertial = replace(stated, pose=pose, **like.scaled(stated.mass))
-    ctx.report(
-        robot.INERTIA_IMPOSSIBLE.diagnostic(
-            f'link "{link.name}" moves, but its inertia is 0; Cartwheel computes the inertia from '
-            "the geometry",
-            origin=stated.origin,
-            hint=f"Use instead: {inertial_text(inertial)}",
-            values={"link": link.name},
-        )
+    ctx.warn(
+        robot.INERTIA_IMPOSSIBLE,
+        f'link "{link.name}" moves, but its inertia is 0; Cartwheel computes the inertia from '
+        "the geometry",
+        origin=stated.origin,
+        hint=f"Use instead: {inertial_text(inertial)}",
+        values={"link": link.name},
     )
     return {link.name: replace(link, inertial=inertial)}
 
@@ -165,14 +164,13 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
         advice = "`cartwheel check` shows the missing <inertial>."
         if len(parts[0]) == 1:
             advice = f'Add to link "{first.name}": {inertial_text(first.inertial)}'
-        ctx.report(
-            robot.INERTIA_MISSING.diagnostic(
-                f"{_mover(roots[0], holders[0])}. {_fate(holders[0])}; Cartwheel uses a mass of "
-                f"{weights[0]:.3g} kg{_reason(first)}",
-                origin=first.origin,
-                hint=advice,
-                values={"links": (roots[0],), "masses": (weights[0],)},
-            )
+        ctx.warn(
+            robot.INERTIA_MISSING,
+            f"{_mover(roots[0], holders[0])}. {_fate(holders[0])}; Cartwheel uses a mass of "
+            f"{weights[0]:.3g} kg{_reason(first)}",
+            origin=first.origin,
+            hint=advice,
+            values={"links": (roots[0],), "masses": (weights[0],)},
         )
         return
     shown = ", ".join(
@@ -182,14 +180,13 @@ def _warn(roots: Sequence[str], found: Mapping[str, Link], tree: Tree, ctx: Urdf
     fate = (
         "does not load such a robot" if None in holders else "ignores these links and their joints"
     )
-    ctx.report(
-        robot.INERTIA_MISSING.diagnostic(
-            f"{len(roots)} moving links have no <inertial>. Gazebo {fate}; Cartwheel computes the "
-            f"masses from the geometry at {WATER:g} kg/m³: {shown}{more}",
-            origin=first.origin,
-            hint="`cartwheel check` prints an <inertial> for each link.",
-            values={"links": tuple(roots), "masses": tuple(weights)},
-        )
+    ctx.warn(
+        robot.INERTIA_MISSING,
+        f"{len(roots)} moving links have no <inertial>. Gazebo {fate}; Cartwheel computes the "
+        f"masses from the geometry at {WATER:g} kg/m³: {shown}{more}",
+        origin=first.origin,
+        hint="`cartwheel check` prints an <inertial> for each link.",
+        values={"links": tuple(roots), "masses": tuple(weights)},
     )
 
 

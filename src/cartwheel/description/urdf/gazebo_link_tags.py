@@ -11,7 +11,7 @@ from cartwheel.description.appearance.materials import gazebo_material, unknown_
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Light, Link, Material, Sensor, Visual
-from cartwheel.description.sdf.context import Context, not_simulated, read_pose
+from cartwheel.description.sdf.context import not_simulated, read_pose
 from cartwheel.description.sdf.light import read_light
 from cartwheel.description.sdf.links.material import read_material
 from cartwheel.description.sdf.links.surface import not_negative, read_surface
@@ -127,9 +127,8 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     """
     for child in node.children:
         tags.places.setdefault(child.tag, child.origin)
-    sdf = Context(ctx.packages, (1, 9), ctx.diagnostics)
     for tag, name in _SURFACE.items():
-        value = not_negative(node.child(tag), sdf)
+        value = not_negative(node.child(tag), ctx)
         if value is not None:
             tags.surface[name] = value
     contacts = node.child("maxContacts")
@@ -145,24 +144,23 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
     _read_motion(node, tags)
     material = node.child("material")
     if material is not None:
-        tags.material = _material(material, sdf, ctx)
+        tags.material = _material(material, ctx)
     # SDF requires names for both, which are ignored: the tags apply to all of the link's parts.
     for visual in node.all("visual"):
         visual.get("name")
-        _read_visual(visual, tags, sdf)
+        _read_visual(visual, tags, ctx)
     for collision in node.all("collision"):
         collision.get("name")
-        _read_collision(collision, tags, sdf)
+        _read_collision(collision, tags, ctx)
     seen = {sensor.name for sensor in tags.sensors}
     for read in read_sensors(node.all("sensor"), lambda each: read_sensor(each, link), ctx.report):
         if read.name in seen:
-            ctx.report(
-                codes.SENSOR_TWICE.diagnostic(
-                    f'link "{link}" has two sensors named "{read.name}", which may publish on the '
-                    "same topic",
-                    origin=read.origin,
-                    values={"link": link, "name": read.name},
-                )
+            ctx.warn(
+                codes.SENSOR_TWICE,
+                f'link "{link}" has two sensors named "{read.name}", which may publish on the '
+                "same topic",
+                origin=read.origin,
+                values={"link": link, "name": read.name},
             )
         seen.add(read.name)
         tags.sensors.append(read)
@@ -194,11 +192,11 @@ def _read_motion(node: Node, tags: LinkTags) -> None:
             tags.link[f"{which}_damping"] = max(0.0, decay)
 
 
-def _material(node: Node, sdf: Context, ctx: UrdfContext) -> Material | None:
+def _material(node: Node, ctx: UrdfContext) -> Material | None:
     if not node.children:
         return _known(Material(name=node.text), node, ctx)
     try:
-        return _known(read_material(node, sdf), node, ctx)
+        return _known(read_material(node, ctx), node, ctx)
     except DescriptionError as error:
         # Gazebo reads only the name, so mistakes in the rest have no effect.
         node.mark()
@@ -225,10 +223,10 @@ def _known(material: Material, node: Node, ctx: UrdfContext) -> Material | None:
     return found
 
 
-def _read_visual(node: Node, tags: LinkTags, sdf: Context) -> None:
+def _read_visual(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:
     material = node.child("material")
     if material is not None:
-        read = read_material(material, sdf)
+        read = read_material(material, ctx)
         found = gazebo_material(read.name) if read.diffuse is None else None
         tags.material = found or read
     transparency = node.optional_number_at("transparency")
@@ -242,7 +240,7 @@ def _read_visual(node: Node, tags: LinkTags, sdf: Context) -> None:
         tags.visual["laser_retro"] = retro
 
 
-def _read_collision(node: Node, tags: LinkTags, sdf: Context) -> None:
+def _read_collision(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:
     contacts = node.child("max_contacts")
     if contacts is not None:
         tags.surface["max_contacts"] = contacts.integer()
@@ -252,7 +250,7 @@ def _read_collision(node: Node, tags: LinkTags, sdf: Context) -> None:
     surface = node.child("surface")
     if surface is None:
         return
-    tags.surface.update(read_surface(surface, sdf))
+    tags.surface.update(read_surface(surface, ctx))
 
 
 def warn_idle(node: Node, reasons: Mapping[str, str], ctx: UrdfContext) -> None:

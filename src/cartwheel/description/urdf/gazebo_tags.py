@@ -100,16 +100,15 @@ def read_gazebo_tags(
         if reference not in links and reference not in joints:
             # Gazebo ignores it silently, and published robots contain such tags.
             names = referable(node, links, joints)
-            ctx.report(
-                robot_codes.REFERENCE_UNKNOWN.diagnostic(
-                    f'<gazebo> refers to "{reference}", which is neither a link nor a joint, so '
-                    "everything in it is ignored",
-                    origin=node.origin,
-                    hint=suggestion(reference, names),
-                    severity="warning",
-                    mark="reference",
-                    values={"name": reference, "meant": meant(reference, names)},
-                )
+            ctx.warn(
+                robot_codes.REFERENCE_UNKNOWN,
+                f'<gazebo> refers to "{reference}", which is neither a link nor a joint, so '
+                "everything in it is ignored",
+                origin=node.origin,
+                hint=suggestion(reference, names),
+                severity="warning",
+                mark="reference",
+                values={"name": reference, "meant": meant(reference, names)},
             )
             # Reported as a whole, not by part.
             node.children.clear()
@@ -152,12 +151,11 @@ def _settle(node: Node, ctx: UrdfContext) -> None:
         if child.attributes.get("value", "").strip() and child.tag not in _WITH_PARTS:
             child.text = (child.get("value") or "").strip()
         elif not child.attributes or list(child.attributes) == ["value"]:
-            ctx.report(
-                codes.TAG_EMPTY.diagnostic(
-                    f"<{child.tag}> is empty, so its default is used",
-                    origin=child.origin,
-                    values={"tag": child.tag},
-                )
+            ctx.warn(
+                codes.TAG_EMPTY,
+                f"<{child.tag}> is empty, so its default is used",
+                origin=child.origin,
+                values={"tag": child.tag},
             )
             node.drop(child)
 
@@ -177,27 +175,25 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
             kind = "link" if child.tag in LINK_TAGS else "joint"
             node.all(child.tag)
             child.mark()
-            ctx.report(
-                codes.TAG_MISPLACED.diagnostic(
-                    f"<{child.tag}> has no effect in a <gazebo> without a reference",
-                    origin=child.origin,
-                    hint=f'Move it to a <gazebo reference="…"> with the name of a {kind}.',
-                    values={"tag": child.tag, "needs": kind, "reference": ""},
-                )
+            ctx.warn(
+                codes.TAG_MISPLACED,
+                f"<{child.tag}> has no effect in a <gazebo> without a reference",
+                origin=child.origin,
+                hint=f'Move it to a <gazebo reference="…"> with the name of a {kind}.',
+                values={"tag": child.tag, "needs": kind, "reference": ""},
             )
 
 
 def _misplaced_plugins(node: Node, reference: str, ctx: UrdfContext) -> list[PluginTag]:
     plugins = [read_plugin(plugin) for plugin in node.all("plugin")]
     for plugin in plugins:
-        ctx.report(
-            codes.TAG_MISPLACED.diagnostic(
-                f'plugin "{plugin.name}" is in the <gazebo> of "{reference}", where Gazebo Classic '
-                "does not load it; Cartwheel loads it as a plugin of the robot",
-                origin=plugin.origin,
-                hint="Move it to a <gazebo> without a reference.",
-                values={"tag": "plugin", "name": plugin.name, "reference": reference},
-            )
+        ctx.warn(
+            codes.TAG_MISPLACED,
+            f'plugin "{plugin.name}" is in the <gazebo> of "{reference}", where Gazebo Classic '
+            "does not load it; Cartwheel loads it as a plugin of the robot",
+            origin=plugin.origin,
+            hint="Move it to a <gazebo> without a reference.",
+            values={"tag": "plugin", "name": plugin.name, "reference": reference},
         )
     return plugins
 
@@ -235,13 +231,12 @@ def _read_joint_tags(
             fields[name] = found.boolean() or fields.get(name, False)
     for fudge in node.all("fudgeFactor"):
         fudge.mark()
-        ctx.report(
-            codes.NOT_SIMULATED.diagnostic(
-                "<fudgeFactor> has no effect: it corrects an error of ODE that does not exist in "
-                "MuJoCo",
-                origin=fudge.origin,
-                values={"tag": "fudgeFactor"},
-            )
+        ctx.warn(
+            codes.NOT_SIMULATED,
+            "<fudgeFactor> has no effect: it corrects an error of ODE that does not exist in "
+            "MuJoCo",
+            origin=fudge.origin,
+            values={"tag": "fudgeFactor"},
         )
     child_tags = tags.links.setdefault(joint.child, LinkTags())
     for read in read_sensors(
@@ -252,12 +247,11 @@ def _read_joint_tags(
         if not of_both or read.type == _OF_JOINTS:
             child_tags.sensors.append(read)
     if joint.type != "fixed" and fields.get("preserve_fixed"):
-        ctx.report(
-            codes.NOT_SIMULATED.diagnostic(
-                f'joint "{joint.name}" is not fixed, so <preserveFixedJoint> has no effect',
-                origin=node.origin,
-                values={"joint": joint.name},
-            )
+        ctx.warn(
+            codes.NOT_SIMULATED,
+            f'joint "{joint.name}" is not fixed, so <preserveFixedJoint> has no effect',
+            origin=node.origin,
+            values={"joint": joint.name},
         )
 
 
@@ -268,11 +262,10 @@ def _warn_misplaced(node: Node, reference: str, is_link: bool, ctx: UrdfContext)
         if child.tag in there and child.tag not in here:
             node.all(child.tag)
             child.mark()
-            ctx.report(
-                codes.TAG_MISPLACED.diagnostic(
-                    f"<{child.tag}> has no effect because it applies only to {kinds[0]}s, but "
-                    f'"{reference}" is a {kinds[1]}',
-                    origin=child.origin,
-                    values={"tag": child.tag, "needs": kinds[0], "reference": reference},
-                )
+            ctx.warn(
+                codes.TAG_MISPLACED,
+                f"<{child.tag}> has no effect because it applies only to {kinds[0]}s, but "
+                f'"{reference}" is a {kinds[1]}',
+                origin=child.origin,
+                values={"tag": child.tag, "needs": kinds[0], "reference": reference},
             )

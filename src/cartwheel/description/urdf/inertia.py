@@ -45,13 +45,12 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     message, hint = found
     if not any((*diagonal, *products)):
         if rigid:
-            ctx.report(
-                robot.INERTIA_IMPOSSIBLE.diagnostic(
-                    f'link "{link}" is a point mass: its inertia is 0',
-                    origin=i.origin,
-                    severity="info",
-                    values={"link": link},
-                )
+            ctx.warn(
+                robot.INERTIA_IMPOSSIBLE,
+                f'link "{link}" is a point mass: its inertia is 0',
+                origin=i.origin,
+                severity="info",
+                values={"link": link},
             )
         return inertial  # a rotating part without any inertia gets one as a whole
     if moments[2] <= 0:
@@ -65,15 +64,14 @@ def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfConte
     (ixx, iyy, izz), (ixy, ixz, iyz) = made_possible(diagonal, products)
     made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
     smaller = principal_moments(made.diagonal, made.products)
-    ctx.report(
-        robot.INERTIA_IMPOSSIBLE.diagnostic(
-            f'link "{link}": {message}; Cartwheel increases the smaller moments to '
-            f"{smaller[0]:.4g} and {smaller[1]:.4g}",
-            origin=i.origin,
-            hint=hint,
-            severity="info" if rigid else "warning",
-            values={"link": link, "moments": moments, "used": smaller},
-        )
+    ctx.warn(
+        robot.INERTIA_IMPOSSIBLE,
+        f'link "{link}": {message}; Cartwheel increases the smaller moments to '
+        f"{smaller[0]:.4g} and {smaller[1]:.4g}",
+        origin=i.origin,
+        hint=hint,
+        severity="info" if rigid else "warning",
+        values={"link": link, "moments": moments, "used": smaller},
     )
     return made
 

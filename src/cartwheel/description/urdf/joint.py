@@ -67,13 +67,12 @@ def read_joint(node: Node, links: Collection[str], ctx: UrdfContext) -> tuple[Jo
             continue
         part.mark()
         if unused != "axis":  # allowed in URDF
-            ctx.report(
-                tags.TAG_IGNORED.diagnostic(
-                    f'joint "{name}" is {kind}, so its <{unused}> has no effect',
-                    origin=part.origin,
-                    severity="info",
-                    values={"joint": name, "tag": unused},
-                )
+            ctx.warn(
+                tags.TAG_IGNORED,
+                f'joint "{name}" is {kind}, so its <{unused}> has no effect',
+                origin=part.origin,
+                severity="info",
+                values={"joint": name, "tag": unused},
             )
     joint = Joint(
         name=name,
@@ -135,25 +134,23 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
                 ctx.report(reversed_limits(name, lower, upper, limits.origin))
                 lower = upper = None
     elif kind in ("revolute", "prismatic"):
-        ctx.report(
-            robot.LIMIT_MISSING.diagnostic(
-                f'joint "{name}" of type {kind} has no <limit>; ROS rejects the robot, but '
-                "Cartwheel does not limit the joint",
-                origin=node.origin,
-                severity="warning",
-                values={"joint": name},
-            )
+        ctx.warn(
+            robot.LIMIT_MISSING,
+            f'joint "{name}" of type {kind} has no <limit>; ROS rejects the robot, but '
+            "Cartwheel does not limit the joint",
+            origin=node.origin,
+            severity="warning",
+            values={"joint": name},
         )
     if kind not in ("revolute", "prismatic"):
         if lower or upper:
             assert limits is not None
-            ctx.report(
-                tags.TAG_IGNORED.diagnostic(
-                    f'joint "{name}" is {kind}, so its lower and upper limits have no effect',
-                    origin=limits.origin,
-                    severity="info",
-                    values={"joint": name, "tag": "limit"},
-                )
+            ctx.warn(
+                tags.TAG_IGNORED,
+                f'joint "{name}" is {kind}, so its lower and upper limits have no effect',
+                origin=limits.origin,
+                severity="info",
+                values={"joint": name, "tag": "limit"},
             )
         lower = upper = None
     dynamics = node.child("dynamics")
@@ -175,13 +172,12 @@ def _bound(limits: Node, attribute: str, joint: str, ctx: UrdfContext) -> float 
     value = limits.optional_number_of(attribute, infinite=True)
     if value is None or value >= 0:
         return value
-    ctx.report(
-        tags.VALUE_IGNORED.diagnostic(
-            f'joint "{joint}": the {attribute} limit {value:g} is negative, so there is no limit',
-            origin=limits.origin,
-            severity="info",
-            values={"joint": joint, "attribute": attribute, "stated": value},
-        )
+    ctx.warn(
+        tags.VALUE_IGNORED,
+        f'joint "{joint}": the {attribute} limit {value:g} is negative, so there is no limit',
+        origin=limits.origin,
+        severity="info",
+        values={"joint": joint, "attribute": attribute, "stated": value},
     )
     return None
 
@@ -196,14 +192,13 @@ def _not_negative(dynamics: Node | None, attribute: str, joint: str, ctx: UrdfCo
         return 0.0
     value = dynamics.number_of(attribute, 0.0)
     if value < 0:
-        ctx.report(
-            tags.VALUE_INVALID.diagnostic(
-                f'joint "{joint}": the {attribute} {value:g} is negative, which would drive the '
-                "joint, so 0 is used",
-                origin=dynamics.origin,
-                values={"joint": joint, "attribute": attribute, "stated": value},
-                mark=attribute,
-            )
+        ctx.warn(
+            tags.VALUE_INVALID,
+            f'joint "{joint}": the {attribute} {value:g} is negative, which would drive the '
+            "joint, so 0 is used",
+            origin=dynamics.origin,
+            values={"joint": joint, "attribute": attribute, "stated": value},
+            mark=attribute,
         )
     return max(0.0, value)
 
@@ -247,13 +242,12 @@ def without_invalid_mimics(joints: Sequence[Joint], ctx: UrdfContext) -> list[Jo
         else:
             continue
         by_name[name] = replace(joint, mimic=None)
-        ctx.report(
-            robot.MIMIC_UNKNOWN.diagnostic(
-                f"{message}, so it moves independently",
-                origin=joint.origin,
-                hint=hint,
-                values=values,
-            )
+        ctx.warn(
+            robot.MIMIC_UNKNOWN,
+            f"{message}, so it moves independently",
+            origin=joint.origin,
+            hint=hint,
+            values=values,
         )
     return list(by_name.values())
 

@@ -136,13 +136,12 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
         size = node.vec3_of("size")
         if min(size) < 0:
             # Gazebo Classic draws it inside out, with the absolute size.
-            ctx.report(
-                tags.VALUE_IGNORED.diagnostic(
-                    f'a box of link "{link}" has the negative size {_listed(size)}, so the sign is '
-                    "ignored",
-                    origin=node.origin,
-                    values={"link": link, "stated": size},
-                )
+            ctx.warn(
+                tags.VALUE_IGNORED,
+                f'a box of link "{link}" has the negative size {_listed(size)}, so the sign is '
+                "ignored",
+                origin=node.origin,
+                values={"link": link, "stated": size},
             )
             size = (abs(size[0]), abs(size[1]), abs(size[2]))
         sizes: tuple[float, ...] = size
@@ -163,15 +162,14 @@ def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | No
             "Sizes are in metres and must be above 0.",
         )
     if min(sizes) == 0:
-        ctx.report(
-            tags.VALUE_IGNORED.diagnostic(
-                f'a {node.tag} of link "{link}" has the size {_listed(sizes)}, so the {kind} is '
-                "ignored",
-                origin=node.origin,
-                # All zeros are the old way to write a link that is only a frame.
-                severity="warning" if any(sizes) else "info",
-                values={"link": link, "stated": sizes, "left_out": kind},
-            )
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f'a {node.tag} of link "{link}" has the size {_listed(sizes)}, so the {kind} is '
+            "ignored",
+            origin=node.origin,
+            # All zeros are the old way to write a link that is only a frame.
+            severity="warning" if any(sizes) else "info",
+            values={"link": link, "stated": sizes, "left_out": kind},
         )
         return None
     return shape

@@ -31,12 +31,11 @@ def _define(node: Node, ctx: UrdfContext) -> None:
         return
     known = ctx.materials.setdefault(name, material)
     if known != material:
-        ctx.report(
-            tags.MATERIAL_DIFFERS.diagnostic(
-                f'the material "{name}" has two different definitions; the first one is used',
-                origin=node.origin,
-                values={"name": name},
-            )
+        ctx.warn(
+            tags.MATERIAL_DIFFERS,
+            f'the material "{name}" has two different definitions; the first one is used',
+            origin=node.origin,
+            values={"name": name},
         )
 
 
@@ -51,13 +50,12 @@ def read_material(node: Node | None, ctx: UrdfContext) -> Material:
         return ctx.materials[name]
     if name:
         known = sorted(ctx.materials)
-        ctx.report(
-            tags.MATERIAL_UNDEFINED.diagnostic(
-                f'the material "{name}" is not defined',
-                origin=node.origin,
-                hint=suggestion(name, known) if known else "",
-                values={"name": name, "meant": meant(name, known)},
-            )
+        ctx.warn(
+            tags.MATERIAL_UNDEFINED,
+            f'the material "{name}" is not defined',
+            origin=node.origin,
+            hint=suggestion(name, known) if known else "",
+            values={"name": name, "meant": meant(name, known)},
         )
     return Material(name=name)
 
@@ -83,12 +81,11 @@ def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
     values = text.split()
     try:
         if len(values) == 3:
-            ctx.report(
-                tags.VALUE_IGNORED.diagnostic(
-                    f'the colour "{text}" has no alpha value, so 1 is used',
-                    origin=node.origin,
-                    values={"stated": text},
-                )
+            ctx.warn(
+                tags.VALUE_IGNORED,
+                f'the colour "{text}" has no alpha value, so 1 is used',
+                origin=node.origin,
+                values={"stated": text},
             )
             values = [*values, "1"]
         r, g, b, a = numbers.vector(" ".join(values), 4, "color rgba", node.origin)
@@ -99,12 +96,11 @@ def _colour(node: Node, ctx: UrdfContext) -> Rgba | None:
         return None
     rgba = (_share(r), _share(g), _share(b), _share(a))
     if rgba != (r, g, b, a):
-        ctx.report(
-            tags.VALUE_IGNORED.diagnostic(
-                f'the colour "{text}" has values outside 0 to 1, which are clipped',
-                origin=node.origin,
-                values={"stated": text},
-            )
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f'the colour "{text}" has values outside 0 to 1, which are clipped',
+            origin=node.origin,
+            values={"stated": text},
         )
     return rgba
 

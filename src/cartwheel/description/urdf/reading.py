@@ -147,13 +147,12 @@ def _warn_unprefixed(root: Node, ctx: UrdfContext) -> None:
     for tag in ("include", "property", "macro", "arg", "if", "unless"):
         for node in root.all(tag):
             node.mark()
-            ctx.report(
-                files.XACRO_PREFIX.diagnostic(
-                    f"<{tag}> has no effect because it lacks the prefix xacro:",
-                    origin=node.origin,
-                    hint=f"Use <xacro:{tag}>.",
-                    values={"tag": tag, "meant": f"xacro:{tag}"},
-                )
+            ctx.warn(
+                files.XACRO_PREFIX,
+                f"<{tag}> has no effect because it lacks the prefix xacro:",
+                origin=node.origin,
+                hint=f"Use <xacro:{tag}>.",
+                values={"tag": tag, "meant": f"xacro:{tag}"},
             )
 
 
@@ -180,14 +179,12 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
     holder = tree.inbound.get(name)
     fixed = holder is not None and holder.type == "fixed"
     if inertial.mass <= 0:
-        ctx.report(
-            robot.MASS_NOT_POSITIVE.diagnostic(
-                f'link "{name}" has a mass of {inertial.mass:g} kg, so it is simulated without a '
-                "mass",
-                origin=inertial.origin,
-                severity="info" if fixed and inertial.mass == 0 else "warning",
-                values={"link": name, "stated": inertial.mass},
-            )
+        ctx.warn(
+            robot.MASS_NOT_POSITIVE,
+            f'link "{name}" has a mass of {inertial.mass:g} kg, so it is simulated without a mass',
+            origin=inertial.origin,
+            severity="info" if fixed and inertial.mass == 0 else "warning",
+            values={"link": name, "stated": inertial.mass},
         )
         return None
     rigid = fixed or any(joint.type == "fixed" for joint in tree.children[name])
@@ -207,13 +204,12 @@ def _without_world(links: list[Link], tree: Tree, ctx: UrdfContext) -> list[Link
             origin=world.origin,
         )
     if world.visuals or world.collisions or world.inertial or world.sensors:
-        ctx.report(
-            tag_codes.ELEMENT_LEFT_OUT.diagnostic(
-                'the link "world" represents the world itself, so its shapes, mass and sensors are '
-                "ignored",
-                origin=world.origin,
-                values={"tag": "link", "name": WORLD},
-            )
+        ctx.warn(
+            tag_codes.ELEMENT_LEFT_OUT,
+            'the link "world" represents the world itself, so its shapes, mass and sensors are '
+            "ignored",
+            origin=world.origin,
+            values={"tag": "link", "name": WORLD},
         )
     return [link for name in tree.order for link in kept if link.name == name]
 
@@ -222,12 +218,11 @@ def _warn_untouchable(links: Sequence[Link], ctx: UrdfContext) -> None:
     """Warns about a robot for rviz only, without collisions."""
     seen = next((link for link in links if link.visuals), None)
     if seen is not None and not any(link.collisions for link in links):
-        ctx.report(
-            robot.BASE_WITHOUT_COLLISION.diagnostic(
-                "no link of the robot has a <collision>, so the robot falls through the ground",
-                origin=seen.visuals[0].origin,
-                hint="Add a <collision> next to each <visual>, with the same <origin> and "
-                f'<geometry>. Start with link "{seen.name}".',
-                values={"link": seen.name},
-            )
+        ctx.warn(
+            robot.BASE_WITHOUT_COLLISION,
+            "no link of the robot has a <collision>, so the robot falls through the ground",
+            origin=seen.visuals[0].origin,
+            hint="Add a <collision> next to each <visual>, with the same <origin> and "
+            f'<geometry>. Start with link "{seen.name}".',
+            values={"link": seen.name},
         )

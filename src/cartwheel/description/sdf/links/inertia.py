@@ -86,10 +86,13 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         made = replace(i, ixx=ixx, iyy=iyy, izz=izz, ixy=ixy, ixz=ixz, iyz=iyz)
         a, b, _ = principal_moments((ixx, iyy, izz), (ixy, ixz, iyz))
         here = f"Cartwheel increases the smaller moments to {a:.4g} and {b:.4g}"
-    ctx.report(
-        INERTIA_IMPOSSIBLE.diagnostic(
-            f"{message}; {here}", origin=i.origin, hint=hint, severity="warning", values=values
-        )
+    ctx.warn(
+        INERTIA_IMPOSSIBLE,
+        f"{message}; {here}",
+        origin=i.origin,
+        hint=hint,
+        severity="warning",
+        values=values,
     )
     return made
 

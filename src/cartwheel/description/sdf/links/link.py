@@ -126,14 +126,12 @@ def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
         if part is not None and part.name in seen:
             numbered = (f"{part.name}_{number}" for number in itertools.count(1))
             name = next(each for each in numbered if each not in taken)
-            ctx.report(
-                tags.NAME_TAKEN.diagnostic(
-                    f'{kind} "{part.name}" has the same name as another {kind} and is renamed '
-                    f'"{name}"',
-                    origin=part.origin,
-                    severity="warning",
-                    values={"name": part.name, "renamed": name},
-                )
+            ctx.warn(
+                tags.NAME_TAKEN,
+                f'{kind} "{part.name}" has the same name as another {kind} and is renamed "{name}"',
+                origin=part.origin,
+                severity="warning",
+                values={"name": part.name, "renamed": name},
             )
             mine = replace(part, name=name)
         if mine is not None:
@@ -162,13 +160,11 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
         # Written by a model editor for a mesh with unknown volume.
         tensor.mark()
         name = link.attributes.get("name", "")
-        ctx.report(
-            tags.DEFAULT_USED.diagnostic(
-                f'the inertia of link "{name}" contains NaN, so the default in SDF, 1 kg m², is '
-                "used",
-                origin=tensor.origin,
-                values={"link": name, "missing": "inertia"},
-            )
+        ctx.warn(
+            tags.DEFAULT_USED,
+            f'the inertia of link "{name}" contains NaN, so the default in SDF, 1 kg m², is used',
+            origin=tensor.origin,
+            values={"link": name, "missing": "inertia"},
         )
         tensor = None
 
@@ -199,14 +195,13 @@ def _auto_inertial(link: Node, node: Node, ctx: Context, collisions: list[Collis
     found = inertial_of(collisions, densities, node.origin)
     if found is None:
         name = link.attributes.get("name", "")
-        ctx.report(
-            tags.DEFAULT_USED.diagnostic(
-                f'the inertia of link "{name}" cannot be computed because the link has no '
-                "collision shape with a volume, so a mass of 1 kg and moments of inertia of 1 kg "
-                "m² are used",
-                origin=node.origin,
-                values={"link": name, "missing": "collision"},
-            )
+        ctx.warn(
+            tags.DEFAULT_USED,
+            f'the inertia of link "{name}" cannot be computed because the link has no '
+            "collision shape with a volume, so a mass of 1 kg and moments of inertia of 1 kg "
+            "m² are used",
+            origin=node.origin,
+            values={"link": name, "missing": "collision"},
         )
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=node.origin)
     mass = node.number_at("mass", found.mass)

@@ -83,13 +83,11 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
     found = find_script(name, places, may_read)
     if found is None:
         if places and not name.startswith("Gazebo/"):
-            ctx.report(
-                tags.MATERIAL_UNDEFINED.diagnostic(
-                    f'the scripts of the <material> do not define "{name}", so the colour is '
-                    "unchanged",
-                    origin=script.origin,
-                    values={"name": name, "meant": ""},
-                )
+            ctx.warn(
+                tags.MATERIAL_UNDEFINED,
+                f'the scripts of the <material> do not define "{name}", so the colour is unchanged',
+                origin=script.origin,
+                values={"name": name, "meant": ""},
             )
         elif lost and not name.startswith("Gazebo/"):
             ctx.report(
@@ -105,13 +103,12 @@ def _scripted(name: str, uris: list[Node], script: Node, ctx: Context) -> Materi
             ctx.report(unknown_material(name, script.origin))
         return Material(name=name)
     if found.missing is not None:
-        ctx.report(
-            files.FILE_MISSING.diagnostic(
-                f'the texture "{found.missing}" of material "{name}" does not exist',
-                origin=script.origin,
-                severity="warning",
-                values={"kind": "texture", "name": found.missing, "left_out": "texture"},
-            )
+        ctx.warn(
+            files.FILE_MISSING,
+            f'the texture "{found.missing}" of material "{name}" does not exist',
+            origin=script.origin,
+            severity="warning",
+            values={"kind": "texture", "name": found.missing, "left_out": "texture"},
         )
     return Material(
         name=name,

@@ -43,12 +43,11 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
     """
     geometry = owner.child("geometry")
     if geometry is None:
-        ctx.report(
-            tags.VALUE_IGNORED.diagnostic(
-                f"{_label(owner)} has no <geometry> and is ignored",
-                origin=owner.origin,
-                values={"left_out": owner.tag, "missing": "geometry", **owner.named},
-            )
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f"{_label(owner)} has no <geometry> and is ignored",
+            origin=owner.origin,
+            values={"left_out": owner.tag, "missing": "geometry", **owner.named},
         )
         return None
     for tag in SHAPES:
@@ -64,12 +63,11 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
                 code=tags.TYPE_UNKNOWN,
                 values={"name": wrong.tag, "meant": meant(wrong.tag, SHAPES)},
             )
-        ctx.report(
-            tags.TAG_EMPTY.diagnostic(
-                f"the <geometry> of {_label(owner)} is empty",
-                origin=owner.origin,
-                values={"tag": "geometry", "left_out": owner.tag, **owner.named},
-            )
+        ctx.warn(
+            tags.TAG_EMPTY,
+            f"the <geometry> of {_label(owner)} is empty",
+            origin=owner.origin,
+            values={"tag": "geometry", "left_out": owner.tag, **owner.named},
         )
         return None
     if tag == "empty":
@@ -147,12 +145,11 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
     x, y, z = node.vec3()
     if shape.tag == "box" and min(x, y, z) == 0 < max(x, y, z):
         # Gazebo's building editor writes this for the wall above a door that reaches the ceiling.
-        ctx.report(
-            tags.VALUE_IGNORED.diagnostic(
-                f"a side of the box has length 0 (size {node.text}), so {_FLAT * 1e3:g} mm is used",
-                origin=node.origin,
-                values={"stated": node.text},
-            )
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f"a side of the box has length 0 (size {node.text}), so {_FLAT * 1e3:g} mm is used",
+            origin=node.origin,
+            values={"stated": node.text},
         )
         x, y, z = (max(side, _FLAT) for side in (x, y, z))
     if min(x, y, z) <= 0:
@@ -161,12 +158,11 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
 
 
 def _warn_default(shape: Node, tag: str, ctx: Context) -> None:
-    ctx.report(
-        tags.DEFAULT_USED.diagnostic(
-            f"<{shape.tag}> has no <{tag}>, so the default in SDF, 1 m, is used",
-            origin=shape.origin,
-            values={"shape": shape.tag, "missing": tag},
-        )
+    ctx.warn(
+        tags.DEFAULT_USED,
+        f"<{shape.tag}> has no <{tag}>, so the default in SDF, 1 m, is used",
+        origin=shape.origin,
+        values={"shape": shape.tag, "missing": tag},
     )
 
 
@@ -191,12 +187,11 @@ def _polyline(nodes: list[Node], ctx: Context) -> Polyline:
         outlines.append(tuple((x, y) for x, y in points))
     heights = [positive(node.require_child("height"), "a height") for node in nodes]
     if any(height != heights[0] for height in heights):
-        ctx.report(
-            tags.VALUE_IGNORED.diagnostic(
-                f"the polylines of one geometry have different heights: {heights[0]:g} m is used",
-                origin=nodes[0].origin,
-                values={"stated": tuple(heights)},
-            )
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f"the polylines of one geometry have different heights: {heights[0]:g} m is used",
+            origin=nodes[0].origin,
+            values={"stated": tuple(heights)},
         )
     shape = Polyline(points=outlines[0], height=heights[0], holes=tuple(outlines[1:]))
     try:
@@ -223,12 +218,11 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
     values: Vec3 = (1.0, 1.0, 1.0)
     if scale is not None and len(scale.text.split()) == 1:
         values = (scale.number(),) * 3
-        ctx.report(
-            tags.VALUE_IGNORED.diagnostic(
-                f"the scale {scale.text} is used for all three axes",
-                origin=scale.origin,
-                values={"stated": scale.text},
-            )
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f"the scale {scale.text} is used for all three axes",
+            origin=scale.origin,
+            values={"stated": scale.text},
         )
     elif scale is not None:
         values = scale.vec3()

@@ -67,12 +67,11 @@ def not_negative(node: Node | None, ctx: Context) -> float | None:
         return None
     value = node.number(infinite=True)
     if value < 0:
-        ctx.report(
-            VALUE_IGNORED.diagnostic(
-                f"{node.tag} {node.text} is negative, so its default is used",
-                origin=node.origin,
-                values={"tag": node.tag, "stated": value},
-            )
+        ctx.warn(
+            VALUE_IGNORED,
+            f"{node.tag} {node.text} is negative, so its default is used",
+            origin=node.origin,
+            values={"tag": node.tag, "stated": value},
         )
         return None
     return value

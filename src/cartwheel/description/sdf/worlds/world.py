@@ -203,13 +203,12 @@ def _default_physics(node: Node, ctx: Context) -> Node | None:
         each.get("name"), each.get("type")
         if each is not chosen:
             each.mark()
-            ctx.report(
-                tags.TAG_REPEATED.diagnostic(
-                    "<physics> is repeated, so only the default or first <physics> is used",
-                    origin=each.origin,
-                    severity="info",
-                    values={"tag": "physics", "parent": "world"},
-                )
+            ctx.warn(
+                tags.TAG_REPEATED,
+                "<physics> is repeated, so only the default or first <physics> is used",
+                origin=each.origin,
+                severity="info",
+                values={"tag": "physics", "parent": "world"},
             )
     return chosen
 
@@ -229,13 +228,12 @@ def _physics(node: Node, ctx: Context) -> Physics:
         step = node.find("ode/solver/dt")
         if step is not None:
             ode = node.require_child("ode").mark()
-            ctx.report(
-                tags.TAG_IGNORED.diagnostic(
-                    "only <dt> of the <ode> in <physics> has an effect",
-                    origin=ode.origin,
-                    severity="info",
-                    values={"tag": "ode", "parent": "physics"},
-                )
+            ctx.warn(
+                tags.TAG_IGNORED,
+                "only <dt> of the <ode> in <physics> has an effect",
+                origin=ode.origin,
+                severity="info",
+                values={"tag": "ode", "parent": "physics"},
             )
     if step is not None and not SHORTEST_STEP <= step.number() <= LONGEST_STEP:
         raise step.fail(

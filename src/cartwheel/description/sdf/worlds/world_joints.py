@@ -62,14 +62,13 @@ def join_models(
             _leave_out(each, f"a {each.attributes['type']} joint cannot connect two models", ctx)
         else:
             if joint.type != "fixed" and joint.resists:
-                ctx.report(
-                    tags.NOT_SIMULATED.diagnostic(
-                        f'the limits, damping, friction and spring of joint "{joint.name}" are not '
-                        "simulated because the joint connects two models",
-                        origin=each.origin,
-                        severity="warning",
-                        values={"joint": joint.name},
-                    )
+                ctx.warn(
+                    tags.NOT_SIMULATED,
+                    f'the limits, damping, friction and spring of joint "{joint.name}" are not '
+                    "simulated because the joint connects two models",
+                    origin=each.origin,
+                    severity="warning",
+                    values={"joint": joint.name},
                 )
             between.append(joint)
     return list(found.values()), tuple(between)
@@ -106,11 +105,10 @@ def _owner(scoped: str, models: dict[str, RobotDescription]) -> tuple[RobotDescr
 def _leave_out(node: Node, why: str, ctx: Context) -> None:
     node.mark()
     name = node.attributes.get("name", "")
-    ctx.report(
-        tags.ELEMENT_LEFT_OUT.diagnostic(
-            f'joint "{name}" is ignored: {why}',
-            origin=node.origin,
-            severity="error",
-            values={"tag": "joint", "name": name, "left_out": "joint"},
-        )
+    ctx.warn(
+        tags.ELEMENT_LEFT_OUT,
+        f'joint "{name}" is ignored: {why}',
+        origin=node.origin,
+        severity="error",
+        values={"tag": "joint", "name": name, "left_out": "joint"},
     )
