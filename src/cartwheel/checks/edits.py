@@ -6,7 +6,7 @@ from typing import TypedDict
 
 from cartwheel.checks import nodes
 from cartwheel.description.elements.node import Node
-from cartwheel.description.model import Element
+from cartwheel.description.model import Element, PluginTag
 from cartwheel.errors import Origin, Place
 
 
@@ -29,7 +29,9 @@ def text(element: Node | Element, new: str) -> Edit:
     )
 
 
-def attribute(element: Node | Element, name: str, new: str, *, mark: str | None = None) -> Edit:
+def attribute(
+    element: Node | Element | PluginTag, name: str, new: str, *, mark: str | None = None
+) -> Edit:
     """Replaces or adds an attribute; the caret points to it or to `mark`."""
     return Edit(
         origin=element.origin,

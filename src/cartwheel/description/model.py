@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.geometry import Pose, Vec3
@@ -255,7 +255,7 @@ class Inertial:
         """ixy, ixz, iyz."""
         return self.ixy, self.ixz, self.iyz
 
-    def scaled(self, mass: float) -> dict[str, float]:
+    def scaled(self, mass: float) -> dict[str, Any]:
         """The moments, by their names, of a body with the same shape and another mass."""
         factor = mass / self.mass
         return {key: getattr(self, key) * factor for key in MOMENTS}
