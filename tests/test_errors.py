@@ -9,7 +9,7 @@ from cartwheel.codes.wires import PEER_LIMIT
 from cartwheel.codes.wires import SLOW_SUBSCRIBER as SLOW
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, UnknownNameError
 from cartwheel.reporting import Once, Reporter
-from cartwheel.similar_names import likely
+from cartwheel.similar_names import meant_one
 
 PLACE = Origin(file="a.urdf", line=3)
 
@@ -33,7 +33,7 @@ def test_a_name_of_megabytes_is_cut_and_compared_with_nothing(monkeypatch):
     assert len(str(error.values["name"])) < 600
     assert len(str(error)) < 1000
     assert error.values["meant"] == ""
-    assert likely("robot" * 1_000_000, ["robot"], cutoff=0.0) == ""
+    assert meant_one("robot" * 1_000_000, ["robot"], cutoff=0.0) == ""
     assert UnknownNameError("model", "robott", ["robot"]).values["meant"] == "robot"
     assert compared == [len("robott")]
 

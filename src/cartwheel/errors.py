@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypedDict
+from typing import Any, Literal, Self, TypedDict, Unpack
 
 from cartwheel.similar_names import LONGEST, SIMILAR, closest, suggested
 
@@ -38,16 +38,21 @@ shows what to write, but the exact location is unknown.
 """
 
 
-class Details(TypedDict, total=False):
-    """The optional arguments of `Code.diagnostic`."""
+class Where(TypedDict, total=False):
+    """What `Code.diagnostic` passes on to a `Diagnostic`."""
 
     origin: Origin | None
     hint: str
-    severity: Severity | None
     mark: str
-    values: Mapping[str, Value] | None
     instead: str
     place: Place
+
+
+class Details(Where, total=False):
+    """The optional arguments of `Code.diagnostic`."""
+
+    severity: Severity | None
+    values: Mapping[str, Value] | None
 
 
 _CODES: dict[str, Code] = {}
@@ -84,36 +89,21 @@ class Code:
         self,
         message: str,
         *,
-        origin: Origin | None = None,
-        hint: str = "",
         severity: Severity | None = None,
-        mark: str = "",
         values: Mapping[str, Value] | None = None,
-        instead: str = "",
-        place: Place = "",
+        **where: Unpack[Where],
     ) -> Diagnostic:
         """Creates a diagnostic with this code.
 
         Args:
             message: One sentence without location and code.
-            origin: The location in the user's file.
-            hint: The likely fix, as a sentence.
             severity: None for the code's default severity.
-            mark: The text in the source line that the caret points to; by default the whole tag.
             values: Names and numbers in the message, for programs, tests, rules and JSON.
-            instead: The replacement text.
-            place: Where to insert `instead`.
+            **where: The location and the fix; see the fields of `Diagnostic`.
         """
+        severity = severity or self.severity
         return Diagnostic(
-            code=self,
-            severity=severity or self.severity,
-            message=message,
-            origin=origin,
-            hint=hint,
-            mark=mark,
-            values=values or {},
-            instead=instead,
-            place=place,
+            code=self, severity=severity, message=message, values=values or {}, **where
         )
 
     def because(
@@ -138,14 +128,7 @@ class Code:
                 number, or its text.
         """
         if not isinstance(error, CartwheelError):
-            cause = one_line(error)
-            return self.diagnostic(
-                f"{message}: {cause}",
-                origin=origin,
-                hint=hint or "",
-                severity=severity,
-                values={**(values or {}), "cause": cause},
-            )
+            error = CartwheelError(one_line(error))
         # Unclassified errors differ if their messages differ.
         cause = error.message if error.code is UNCLASSIFIED else error.code.number
         return self.diagnostic(
@@ -235,8 +218,7 @@ class Diagnostic:
 
 
 class CartwheelError(Exception):
-    """Base class of errors that the user can correct. The command line prints them and exits with
-    2.
+    """Base class of errors that the user can correct; the command line exits with 2.
 
     Args:
         message: One sentence without location and code.
@@ -289,14 +271,20 @@ class CartwheelError(Exception):
 
     def diagnostic(self, severity: Severity = "error") -> Diagnostic:
         """Converts the error to a diagnostic, to report it without raising it."""
-        return Diagnostic(
-            code=self.code,
+        return self.code.diagnostic(
+            self.message,
             severity=severity,
-            message=self.message,
             origin=self.origin,
             hint=self.hint or "",
             values=self.values,
             mark=self.mark,
+        )
+
+    @classmethod
+    def of(cls, error: CartwheelError, origin: Origin | None) -> Self:
+        """The same fault as an error of this class, at a different location."""
+        return cls(
+            error.message, code=error.code, origin=origin, hint=error.hint, values=error.values
         )
 
 

@@ -11,12 +11,6 @@ LONGEST = 500
 """Maximum length of a name that is shown in full and compared with other names."""
 
 
-def likely(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
-    """A sentence that suggests the most similar name in `existing`, or an empty string."""
-    meant = meant_one(name, existing, cutoff=cutoff)
-    return f'Did you mean "{meant}"?' if meant else ""
-
-
 def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
     """The most similar name in `existing`, or an empty string."""
     close = closest(name, list(existing), cutoff)

@@ -56,11 +56,9 @@ class Group(TyperGroup):
         _write(formatter, option_sections(self, ctx))
 
 
-def add(
-    app: typer.Typer, function: Callable[..., Any], *, group: str, name: str | None = None
-) -> None:
+def add(app: typer.Typer, function: Callable[..., Any], *, group: str) -> None:
     """Adds a command to a program, in a group of commands."""
-    app.command(name, cls=Command, rich_help_panel=group)(function)
+    app.command(cls=Command, rich_help_panel=group)(function)
 
 
 def option(usage: str, text: str, group: str | None = None, **more: Any) -> Any:

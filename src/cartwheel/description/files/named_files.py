@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import numbers, xml
-from cartwheel.description.files.package_folders import share
+from cartwheel.description.files.package_folders import is_file, share
 from cartwheel.description.files.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
 
@@ -50,7 +50,7 @@ def find_description(path: Path | str, package_path: Sequence[Path] = ()) -> Pat
     if exists:
         return given
     for resources in _resource_folders():
-        if _is_file(resources / given):
+        if is_file(resources / given):
             return resources / given
     if len(given.parts) == 1:
         found_shipped = _shipped(given.name)
@@ -101,13 +101,6 @@ def _resource_folders() -> list[Path]:
     named = os.environ.get("GAZEBO_RESOURCE_PATH", "").split(os.pathsep)
     folders = [Path(part).expanduser() for part in named if part]
     return [*folders, *(folder / "worlds" for folder in folders), share(), share() / "worlds"]
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a name that is too long or contains a zero byte
-        return False
 
 
 def _shipped(name: str) -> Path | None:

@@ -124,13 +124,7 @@ def _file(uri: Node, ctx: Context) -> Path:
                 # Gazebo also searches its model folders for a bare name.
                 found = ctx.packages.find_model(plain, uri.origin)
             except DescriptionError:
-                raise NotThereError(
-                    error.message,
-                    code=error.code,
-                    origin=uri.origin,
-                    hint=error.hint,
-                    values=error.values,
-                ) from error
+                raise NotThereError.of(error, uri.origin) from error
     return _in_folder(found, uri, ctx) if found.is_dir() else found
 
 

@@ -22,7 +22,7 @@ from cartwheel.description.model import (
 from cartwheel.description.sdf.context import Context, not_simulated, positive
 from cartwheel.description.shapes.outline import OutlineError, convex_pieces
 from cartwheel.description.shapes.terrain import ELEVATION_MODELS, TerrainError, heights_of
-from cartwheel.errors import CartwheelError, DescriptionError, Origin
+from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Vec3
 from cartwheel.similar_names import meant, suggestion
 
@@ -98,17 +98,6 @@ def read_shape(owner: Node, ctx: Context) -> Shape | None:
 
 class _UnusableFileError(DescriptionError):
     """A shape's file that is missing or cannot be read."""
-
-    @classmethod
-    def of(cls, error: CartwheelError, origin: Origin) -> _UnusableFileError:
-        """The error for a file, with the element's origin."""
-        return cls(
-            error.message,
-            code=error.code,
-            origin=origin,
-            hint=error.hint,
-            values=error.values,
-        )
 
 
 def _primitive(tag: str, node: Node, ctx: Context) -> Shape:
