@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import Element, PluginTag, RobotDescription
@@ -44,16 +43,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         tag
         for tag in robot.plugins
         if not _MANAGER.search(name := short_name(tag.filename))
-        and (
-            _MOVES.search(name)
-            or (
-                not is_known(tag)
-                and (
-                    not joints.isdisjoint(_words(tag.element))
-                    or any(_COMMANDS.search(name) for name in _tags(tag.element))
-                )
-            )
-        )
+        and (_MOVES.search(name) or (not is_known(tag) and _acts(tag.element, joints)))
     ]
 
 
@@ -69,13 +59,8 @@ def is_known(tag: PluginTag) -> bool:
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
 
 
-def _tags(element: Element) -> Iterator[str]:
-    for child in element.children:
-        yield child.tag
-        yield from _tags(child)
-
-
-def _words(element: Element) -> Iterator[str]:
-    yield from element.text.split()
-    for child in element.children:
-        yield from _words(child)
+def _acts(element: Element, joints: set[str]) -> bool:
+    """Whether the tags of an unsupported plugin contain a joint's name, or name a command."""
+    parts = list(element.walk())
+    words = {word for each in parts for word in each.text.split()}
+    return not joints.isdisjoint(words) or any(_COMMANDS.search(each.tag) for each in parts[1:])

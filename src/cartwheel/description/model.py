@@ -57,6 +57,12 @@ class Element:
         """The direct children with this tag."""
         return (child for child in self.children if child.tag == tag)
 
+    def walk(self) -> Iterator[Element]:
+        """This element and all its descendants, in file order."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
     def attribute(self, name: str) -> str | None:
         """The value of an attribute."""
         return dict(self.attributes).get(name)

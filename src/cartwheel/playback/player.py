@@ -122,11 +122,7 @@ class Player(Run):
         Raises:
             RecordingError: Always.
         """
-        raise RecordingError(
-            f'the recorded model "{name}" cannot be deleted',
-            code=PLAYBACK_READ_ONLY,
-            values={"model": name},
-        )
+        raise _read_only(name, "deleted")
 
     def set_pose(self, name: str, _pose: Pose) -> None:
         """Raises an error, because a recording cannot change.
@@ -134,11 +130,7 @@ class Player(Run):
         Raises:
             RecordingError: Always.
         """
-        raise RecordingError(
-            f'the recorded model "{name}" cannot be moved',
-            code=PLAYBACK_READ_ONLY,
-            values={"model": name},
-        )
+        raise _read_only(name, "moved")
 
     def occupied(self) -> NoReturn:
         """Raises an error, because models cannot be placed in a recording.
@@ -348,3 +340,8 @@ def _is_kept(topic: RecordedTopic) -> bool:
     """Whether a topic's last message stays valid, as in a latched topic."""
     described = topic.type == STRING and topic.name.endswith("robot_description")
     return topic.latched or described or topic.name == "/tf_static"
+
+
+def _read_only(name: str, changed: str) -> RecordingError:
+    message = f'the recorded model "{name}" cannot be {changed}'
+    return RecordingError(message, code=PLAYBACK_READ_ONLY, values={"model": name})

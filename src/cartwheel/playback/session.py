@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from cartwheel.bridges.recording.reading import Recording
-from cartwheel.codes.recording import PLAYBACK_READ_ONLY
 from cartwheel.description.model import WorldDescription
-from cartwheel.errors import Diagnostic, RecordingError
+from cartwheel.errors import Diagnostic
 from cartwheel.graph import Graph
 from cartwheel.playback.player import Player
 
@@ -52,10 +51,10 @@ class PlaybackSession:
         """Diagnostics for the user."""
         return tuple(self.simulation.diagnostics)
 
-    def spawn(self, *_: Any, **__: Any) -> str:
+    def spawn(self, *_: Any, **__: Any) -> NoReturn:
         """Raises an error, because a recording cannot change.
 
         Raises:
             RecordingError: Always.
         """
-        raise RecordingError("models cannot be spawned during playback", code=PLAYBACK_READ_ONLY)
+        self.simulation.occupied()

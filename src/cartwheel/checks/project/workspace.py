@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+from cartwheel.checks import nodes
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.package_folders import IGNORE_MARKERS
@@ -82,10 +83,7 @@ def _manifests(folder: Path, walked: Walked) -> list[Path]:
 
 
 def _includes(root: Node) -> Iterator[str]:
-    waiting = [root]
-    while waiting:
-        node = waiting.pop()
-        waiting += node.children
+    for node in nodes.walk(root):
         name = node.attributes.get("filename", "")
         if node.tag in ("xacro:include", "include") and name:
             yield name

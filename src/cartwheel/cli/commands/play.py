@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn
 
 from cartwheel.assembly.ports import refuse_taken
 from cartwheel.cli import interrupts
@@ -14,8 +13,7 @@ from cartwheel.cli.commands.info import unfinished
 from cartwheel.cli.commands.report import Report
 from cartwheel.cli.console import say
 from cartwheel.codes.command import OPTION_INVALID
-from cartwheel.codes.recording import PLAYBACK_READ_ONLY
-from cartwheel.errors import CartwheelError, RecordingError
+from cartwheel.errors import CartwheelError
 from cartwheel.gate.access import Access
 
 
@@ -78,7 +76,7 @@ def play(options: Options) -> None:
         player.pause()
     report = Report(verbose=False)
     with interrupts.handled_by(player.stop, status=0):
-        server = ControlServer(played, title=f"playback of {options.file.name}", load=_refuse)
+        server = ControlServer(played, title=f"playback of {options.file.name}", load=played.spawn)
         with interrupts.finally_do(server.close):
             length = (player.end_ns - player.start_ns) / 1e9
             say(f"playing {options.file}, {length:.3f} s, {len(recording.topics)} topics")
@@ -109,7 +107,3 @@ def play(options: Options) -> None:
             if page is not None:
                 page.raise_failure()
     recording.close()
-
-
-def _refuse(*_: object, **__: object) -> NoReturn:
-    raise RecordingError("models cannot be spawned during playback", code=PLAYBACK_READ_ONLY)

@@ -284,6 +284,18 @@ class Node:
         node = self._filled(path)
         return node.vec3() if node is not None else default
 
+    def stated_booleans(self, names: Mapping[str, str]) -> dict[str, bool]:
+        """The booleans at those of some paths that exist, each with the name of its path; the last
+        one of a name counts.
+        """
+        found = ((name, self.find(path)) for path, name in names.items())
+        return {name: node.boolean() for name, node in found if node is not None}
+
+    def stated_numbers(self, names: Mapping[str, str]) -> dict[str, float]:
+        """The numbers at those of some paths that exist; see `stated_booleans`."""
+        found = ((name, self.optional_number_at(path)) for path, name in names.items())
+        return {name: value for name, value in found if value is not None}
+
     def _filled(self, path: str) -> Node | None:
         """The descendant at a path if it is not empty: an empty element selects the default."""
         node = self.find(path)
@@ -336,6 +348,7 @@ def needs_xacro(root: Node) -> bool:
     stack = [root]
     while stack:
         node = stack.pop()
+        stack.extend(node.children)
         if node.tag.startswith("xacro:"):
             return True
         words = (*node.attributes.values(), node.text)
@@ -344,5 +357,4 @@ def needs_xacro(root: Node) -> bool:
         left = root.tag == "sdf" and node.tag == "uri"
         if not left and any("$(find " in word for word in words):
             return True
-        stack.extend(node.children)
     return False

@@ -104,27 +104,25 @@ def read_sensors(
 def read_camera(node: Node) -> CameraIntrinsics:
     """The intrinsics of a camera, with SDF's defaults."""
     default = CameraIntrinsics()
-    image, clip = node.child("image"), node.child("clip")
-    width = image.integer_at("width", default.width) if image is not None else default.width
-    height = image.integer_at("height", default.height) if image is not None else default.height
-    near = clip.number_at("near", default.near) if clip is not None else default.near
-    far = clip.number_at("far", default.far) if clip is not None else default.far
+    width = node.integer_at("image/width", default.width)
+    height = node.integer_at("image/height", default.height)
+    near = node.number_at("clip/near", default.near)
+    far = node.number_at("clip/far", default.far)
     fov = node.number_at("horizontal_fov", default.horizontal_fov)
     if width < 1 or height < 1 or width * height > MOST_PIXELS:
-        wrong = image.child("width" if width < 1 else "height") if image is not None else None
-        raise (wrong or node).fail(
+        raise (node.find("image/width" if width < 1 else "image/height") or node).fail(
             f"an image must have at least 1 x 1 and at most {MOST_PIXELS:,} pixels (got "
             f"{width:.12g} x {height:.12g})"
         )
     if near < NEAREST or far > LARGEST:
-        wrong = clip.child("near" if near < NEAREST else "far") if clip is not None else None
-        raise (wrong or node).fail(
+        raise (node.find("clip/near" if near < NEAREST else "clip/far") or node).fail(
             f"<near> must be at least {NEAREST:g} m, and <far> at most {LARGEST:g} m "
             f"(got {near:g} and {far:g})"
         )
     if not near < far:
-        wrong = clip.child("near") if clip is not None else None
-        raise (wrong or node).fail(f"<near> must be below <far> (got {near:g} m and {far:g} m)")
+        raise (node.find("clip/near") or node).fail(
+            f"<near> must be below <far> (got {near:g} m and {far:g} m)"
+        )
     if not NARROWEST <= fov < 2 * math.pi:
         raise (node.child("horizontal_fov") or node).fail(
             f"<horizontal_fov> must be between {NARROWEST:g} and {2 * math.pi:.4g} rad (got "
@@ -140,7 +138,7 @@ def read_camera(node: Node) -> CameraIntrinsics:
         horizontal_fov=fov,
         width=width,
         height=height,
-        format=(image.text_at("format") if image is not None else "") or default.format,
+        format=node.text_at("image/format") or default.format,
         near=near,
         far=far,
         k1=_bounded(node, "distortion/k1", MOST_BENT),

@@ -47,6 +47,12 @@ _SURFACE = {
 }
 
 
+_MOTION = {
+    "selfCollide": "self_collide",
+    "self_collide": "self_collide",
+    "gravity": "gravity",
+    "kinematic": "kinematic",
+}
 _TOUCHED = (*_SURFACE, "fdir1", "maxContacts", "collision")
 _SEEN = ("material", "visual")
 
@@ -170,19 +176,10 @@ def read_link_tags(node: Node, link: str, tags: LinkTags, ctx: UrdfContext) -> N
 
 
 def _read_motion(node: Node, tags: LinkTags) -> None:
-    for tag in ("selfCollide", "self_collide"):
-        found = node.child(tag)
-        if found is not None:
-            tags.link["self_collide"] = found.boolean()
     off = node.child("turnGravityOff")
     if off is not None:
         tags.link["gravity"] = not off.boolean()
-    gravity = node.child("gravity")
-    if gravity is not None:
-        tags.link["gravity"] = gravity.boolean()
-    kinematic = node.child("kinematic")
-    if kinematic is not None:
-        tags.link["kinematic"] = kinematic.boolean()
+    tags.link |= node.stated_booleans(_MOTION)
     damping = node.optional_number_at("dampingFactor")
     if damping is not None:
         tags.link["linear_damping"] = tags.link["angular_damping"] = max(0.0, damping)
@@ -232,12 +229,8 @@ def _read_visual(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:
     transparency = node.optional_number_at("transparency")
     if transparency is not None:
         tags.visual["transparency"] = min(1.0, max(0.0, transparency))
-    shadows = node.child("cast_shadows")
-    if shadows is not None:
-        tags.visual["cast_shadows"] = shadows.boolean()
-    retro = node.optional_number_at("laser_retro")
-    if retro is not None:
-        tags.visual["laser_retro"] = retro
+    tags.visual |= node.stated_booleans({"cast_shadows": "cast_shadows"})
+    tags.visual |= node.stated_numbers({"laser_retro": "laser_retro"})
 
 
 def _read_collision(node: Node, tags: LinkTags, ctx: UrdfContext) -> None:

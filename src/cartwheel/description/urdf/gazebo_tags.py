@@ -203,17 +203,9 @@ def _read_joint_tags(
 ) -> None:
     fields = tags.joints.setdefault(joint.name, {})
     axis = fields.setdefault("axis", {})
-    for tag, name in (("stopCfm", "stop_cfm"), ("stopErp", "stop_erp")):
-        value = node.optional_number_at(tag)
-        if value is not None:
-            fields[name] = value
-    for tag, name in (
-        ("springStiffness", "spring_stiffness"),
-        ("springReference", "spring_reference"),
-    ):
-        value = node.optional_number_at(tag)
-        if value is not None:
-            axis[name] = value
+    fields |= node.stated_numbers({"stopCfm": "stop_cfm", "stopErp": "stop_erp"})
+    springs = {"springStiffness": "spring_stiffness", "springReference": "spring_reference"}
+    axis |= node.stated_numbers(springs)
     for tag, name in (
         ("provideFeedback", "provide_feedback"),
         ("implicitSpringDamper", "implicit_spring_damper"),

@@ -9,7 +9,7 @@ from cartwheel.checks import nodes, plugin_tags, spelling
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject, is_known
 from cartwheel.codes import devices as devices_codes
-from cartwheel.description.model import Element, PluginTag
+from cartwheel.description.model import PluginTag
 from cartwheel.errors import Diagnostic
 
 
@@ -49,7 +49,7 @@ def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
     written = bool(near) and tag.element.find(near) is not None
     if written:
         near = ""
-    element = next((e for e in _all(tag.element) if e.origin is diagnostic.origin), None)
+    element = next((e for e in tag.element.walk() if e.origin is diagnostic.origin), None)
     unknown = diagnostic.code is devices_codes.PLUGIN_PARAMETER_UNKNOWN
     instead, place = f"<{near}>" if near else "", False
     if near and element is not None and not element.children:
@@ -64,9 +64,3 @@ def _advised(tag: PluginTag, diagnostic: Diagnostic) -> Diagnostic:
         place="element" if place else "",
         mark=element.tag if element is not None and element is not tag.element else "",
     )
-
-
-def _all(element: Element) -> Iterator[Element]:
-    yield element
-    for child in element.children:
-        yield from _all(child)

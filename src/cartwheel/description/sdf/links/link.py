@@ -94,7 +94,6 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
             part.mark()
             if part.children or part.text.strip().lower() in ("true", "1"):
                 ctx.report(not_simulated(f"<{tag}> is not simulated", part))
-    decay = node.child("velocity_decay")
     return Link(
         name=name,
         pose=pose,
@@ -106,8 +105,8 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         gravity=node.boolean_at("gravity", True),
         self_collide=_optional_boolean(node, "self_collide"),
         kinematic=node.boolean_at("kinematic", False),
-        linear_damping=decay.number_at("linear", 0.0) if decay is not None else 0.0,
-        angular_damping=decay.number_at("angular", 0.0) if decay is not None else 0.0,
+        linear_damping=node.number_at("velocity_decay/linear", 0.0),
+        angular_damping=node.number_at("velocity_decay/angular", 0.0),
         origin=node.origin,
     )
 

@@ -101,7 +101,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
         magnetic_field=field.vec3() if field is not None else default.magnetic_field,
         ambient=_scene_colour(scene, "ambient", default.ambient),
         background=_scene_colour(scene, "background", default.background),
-        shadows=scene.boolean_at("shadows", True) if scene is not None else True,
+        shadows=node.boolean_at("scene/shadows", True),
         physics=_physics(physics, ctx) if physics is not None else Physics(),
         plugins=tuple(read_plugins(node)),
         spherical_coordinates=to_element(coordinates) if coordinates is not None else None,
