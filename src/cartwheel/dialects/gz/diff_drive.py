@@ -8,6 +8,7 @@ from typing import ClassVar
 from cartwheel.codes import devices
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import joints_tag
 from cartwheel.dialects.gz.drive_tags import (
     GzLimitedParameters,
@@ -35,13 +36,7 @@ class GzDiffDriveParameters(GzLimitedParameters):
         role="right_wheel",
         doc="Joint of a right wheel. Repeat the tag for each wheel.",
     )
-    wheel_separation: float = tag(
-        "wheel_separation",
-        default=1.0,
-        unit="m",
-        role="wheel_separation",
-        doc="Distance between the left and right wheels.",
-    )
+    wheel_separation: float = drive_tags.wheel_separation("wheel_separation", default=1.0)
     wheel_radius: float = tag(
         "wheel_radius", default=0.2, unit="m", role="wheel_radius", doc="Radius of all wheels."
     )

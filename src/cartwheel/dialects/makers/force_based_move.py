@@ -7,19 +7,19 @@ from typing import ClassVar
 
 from cartwheel.devices.drives.force_based import ForceBasedDrive, ForceBasedDriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceBasedMoveParameters:
-    command_topic: str = odometry_tags.command_topic("commandTopic")
+    command_topic: str = drive_tags.command_topic("commandTopic")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
-    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
-    rate: float = odometry_tags.odometry_rate("odometryRate")
-    publish_tf: bool = odometry_tags.publish_transform("publishOdometryTf", default=True)
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame")
+    base_frame: str = drive_tags.base_frame("robotBaseFrame")
+    rate: float = drive_tags.odometry_rate("odometryRate")
+    publish_tf: bool = drive_tags.publish_transform("publishOdometryTf", default=True)
     timeout: float = tag(
         "cmdVelTimeOut",
         "commandWatchdog",

@@ -14,7 +14,7 @@ from cartwheel.devices.drives.differential import DifferentialDrive, Differentia
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.joints.states import JointStatesConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import publish_rate_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.contact import read_collisions
@@ -77,7 +77,7 @@ class KobukiParameters:
         "reported.",
     )
     imu: str = tag("imu_name", doc="Name of the imu sensor.")
-    publish_tf: bool = odometry_tags.publish_transform("publish_tf", default=False)
+    publish_tf: bool = drive_tags.publish_transform("publish_tf", default=False)
     rate: float = publish_rate_tag("update_rate", of="all topics")
 
 

@@ -11,7 +11,7 @@ from cartwheel.devices.drives.steering_commands import (
     SteeringCommandsConfig,
     SteeringCommandsDrive,
 )
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import size_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -71,14 +71,14 @@ class LimoParameters:
         role="wheel_torque",
         doc="Maximum torque of each motor.",
     )
-    command_topic: str = odometry_tags.command_topic("commandTopic")
+    command_topic: str = drive_tags.command_topic("commandTopic")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
-    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
-    rate: float = odometry_tags.control_rate("updateRate")
-    publish_tf: bool = odometry_tags.publish_transform("broadcastTF", default=False)
-    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-4, least=0.0)
-    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-4, least=0.0)
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame")
+    base_frame: str = drive_tags.base_frame("robotBaseFrame")
+    rate: float = drive_tags.control_rate("updateRate")
+    publish_tf: bool = drive_tags.publish_transform("broadcastTF", default=False)
+    covariance_x: float = drive_tags.position_variance("covariance_x", 1e-4, least=0.0)
+    covariance_y: float = drive_tags.position_variance("covariance_y", 1e-4, least=0.0)
     covariance_yaw: float = tag(
         "covariance_yaw",
         default=0.01,
@@ -102,7 +102,7 @@ class LimoAckermannDrive(Plugin[LimoParameters]):
 
     def configure(self) -> None:
         config = self.config
-        covariance = odometry_tags.covariance(config)
+        covariance = drive_tags.covariance(config)
         self.add(
             SteeringCommandsDrive(
                 self.scope,

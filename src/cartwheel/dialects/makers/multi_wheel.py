@@ -10,7 +10,7 @@ from cartwheel.codes import devices
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -31,30 +31,18 @@ class MultiWheelParameters:
         role="right_wheels",
         doc="Joints of the right wheels, separated by spaces.",
     )
-    separation: float = tag(
-        "wheelSeparation",
-        default=0.34,
-        unit="m",
-        role="wheel_separation",
-        doc="Distance between the left and right wheels.",
-    )
-    diameter: float = tag(
-        "wheelDiameter",
-        default=0.15,
-        unit="m",
-        role="wheel_diameter",
-        doc="Diameter of all wheels.",
-    )
+    separation: float = drive_tags.wheel_separation("wheelSeparation", default=0.34)
+    diameter: float = drive_tags.wheel_diameter("wheelDiameter", default=0.15)
     torque: float = tag(
         "torque", default=5.0, unit="N m", role="wheel_torque", doc="Maximum torque of each motor."
     )
-    command_topic: str = odometry_tags.command_topic("commandTopic")
+    command_topic: str = drive_tags.command_topic("commandTopic")
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
-    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
-    rate: float = odometry_tags.control_rate("updateRate")
-    publish_tf: bool = odometry_tags.publish_transform("publishOdometryTf", default=True)
-    publish_message: bool = odometry_tags.publish_odometry("publishOdometryMsg")
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame")
+    base_frame: str = drive_tags.base_frame("robotBaseFrame")
+    rate: float = drive_tags.control_rate("updateRate")
+    publish_tf: bool = drive_tags.publish_transform("publishOdometryTf", default=True)
+    publish_message: bool = drive_tags.publish_odometry("publishOdometryMsg")
 
 
 class MultiWheelDrive(Plugin[MultiWheelParameters]):

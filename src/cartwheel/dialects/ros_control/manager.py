@@ -68,7 +68,7 @@ class ControllerManager:
         settings.ignore("type")
         unread = settings.unread()
         if unread:
-            self.robot.report(
+            self.robot.plugin.warn(
                 devices.CONTROLLER_PARAMETER_UNKNOWN,
                 f'controller "{name}" ignores unknown parameters: {", ".join(unread)}',
                 at=Origin(file=settings.source) if settings.source else None,

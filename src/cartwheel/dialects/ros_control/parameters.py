@@ -115,6 +115,11 @@ def parameter(
     return dataclasses.field(default=default, metadata=metadata)
 
 
+def ros2_parameter(*names: str, **keywords: Any) -> Any:
+    """Declares a parameter that exists only in ROS 2; see `parameter`."""
+    return parameter(ros1=(), ros2=names, **keywords)
+
+
 def ignored(
     *names: str, ros2: tuple[str, ...] | None = None, role: Role = "", doc: str = "No effect."
 ) -> Any:

@@ -11,7 +11,7 @@ from cartwheel.devices.contact.loads import JointLoad
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.hardware import Hardware
-from cartwheel.errors import CartwheelError, Code, Origin, Value
+from cartwheel.errors import CartwheelError
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 
 
@@ -61,20 +61,8 @@ class ControlledRobot:
         self.remappings: dict[str, Mapping[str, str]] = {}
         """Remapped topic names, by controller."""
 
-    def report(
-        self,
-        code: Code,
-        message: str,
-        *,
-        at: Origin | None = None,
-        hint: str = "",
-        values: Mapping[str, Value] | None = None,
-    ) -> None:
-        """Reports a warning at `at`, by default at the plugin's tag; see `Plugin.warn`."""
-        self.plugin.warn(code, message, at=at, hint=hint, values=values)
-
     def report_error(self, error: CartwheelError) -> None:
         """Reports the error of a request as a warning."""
-        self.report(
+        self.plugin.warn(
             error.code, error.message, at=error.origin, hint=error.hint or "", values=error.values
         )

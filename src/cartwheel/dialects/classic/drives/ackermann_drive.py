@@ -13,7 +13,7 @@ from cartwheel.devices.drives.ackermann import AckermannDrive, AckermannDriveCon
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.odometry import OdometryConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import joint_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -66,9 +66,9 @@ class AckermannParameters:
     speed_range: tuple[float, float] | None = tag(
         "linear_velocity_i_range", default=None, doc="No effect: velocity servos drive the wheels."
     )
-    update_rate: float = odometry_tags.control_rate("update_rate", least=None)
-    odometry_frame: str = odometry_tags.odometry_frame("odometry_frame")
-    base_frame: str = odometry_tags.base_frame("robot_base_frame")
+    update_rate: float = drive_tags.control_rate("update_rate", least=None)
+    odometry_frame: str = drive_tags.odometry_frame("odometry_frame")
+    base_frame: str = drive_tags.base_frame("robot_base_frame")
     publish_odom: bool = tag(
         "publish_odom", default=False, doc="Whether to publish the odometry on `odom`."
     )
@@ -93,9 +93,9 @@ class AckermannParameters:
         doc="Whether to publish the mean steering angle of the front wheels, in rad, on "
         "`steerangle`.",
     )
-    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-5)
-    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-5)
-    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-3)
+    covariance_x: float = drive_tags.position_variance("covariance_x", 1e-5)
+    covariance_y: float = drive_tags.position_variance("covariance_y", 1e-5)
+    covariance_yaw: float = drive_tags.yaw_variance("covariance_yaw", 1e-3)
 
 
 class ClassicAckermannDrive(Plugin[AckermannParameters]):
@@ -128,7 +128,7 @@ class ClassicAckermannDrive(Plugin[AckermannParameters]):
                 "PID gains have no effect: servos steer and drive within the joints' effort limits",
                 severity="info",
             )
-        covariance = odometry_tags.covariance(config)
+        covariance = drive_tags.covariance(config)
         odometry = OdometryConfig(
             topic="odom" if config.publish_odom else None,
             frame=config.odometry_frame,

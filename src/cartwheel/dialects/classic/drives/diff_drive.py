@@ -14,7 +14,7 @@ from cartwheel.devices.drives.differential import (
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig
 from cartwheel.devices.joints.states import JointStatesConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -80,11 +80,11 @@ class DiffDriveParameters:
         doc="Maximum acceleration of the wheel rims; it limits how fast the commanded wheel "
         "speeds change. If 0, there is no limit.",
     )
-    command_topic: str = odometry_tags.command_topic("commandTopic", "command_topic")
-    odometry_topic: str = odometry_tags.odometry_topic("odometryTopic", "odometry_topic")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame", "odometry_frame")
-    base_frame: str = odometry_tags.base_frame("robotBaseFrame", "robot_base_frame")
-    update_rate: float = odometry_tags.control_rate("updateRate", "update_rate")
+    command_topic: str = drive_tags.command_topic("commandTopic", "command_topic")
+    odometry_topic: str = drive_tags.odometry_topic("odometryTopic", "odometry_topic")
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame", "odometry_frame")
+    base_frame: str = drive_tags.base_frame("robotBaseFrame", "robot_base_frame")
+    update_rate: float = drive_tags.control_rate("updateRate", "update_rate")
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",
@@ -124,9 +124,9 @@ class DiffDriveParameters:
         doc="Whether to publish the positions and velocities of the wheel joints on "
         "`joint_states`.",
     )
-    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-5)
-    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-5)
-    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-3)
+    covariance_x: float = drive_tags.position_variance("covariance_x", 1e-5)
+    covariance_y: float = drive_tags.position_variance("covariance_y", 1e-5)
+    covariance_yaw: float = drive_tags.yaw_variance("covariance_yaw", 1e-3)
     legacy_mode: bool = tag(
         "legacyMode",
         default=False,
@@ -173,7 +173,7 @@ class DiffDrive(Plugin[DiffDriveParameters]):
             self.under_model()
         publishes_odom = not ros2 if config.publish_odom is None else config.publish_odom
         publishes_tf = not ros2 if config.publish_odom_tf is None else config.publish_odom_tf
-        covariance = odometry_tags.covariance(config)
+        covariance = drive_tags.covariance(config)
         joints = tuple(name for pair in pairs for name in (pair.left, pair.right))
         odometry = OdometryConfig(
             topic=config.odometry_topic if config.publish_tf and publishes_odom else None,

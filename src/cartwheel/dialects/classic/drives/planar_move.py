@@ -7,18 +7,18 @@ from typing import ClassVar
 
 from cartwheel.devices.drives.odometry import NO_COVARIANCE, OdometryConfig
 from cartwheel.devices.drives.planar import PlanarDrive, PlanarDriveConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlanarMoveParameters:
-    command_topic: str = odometry_tags.command_topic("commandTopic", "command_topic")
-    odometry_topic: str = odometry_tags.odometry_topic("odometryTopic", "odometry_topic")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame", "odometry_frame")
-    base_frame: str = odometry_tags.base_frame("robotBaseFrame", "robot_base_frame")
-    rate: float = odometry_tags.odometry_rate("odometryRate", "publish_rate")
+    command_topic: str = drive_tags.command_topic("commandTopic", "command_topic")
+    odometry_topic: str = drive_tags.odometry_topic("odometryTopic", "odometry_topic")
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame", "odometry_frame")
+    base_frame: str = drive_tags.base_frame("robotBaseFrame", "robot_base_frame")
+    rate: float = drive_tags.odometry_rate("odometryRate", "publish_rate")
     update_rate: float = tag(
         "update_rate",
         default=20.0,
@@ -33,11 +33,11 @@ class PlanarMoveParameters:
         doc="Time without a command after which the robot stops. If negative, the last command "
         "stays in effect.",
     )
-    publish_odom: bool = odometry_tags.publish_odometry("publish_odom")
-    publish_odom_tf: bool = odometry_tags.publish_transform("publish_odom_tf", default=True)
-    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-5)
-    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-5)
-    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-3)
+    publish_odom: bool = drive_tags.publish_odometry("publish_odom")
+    publish_odom_tf: bool = drive_tags.publish_transform("publish_odom_tf", default=True)
+    covariance_x: float = drive_tags.position_variance("covariance_x", 1e-5)
+    covariance_y: float = drive_tags.position_variance("covariance_y", 1e-5)
+    covariance_yaw: float = drive_tags.yaw_variance("covariance_yaw", 1e-3)
 
 
 class PlanarMove(Plugin[PlanarMoveParameters]):
@@ -52,7 +52,7 @@ class PlanarMove(Plugin[PlanarMoveParameters]):
 
     def configure(self) -> None:
         config = self.config
-        covariance = odometry_tags.covariance(config)
+        covariance = drive_tags.covariance(config)
         # The ROS 1 plugin leaves the covariance of the twist at zero.
         ros2 = self.tag.element.find("ros") is not None
         odometry = OdometryConfig(

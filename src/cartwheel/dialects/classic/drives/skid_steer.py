@@ -8,7 +8,7 @@ from typing import ClassVar
 from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
 from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
@@ -40,20 +40,8 @@ class SkidSteerParameters:
         role="right_wheel",
         doc="Joint of the right rear wheel.",
     )
-    wheel_separation: float = tag(
-        "wheelSeparation",
-        default=0.4,
-        unit="m",
-        role="wheel_separation",
-        doc="Distance between the left and right wheels.",
-    )
-    wheel_diameter: float = tag(
-        "wheelDiameter",
-        default=0.15,
-        unit="m",
-        role="wheel_diameter",
-        doc="Diameter of all wheels.",
-    )
+    wheel_separation: float = drive_tags.wheel_separation("wheelSeparation", default=0.4)
+    wheel_diameter: float = drive_tags.wheel_diameter("wheelDiameter", default=0.15)
     torque: float = tag(
         "torque",
         "wheelTorque",
@@ -63,15 +51,15 @@ class SkidSteerParameters:
         least=SMALLEST,
         doc="Maximum torque of each motor.",
     )
-    command_topic: str = odometry_tags.command_topic("commandTopic", "topicName")
-    odometry_topic: str = odometry_tags.odometry_topic("odometryTopic")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame")
-    base_frame: str = odometry_tags.base_frame("robotBaseFrame")
-    update_rate: float = odometry_tags.control_rate("updateRate")
-    broadcast_tf: bool = odometry_tags.publish_transform("broadcastTF", default=False)
-    covariance_x: float = odometry_tags.position_variance("covariance_x", 1e-4)
-    covariance_y: float = odometry_tags.position_variance("covariance_y", 1e-4)
-    covariance_yaw: float = odometry_tags.yaw_variance("covariance_yaw", 1e-2)
+    command_topic: str = drive_tags.command_topic("commandTopic", "topicName")
+    odometry_topic: str = drive_tags.odometry_topic("odometryTopic")
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame")
+    base_frame: str = drive_tags.base_frame("robotBaseFrame")
+    update_rate: float = drive_tags.control_rate("updateRate")
+    broadcast_tf: bool = drive_tags.publish_transform("broadcastTF", default=False)
+    covariance_x: float = drive_tags.position_variance("covariance_x", 1e-4)
+    covariance_y: float = drive_tags.position_variance("covariance_y", 1e-4)
+    covariance_yaw: float = drive_tags.yaw_variance("covariance_yaw", 1e-2)
 
 
 class SkidSteerDrive(Plugin[SkidSteerParameters]):
@@ -103,7 +91,7 @@ class SkidSteerDrive(Plugin[SkidSteerParameters]):
                             base=config.base_frame,
                             rate=config.update_rate,
                             transform=config.broadcast_tf,
-                            pose_covariance=odometry_tags.covariance(config),
+                            pose_covariance=drive_tags.covariance(config),
                         ),
                     ),
                 ),

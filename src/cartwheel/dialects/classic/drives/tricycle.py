@@ -9,7 +9,7 @@ from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.devices.drives.tricycle import TricycleDrive, TricycleDriveConfig
 from cartwheel.devices.joints.states import JointStatesConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import size_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag, tags_of
@@ -121,11 +121,11 @@ class TricycleParameters:
         "m/s, and `angular.z` is its steering angle in rad.",
     )
     odometry_topic: str = tag("odometryTopic", default="odom", doc="Topic of the odometry.")
-    odometry_frame: str = odometry_tags.odometry_frame("odometryFrame", "odometry_frame")
-    base_frame: str = odometry_tags.base_frame(
+    odometry_frame: str = drive_tags.odometry_frame("odometryFrame", "odometry_frame")
+    base_frame: str = drive_tags.base_frame(
         "robotBaseFrame", "robot_base_frame", default="base_link"
     )
-    update_rate: float = odometry_tags.control_rate("updateRate", "update_rate", least=None)
+    update_rate: float = drive_tags.control_rate("updateRate", "update_rate", least=None)
     source: Literal["world", "encoder", "0", "1"] = tag(
         "odometrySource",
         "odometry_source",

@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.codes import devices
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.position.truth import GroundTruth, GroundTruthConfig
-from cartwheel.dialects import odometry_tags
+from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import deviation_tag, publish_rate_tag, rotation_tag
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
@@ -21,7 +21,7 @@ _WORLD = {"world", "/world", "map", "/map"}
 @dataclass(frozen=True, kw_only=True, slots=True)
 class P3DParameters:
     body: str = tag("bodyName", "body_name", role="link", doc="Link whose pose is published.")
-    topic: str = odometry_tags.odometry_topic("topicName", "topic_name")
+    topic: str = drive_tags.odometry_topic("topicName", "topic_name")
     frame: str = tag(
         "frameName",
         "frame_name",

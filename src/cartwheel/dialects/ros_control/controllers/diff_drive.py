@@ -29,7 +29,7 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
     joint_place,
     wheel_radius,
 )
-from cartwheel.dialects.ros_control.parameters import ignored, parameter
+from cartwheel.dialects.ros_control.parameters import ignored, parameter, ros2_parameter
 from cartwheel.messages import header, message_class
 
 
@@ -89,9 +89,8 @@ class DiffDriveParameters(FramePrefixParameters):
     timeout: float = parameter(
         "cmd_vel_timeout", default=0.5, unit="s", doc="Time after which a command expires."
     )
-    stamped: bool = parameter(
-        ros1=(),
-        ros2=("use_stamped_vel",),
+    stamped: bool = ros2_parameter(
+        "use_stamped_vel",
         default=True,
         doc="Subscribe to TwistStamped on `cmd_vel` instead of Twist on `cmd_vel_unstamped`.",
     )

@@ -15,7 +15,7 @@ from cartwheel.devices.joints.pid_joint import PidJoint, PidJointConfig
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.gains import GAINS, read_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
-from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter
+from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter, ros2_parameter
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.messages import header, message_class, zero
 
@@ -50,9 +50,7 @@ class JointGroupParameters:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointGroupPidParameters(JointGroupParameters):
     gains: None = ignored("{joint}/pid", ros2=(), role="gains", doc=GAINS)
-    ros2_gains: None = parameter(
-        ros1=(), ros2=("gains/{joint}", "{joint}/pid"), default=None, doc=GAINS
-    )
+    ros2_gains: None = ros2_parameter("gains/{joint}", "{joint}/pid", default=None, doc=GAINS)
 
 
 class JointCommand(Controller):

@@ -10,7 +10,7 @@ from cartwheel.devices.joints.actuator_states import ActuatorStates, ActuatorSta
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.interfaces import COMMANDS
-from cartwheel.dialects.ros_control.parameters import ignored, parameter
+from cartwheel.dialects.ros_control.parameters import ignored, parameter, ros2_parameter
 from cartwheel.dialects.ros_control.settings import Settings
 
 
@@ -29,44 +29,36 @@ class JointStateParameters:
         doc="Further joints. In ROS 1, a list of mappings with `name`, `position`, `velocity` and "
         "`effort`; in ROS 2, a list of names.",
     )
-    joints: tuple[str, ...] = parameter(
-        ros1=(),
-        ros2=("joints",),
+    joints: tuple[str, ...] = ros2_parameter(
+        "joints",
         default=(),
         itself=True,
         doc="Published joints. Only has an effect together with `interfaces`.",
     )
-    interfaces: tuple[str, ...] = parameter(
-        ros1=(),
-        ros2=("interfaces",),
+    interfaces: tuple[str, ...] = ros2_parameter(
+        "interfaces",
         default=(),
         itself=True,
         doc="Published interfaces.",
     )
-    local: bool = parameter(
-        ros1=(),
-        ros2=("use_local_topics",),
+    local: bool = ros2_parameter(
+        "use_local_topics",
         default=False,
         doc="Publish below the controller's name.",
     )
-    dynamic: bool = parameter(
-        ros1=(),
-        ros2=("publish_dynamic_joint_states",),
+    dynamic: bool = ros2_parameter(
+        "publish_dynamic_joint_states",
         default=True,
         doc="Publish `dynamic_joint_states`.",
     )
-    frame: str = parameter(
-        ros1=(), ros2=("frame_id",), default="base_link", doc="Frame of the messages."
-    )
-    unused: None = parameter(
-        ros1=(),
-        ros2=("use_urdf_to_filter",),
+    frame: str = ros2_parameter("frame_id", default="base_link", doc="Frame of the messages.")
+    unused: None = ros2_parameter(
+        "use_urdf_to_filter",
         default=None,
         doc="No effect, because all joints are in the URDF.",
     )
-    mapped: None = parameter(
-        ros1=(),
-        ros2=tuple(f"map_interface_to_joint_state/{kind}" for kind in COMMANDS),
+    mapped: None = ros2_parameter(
+        *(f"map_interface_to_joint_state/{kind}" for kind in COMMANDS),
         default=None,
         doc="Interface that is published as the position, velocity or effort.",
     )

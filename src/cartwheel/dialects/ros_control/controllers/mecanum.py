@@ -21,7 +21,7 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
     joint_place,
     wheel_radius,
 )
-from cartwheel.dialects.ros_control.parameters import parameter
+from cartwheel.dialects.ros_control.parameters import parameter, ros2_parameter
 from cartwheel.geometry import Vec3
 from cartwheel.messages import header, zero
 from cartwheel.messages.store import TWIN
@@ -60,9 +60,8 @@ class MecanumParameters(FramePrefixParameters):
     radius_factor: float = parameter(
         "wheel_radius_multiplier", default=1.0, doc="Factor on the radius."
     )
-    reach: float | None = parameter(
-        ros1=(),
-        ros2=("kinematics/sum_of_robot_center_projection_on_X_Y_axis",),
+    reach: float | None = ros2_parameter(
+        "kinematics/sum_of_robot_center_projection_on_X_Y_axis",
         default=None,
         unit="m",
         role="wheel_reach",
@@ -80,9 +79,8 @@ class MecanumParameters(FramePrefixParameters):
         wheels=("front_left", "rear_left"),
         doc="Distance between the axles. Default: read from the description.",
     )
-    along_factor: float = parameter(
-        ros1=(),
-        ros2=("wheel_separation_x_multiplier",),
+    along_factor: float = ros2_parameter(
+        "wheel_separation_x_multiplier",
         default=1.0,
         doc="Factor on the distance of the axles.",
     )
@@ -94,9 +92,8 @@ class MecanumParameters(FramePrefixParameters):
         wheels=("front_left", "front_right"),
         doc="Distance between left and right wheels. Default: read from the description.",
     )
-    across_factor: float = parameter(
-        ros1=(),
-        ros2=("wheel_separation_y_multiplier",),
+    across_factor: float = ros2_parameter(
+        "wheel_separation_y_multiplier",
         default=1.0,
         doc="Factor on the distance between left and right wheels.",
     )
@@ -115,9 +112,8 @@ class MecanumParameters(FramePrefixParameters):
     linear_x: Limits = parameter("linear/x", read=read_limits, doc="Limits of the forward speed.")
     linear_y: Limits = parameter("linear/y", read=read_limits, doc="Limits of the sideways speed.")
     angular: Limits = parameter("angular/z", read=read_limits, doc="Limits of the turning rate.")
-    stamped: bool = parameter(
-        ros1=(),
-        ros2=("use_stamped_vel",),
+    stamped: bool = ros2_parameter(
+        "use_stamped_vel",
         default=True,
         doc="Subscribe to TwistStamped instead of Twist on a topic that ends in `_unstamped`.",
     )
@@ -127,26 +123,22 @@ class MecanumParameters(FramePrefixParameters):
         unit="s",
         doc="Time after which a command expires. In ROS 2, only Husarion's controller reads it.",
     )
-    reference_timeout: float = parameter(
-        ros1=(),
-        ros2=("reference_timeout",),
+    reference_timeout: float = ros2_parameter(
+        "reference_timeout",
         default=0.0,
         unit="s",
         doc="Time after which a reference expires; 0 is never.",
     )
-    open_loop: bool = parameter(ros1=(), ros2=("open_loop",), default=False, doc="Not supported.")
-    publish_limited: bool = parameter(
-        ros1=(), ros2=("publish_limited_velocity",), default=False, doc="Not supported."
+    open_loop: bool = ros2_parameter("open_loop", default=False, doc="Not supported.")
+    publish_limited: bool = ros2_parameter(
+        "publish_limited_velocity", default=False, doc="Not supported."
     )
-    unused: None = parameter(
-        ros1=(),
-        ros2=(
-            "position_feedback",
-            *(
-                f"{corner}_wheel_state_joint_name"
-                for corner in ("front_left", "front_right", "rear_left", "rear_right")
-            ),
-        ),
+    unused: None = ros2_parameter(
+        "position_feedback",
+        "front_left_wheel_state_joint_name",
+        "front_right_wheel_state_joint_name",
+        "rear_left_wheel_state_joint_name",
+        "rear_right_wheel_state_joint_name",
         default=None,
         doc="No effect.",
     )

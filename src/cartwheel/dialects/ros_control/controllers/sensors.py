@@ -15,7 +15,7 @@ from cartwheel.devices.inertial.messages import imu_message
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.devices.periodic import Periodic
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.parameters import ignored, parameter
+from cartwheel.dialects.ros_control.parameters import ignored, parameter, ros2_parameter
 from cartwheel.dialects.ros_control.robot import RobotSensor
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import UnknownNameError
@@ -28,15 +28,13 @@ class BroadcasterParameters:
     publish_rate: float | None = parameter(
         "publish_rate", ros2=(), default=None, unit="Hz", doc="Publish rate; required."
     )
-    sensor: str = parameter(
-        ros1=(),
-        ros2=("sensor_name",),
+    sensor: str = ros2_parameter(
+        "sensor_name",
         default="",
         doc="The sensor; can be omitted if the robot has one sensor of this type.",
     )
-    frame: str | None = parameter(
-        ros1=(),
-        ros2=("frame_id",),
+    frame: str | None = ros2_parameter(
+        "frame_id",
         default=None,
         doc="Frame of the messages. Default: the sensor's link.",
     )

@@ -11,7 +11,7 @@ from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Cylinder, RobotDescription, Sphere
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters
-from cartwheel.dialects.ros_control.parameters import parameter
+from cartwheel.dialects.ros_control.parameters import ros2_parameter
 from cartwheel.geometry import matrix_from_quat
 
 LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -70,15 +70,13 @@ def wheel_radius(description: RobotDescription, joint: str) -> float | None:
 class FramePrefixParameters(OdometryParameters):
     """The parameters of drives whose frames have a prefix in ROS 2."""
 
-    has_prefix: bool = parameter(
-        ros1=(),
-        ros2=("tf_frame_prefix_enable",),
+    has_prefix: bool = ros2_parameter(
+        "tf_frame_prefix_enable",
         default=True,
         doc="Add a prefix to the frames.",
     )
-    prefix: str = parameter(
-        ros1=(),
-        ros2=("tf_frame_prefix",),
+    prefix: str = ros2_parameter(
+        "tf_frame_prefix",
         default="",
         doc="Prefix of the frames; if empty, the namespace of the controller manager.",
     )

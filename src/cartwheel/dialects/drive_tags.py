@@ -1,4 +1,4 @@
-"""Tags that drive plugins of several dialects share: rates, topics, frames and variances."""
+"""Tags that drive plugins of several dialects share: sizes, rates, topics, frames and variances."""
 
 from __future__ import annotations
 
@@ -10,6 +10,18 @@ from cartwheel.geometry import Array
 
 # The functions return Any, as `tag` does, because a field with a tag can have any type. Each takes
 # the names of the tag, because plugins differ in the spellings that they accept.
+
+
+def wheel_separation(*names: str, default: float) -> Any:
+    """The distance between wheels across the robot, m."""
+    doc = "Distance between the left and right wheels."
+    return tag(*names, default=default, unit="m", role="wheel_separation", doc=doc)
+
+
+def wheel_diameter(*names: str, default: float) -> Any:
+    """The diameter of the wheels, m."""
+    doc = "Diameter of all wheels."
+    return tag(*names, default=default, unit="m", role="wheel_diameter", doc=doc)
 
 
 def command_topic(*names: str) -> Any:
