@@ -19,17 +19,18 @@ class Periodic:
             Fraction(NANOSECONDS) / Fraction(rate).limit_denominator(1_000_000) if rate > 0 else 1
         )
         self._multiples = Ticks(max(Fraction(period), Fraction(1)))
-        self._due = 0
+        self.next_ns = 0
+        """The next due time: until then, `due` need not be called."""
 
     def start(self, time_ns: int) -> None:
         """Sets the next due time to the first multiple from now on."""
-        self._due = self._multiples.due(time_ns)
+        self.next_ns = self._multiples.due(time_ns)
 
     def due(self, time_ns: int) -> bool:
         """Whether the task is due. If it is, the next multiple becomes the next due time."""
-        if self._due > time_ns:
+        if self.next_ns > time_ns:
             return False
-        self._due = self._multiples.due(time_ns + 1)
+        self.next_ns = self._multiples.due(time_ns + 1)
         return True
 
 

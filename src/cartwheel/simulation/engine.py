@@ -103,6 +103,12 @@ class Engine:
             order=next(self._orders),
         )
 
+    def wake(self, task: Task) -> None:
+        """Makes a task due from the next step on."""
+        task.asleep = False
+        for callback in self.on_tasks:
+            callback()
+
     def report(self, diagnostic: Diagnostic) -> None:
         """Stores a diagnostic and passes it to all callbacks."""
         self.diagnostics.append(diagnostic)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -206,16 +207,23 @@ class Requests:
         self.handles.append(handle)
         if drives:
             self._share(motor, motor.max_effort, origin)
-        self.schedule(0, before=handle.follow, active=lambda: handle.follows)
+        servos = self._servos(joint)
+        for servo in servos:
+            servo.alone = len(servos) == 1 and not servo.shared
+        task = self.schedule(0, before=handle.follow)
+        task.asleep = True
+        handle.wake = partial(self._engine.wake, task)
         return handle
+
+    def _servos(self, joint: str) -> list[ServoHandle]:
+        return [h for h in self.handles if isinstance(h, ServoHandle) and h.motor.joint == joint]
 
     def _share(self, motor: Motor, max_effort: float | None, origin: Origin | None) -> Motor:
         """Shares a joint's motor between a drive, which sets its strength, and a servo."""
         shared = replace(motor, mode="servo", max_effort=max_effort)
         self._entry.motors[motor.joint] = shared
-        for handle in self.handles:
-            if isinstance(handle, ServoHandle) and handle.motor.joint == motor.joint:
-                handle.shared = True
+        for handle in self._servos(motor.joint):
+            handle.shared, handle.alone = True, False
         self._warn_of_two(motor.joint, "the efforts of both plugins are added", origin)
         return shared
 

@@ -122,12 +122,15 @@ class Simulation(Models):
             change = forces.serve() if forces.active else None
             if population.subscribers_changed:
                 population.gather_tasks()
-            first, last, due = population.schedule.at(engine.step)
+            schedule = population.schedule
+            first, last, due = schedule.at(engine.step)
             forwarded = False
             if first or last:
                 forwarded = self._serve(first, last)
-                # Recomputed, because a task may have changed the step length.
-                left = engine.steps_until(target_ns)
+                if population.schedule is not schedule:
+                    # A task changed a task, the step length or the time.
+                    left = engine.steps_until(target_ns)
+                    due = population.schedule.at(engine.step)[2]
             if change is not None and change < due:
                 due = change
             # Without tasks, commands still do not wait longer than until the next check.

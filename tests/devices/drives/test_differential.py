@@ -28,6 +28,10 @@ class Wheel:
     velocity: float = 0.0
     command: float = 0.0
 
+    @property
+    def state(self):
+        return self
+
 
 @pytest.fixture
 def wheels():

@@ -19,6 +19,10 @@ class Joint:
         self.type, self.limits, self.lightness = kind, JointLimits(lower=-1.0, upper=1.0), 0.0
         self.command = math.nan
 
+    @property
+    def state(self):
+        return self
+
     def error(self, target):
         return target - self.position
 

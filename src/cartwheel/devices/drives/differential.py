@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Literal
 
 from cartwheel.component import Scope
 from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import axle_motion, rim_speeds
-from cartwheel.devices.drives.limiter import Limiter, Limits
+from cartwheel.devices.drives.limiter import NO_LIMITS, Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
 from cartwheel.devices.ramp import ramp
-
-NO_LIMITS = Limits()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -61,6 +60,9 @@ class DifferentialDriveConfig:
     publishes."""
 
 
+_position = attrgetter("position")
+
+
 class DifferentialDrive(Drive):
     """Turns pairs of wheels so that the robot follows a forward velocity and a yaw rate.
 
@@ -76,6 +78,8 @@ class DifferentialDrive(Drive):
         UnknownNameError: A joint does not exist.
     """
 
+    _limited: tuple[float, float]
+    """The command within the limits."""
     _targets: list[float]
     """Rim speeds that follow from the command, m/s."""
     _speeds: list[float]
@@ -101,8 +105,8 @@ class DifferentialDrive(Drive):
             radius for pair in config.pairs for radius in (pair.left_radius, pair.right_radius)
         ]
         count = config.measured_pairs
-        self._lefts = self._wheels[0::2][:count]
-        self._rights = self._wheels[1::2][:count]
+        self._lefts = [wheel.state for wheel in self._wheels[0::2][:count]]
+        self._rights = [wheel.state for wheel in self._wheels[1::2][:count]]
         self.linear, self.angular = Limiter(config.linear), Limiter(config.angular)
         # Without limits, a scheduled drive computes the wheels' speeds once for each command.
         self._is_limited = config.drive is None or not (
@@ -126,10 +130,9 @@ class DifferentialDrive(Drive):
         self._rotation = self._rotations()
 
     def command(self, forward: float, sideways: float, turn: float) -> None:  # noqa: ARG002
-        turn = -turn if self._config.reverse else turn
-        self._command = (forward, turn)
+        self._command = (forward, -turn if self._config.reverse else turn)
         if not self._is_limited:
-            self._set_targets(forward, turn)
+            self._set_targets(*self._command)
 
     def update(self, seconds: float) -> None:
         self.actuate(seconds)
@@ -142,7 +145,10 @@ class DifferentialDrive(Drive):
         if self._is_limited:
             forward, turn = self._command
             period = seconds if config.limit_period is None else config.limit_period
-            self._set_targets(self.linear.step(forward, period), self.angular.step(turn, period))
+            forward, turn = self.linear.step(forward, period), self.angular.step(turn, period)
+            if (forward, turn) != self._limited:
+                self._limited = (forward, turn)
+                self._set_targets(forward, turn)
         if self._speeds is not self._targets:
             if config.acceleration > 0 and self._speeds != self._targets:
                 most = config.acceleration * seconds
@@ -160,9 +166,9 @@ class DifferentialDrive(Drive):
     def measure(self, seconds: float) -> None:
         """Adds the motion since the last call, `seconds` ago, to the dead reckoning."""
         source = self._config.odometry
-        rotation = None if self._yaw_rate is None else self._yaw_rate() * seconds
         if source == "ground truth":
             return
+        rotation = None if self._yaw_rate is None else self._yaw_rate() * seconds
         if source == "commands":
             forward, turn = self.linear.value * seconds, self.angular.value * seconds
         else:
@@ -188,7 +194,7 @@ class DifferentialDrive(Drive):
         return self.reckoning.motion()
 
     def _rest(self) -> None:
-        self._command = (0.0, 0.0)
+        self._command = self._limited = (0.0, 0.0)
         self._targets = [0.0] * len(self._wheels)
         self._speeds = self._targets
         self._rotating = [0.0] * len(self._wheels)
@@ -205,12 +211,10 @@ class DifferentialDrive(Drive):
         ]
 
     def _rotations(self) -> tuple[float, float]:
-        if len(self._lefts) == 1:
+        count = len(self._lefts)
+        if count == 1:
             return self._lefts[0].position, self._rights[0].position
-        return (
-            _mean([wheel.position for wheel in self._lefts]),
-            _mean([wheel.position for wheel in self._rights]),
-        )
+        return sum(map(_position, self._lefts)) / count, sum(map(_position, self._rights)) / count
 
     def _motor_wheel(self, joint: str) -> CommandedJoint:
         torque = self._config.max_torque

@@ -48,11 +48,16 @@ def along_arc(
         sideways: Length of the motion along the robot's y axis, m.
     """
     x, y, heading = pose
-    straight = abs(turn) <= _STRAIGHT
-    half = where(straight, 1.0, turn / 2)
+    straight, half = abs(turn) <= _STRAIGHT, turn / 2
+    middle = heading + half
     # The chord of an arc is shorter than the arc by this factor.
-    chord = where(straight, 1.0, sin(half) / half)
-    middle = heading + turn / 2
+    if straight is True:
+        chord = 1.0
+    elif straight is False:
+        chord = sin(half) / half
+    else:
+        half = where(straight, 1.0, half)
+        chord = where(straight, 1.0, sin(half) / half)
     c, s = cos(middle), sin(middle)
     return (
         x + chord * (forward * c - sideways * s),

@@ -27,6 +27,9 @@ class Limits:
     """m/s³ or rad/s³."""
 
 
+NO_LIMITS = Limits()
+
+
 def limited(limits: Limits, wanted: Number, last: Number, before: Number, seconds: float) -> Number:
     """Returns the limited command. Source: diff_drive_controller, speed_limiter.
 
@@ -64,6 +67,7 @@ class Limiter:
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
+        self._is_free = limits == NO_LIMITS
         self.reset()
 
     def reset(self) -> None:
@@ -71,9 +75,18 @@ class Limiter:
         self.value: Number = 0.0
         """The last limited command, m/s or rad/s."""
         self._before: Number = 0.0
+        self._inputs: tuple[Number, Number, Number, float] | None = None
 
     def step(self, wanted: Number, seconds: float) -> Number:
         """Returns the limited command; see `limited`."""
+        if self._is_free:
+            self.value = wanted
+            return wanted
+        inputs = (wanted, self.value, self._before, seconds)
+        if inputs == self._inputs:
+            # A constant command: the result of the last step.
+            return self.value
+        self._inputs = inputs
         value = limited(self._limits, wanted, self.value, self._before, seconds)
         self._before, self.value = self.value, value
         return value

@@ -30,5 +30,7 @@ class WheelOdometry(Component):
 
     def publish(self, time_ns: int) -> None:
         """Publishes the odometry if it is due and has subscribers."""
+        if time_ns < self._periodic.next_ns:
+            return
         if self._periodic.due(time_ns) and self._odometry.wanted():
             self._odometry.publish(time_ns, *self.reckoning.motion())

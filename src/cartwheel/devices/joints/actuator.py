@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from cartwheel.devices.elementwise import Number, remainder
+from cartwheel.devices.elementwise import Number, clamp, remainder
 from cartwheel.devices.joints.limits import (
     JointLimits,
     limited_effort,
@@ -87,6 +87,14 @@ class JointActuator:
         """Maximum effort of a position command, N m or N. A gripper controller can lower it."""
         self._damping = 0.0
         self._led = config.led
+        limits = config.limits
+        self._slows = limits.soft is not None and math.inf not in (-limits.lower, limits.upper)
+        """Whether the maximum velocity depends on the position."""
+
+    def expect_commands(self, period: float) -> None:
+        """States the time between two calls of `write`, s."""
+        if self._servo is not None:
+            self._servo.period = period
 
     @property
     def position(self) -> float:
@@ -162,16 +170,34 @@ class JointActuator:
             seconds: Time since the last call, s.
             lead: Time since the command was set, s. A position command is extrapolated by it.
         """
-        match self._active:
-            case "position":
-                self._write_position(seconds, lead)
-            case "velocity":
-                self._write_velocity(seconds)
-            case "effort":
-                self._write_effort()
-            case "held":
-                assert self._servo is not None
-                self._servo.command_position(self.command)
+        # Comparisons take a quarter of the time of `min` and `max`.
+        active, limits, target = self._active, self.limits, self.command
+        if active == "velocity":
+            high = limits.velocity
+            low = -high
+            if self._slows:
+                low, high = velocity_bounds(limits, self.state.position)
+            if low > target:  # noqa: PLR1730
+                target = low
+            target = min(target, high)
+            if self._motor is not None:
+                self._motor.command(target)
+            else:
+                self._follow_velocity(target, seconds)
+        elif active == "position":
+            target, fastest = target + lead * self.rate, limits.velocity
+            if self._slows:
+                target, fastest = limited_position(limits, target, self.state.position)
+            else:
+                if limits.lower > target:  # noqa: PLR1730
+                    target = limits.lower
+                target = min(target, limits.upper)
+            self._follow_position(target, fastest, seconds)
+        elif active == "effort":
+            self._write_effort()
+        elif active == "held":
+            assert self._servo is not None
+            self._servo.command_position(target)
 
     def halt(self) -> None:
         """Sets efforts to 0, and brakes joints with velocity or position commands."""
@@ -182,10 +208,7 @@ class JointActuator:
         elif self._servo is not None:
             self._servo.command_velocity(0.0)
 
-    def _write_position(self, seconds: float, lead: float) -> None:
-        target, fastest = limited_position(
-            self.limits, self.command + lead * self.rate, self.position
-        )
+    def _follow_position(self, target: float, fastest: float, seconds: float) -> None:
         assert self._servo is not None
         pid = self.pids.get("position")
         if pid is None:
@@ -202,12 +225,7 @@ class JointActuator:
         )
         self._servo.command_effort(command.effort, damping=command.damping)
 
-    def _write_velocity(self, seconds: float) -> None:
-        low, high = velocity_bounds(self.limits, self.position)
-        target = min(max(self.command, low), high)
-        if self._motor is not None:
-            self._motor.command(target)
-            return
+    def _follow_velocity(self, target: float, seconds: float) -> None:
         assert self._servo is not None
         pid = self.pids.get("velocity")
         if pid is None:
@@ -217,7 +235,18 @@ class JointActuator:
             self._servo.command_effort(command.effort, damping=command.damping)
 
     def _write_effort(self) -> None:
-        command, state = DampedEffort(self.command, self._damping), self.state
-        effort, damping = limited_effort(self.limits, command, state.position, state.velocity)
+        effort, damping, limits, state = self.command, self._damping, self.limits, self.state
+        position, velocity, most = state.position, state.velocity, limits.velocity
+        if limits.soft is not None or (
+            position < limits.lower
+            or position > limits.upper
+            or velocity < -most
+            or velocity > most
+        ):
+            command = DampedEffort(effort, damping)
+            effort, damping = limited_effort(limits, command, position, velocity)
+        else:
+            # The same without an object.
+            effort = clamp(effort, -limits.effort, limits.effort)
         assert self._servo is not None
         self._servo.command_effort(effort, damping=damping)

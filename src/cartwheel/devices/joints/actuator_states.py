@@ -68,7 +68,11 @@ class ActuatorStates(Component):
 
     def update(self, time_ns: int) -> None:
         """Publishes the current states when due."""
-        if not self._periodic.due(time_ns):
+        if time_ns < self._periodic.next_ns:
+            return
+        self._periodic.due(time_ns)
+        dynamic = self._dynamic is not None and self._dynamic.wanted
+        if not (self._publisher.wanted or dynamic):
             return
         config = self._config
         head = header(time_ns, config.frame)

@@ -67,7 +67,7 @@ def integrate(gains: PidGains, integral: Number, error: Number, seconds: float) 
             return integral
         return clamp(integral + gains.i * error * seconds, gains.i_min, gains.i_max)
     integral = integral + error * seconds
-    if gains.stored == "limited error" and gains.i:
+    if gains.i and gains.stored == "limited error":
         low, high = sorted((gains.i_min / gains.i, gains.i_max / gains.i))
         integral = clamp(integral, low, high)
     return integral
@@ -110,10 +110,11 @@ def position_effort(
             control rate, the proportional term acts on its predicted position instead of the
             current one. Otherwise its oscillation would grow.
     """
-    effort = gains.p * error + integral_term(gains, integral) + gains.d * rate
-    stiff = gains.p * seconds * seconds * lightness > _STIFF
+    p, d = gains.p, gains.d
+    effort = p * error + integral_term(gains, integral) + d * rate
+    stiff = p * seconds * seconds * lightness > _STIFF
     if stiff is False or not anywhere(stiff):
-        return DampedEffort(effort, gains.d)
+        return DampedEffort(effort, d)
     return DampedEffort(
         where(stiff, effort + gains.p * seconds * rate, effort),
         where(stiff, gains.d + gains.p * seconds, gains.d),
@@ -181,7 +182,8 @@ class Pid:
             lightness: Acceleration of the joint per effort; see `position_effort`.
         """
         if rate is None:
-            rate = self._change(target, seconds)
+            before = target if self._target is None else self._target
+            rate = (target - before) / seconds if seconds > 0 else 0.0
         self._target = target
         self._integral = integrate(self.gains, self._integral, error, seconds)
         return position_effort(

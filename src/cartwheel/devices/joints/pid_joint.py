@@ -50,7 +50,7 @@ class PidJoint:
             seconds: Time since the last call, s.
         """
         joint, target = self.joint, self.target
-        velocity = joint.velocity
+        velocity = joint.state.velocity
         if self.config.quantity == "velocity":
             error = target - velocity
             command = self._pid.velocity(target, velocity, seconds)
@@ -58,8 +58,9 @@ class PidJoint:
             if joint.type != "continuous":
                 target = clamp(target, joint.limits.lower, joint.limits.upper)
             error = joint.error(target)
-            command = self._pid.position(error, seconds, target=target, lightness=joint.lightness)
-        output: float = command.at(velocity)
+            lightness = joint.state.lightness
+            command = self._pid.position(error, seconds, target=target, lightness=lightness)
+        output: float = command.effort - command.damping * velocity
         if self.config.commands_effort:
             joint.set_effort(command)
         else:

@@ -160,6 +160,7 @@ class Hardware:
             )
             for each in joints
         }
+        self._written = tuple(self._joints.values())
         self.references: dict[str, JointHardware] = {}
         """Reference interfaces by full name, such as ``controller/joint/velocity``."""
         self.holds = False
@@ -225,8 +226,14 @@ class Hardware:
 
     def write(self, seconds: float, *, lead: float = 0.0) -> None:
         """Applies all commands to the joints; see `JointHardware.write`."""
-        for joint in self._joints.values():
-            if self.halted:
+        if self.halted:
+            for joint in self._written:
                 joint.halt()
-            else:
-                joint.write(seconds, lead=lead)
+            return
+        for joint in self._written:
+            joint.write(seconds, lead=lead)
+
+    def expect_commands(self, period: float) -> None:
+        """States the time between two calls of `write`, s."""
+        for joint in self._written:
+            joint.expect_commands(period)

@@ -36,6 +36,8 @@ class ControllerManager:
         self._starting: list[Controller] = []
         self._stopping: list[Controller] = []
         self._last_ns: int | None = None
+        self._sensing: list[Controller] = []
+        """The running controllers that may publish quantities that are only known after a step."""
         self.writes = True
         """Whether each update applies the commands to the joints; otherwise `write` does."""
 
@@ -145,6 +147,11 @@ class ControllerManager:
             controller.running = True
             self._begun.add(controller.name)
             self._starting.append(controller)
+        self._sensing = [
+            each
+            for each in self._controllers.values()
+            if each.running and type(each).sense is not Controller.sense
+        ]
 
     def with_leaders(self, names: Sequence[str]) -> list[str]:
         """Returns the names, and those of all running controllers that command them.
@@ -200,10 +207,12 @@ class ControllerManager:
             if controller.started:
                 controller.sense(time_ns)
 
-    @property
     def senses(self) -> bool:
         """Whether a running controller has such quantities to publish."""
-        return any(each.running and each.senses for each in self._controllers.values())
+        for controller in self._sensing:  # noqa: SIM110 - any() costs more than the answer
+            if controller.senses:
+                return True
+        return False
 
     def reset(self) -> None:
         """Restarts the running controllers after a reset of the simulation."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from cartwheel.geometry import from_wxyz, quat_from_rpy, rotate, yaw_of
+from cartwheel.geometry import Vec3, rotate, yaw_of
 from cartwheel.world.entry import DRIVE_AXES, BodyDrive, scoped
 
 _OBJ = mujoco.mjtObj
@@ -22,6 +23,8 @@ class BodyDriveHandle:
         self.model_name = model
         self.drive = drive
         self._velocity: tuple[float | None, ...] = _FREE
+        self._linear_target: Vec3 = (0.0, 0.0, 0.0)
+        self._angular_target: Vec3 = (0.0, 0.0, 0.0)
         self._level = True
         self._rows = range(0)
         """Actuator ids; empty until the model is compiled."""
@@ -32,14 +35,14 @@ class BodyDriveHandle:
         name = scoped(link, self.drive.name, DRIVE_AXES[0])
         first = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, name)
         last = first + len(DRIVE_AXES)
-        self._ctrl = data.ctrl[first:last]
+        # Memory views contain Python floats, and are cheaper than arrays.
+        self._ctrl: Any = memoryview(data.ctrl)[first:last]
         self._gain, self._bias = model.actuator_gainprm, model.actuator_biasprm
         self._rows = range(first, last)
         joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, link)
         position, velocity = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
-        self._turned = data.qpos[position + 3 : position + 7]
-        self._linear = data.qvel[velocity : velocity + 3]
-        self._angular = data.qvel[velocity + 3 : velocity + 6]
+        self._turned: Any = memoryview(data.qpos)[position + 3 : position + 7]
+        self._motion: Any = memoryview(data.qvel)[velocity : velocity + 6]
         self._enable()
         self.hold()
 
@@ -58,6 +61,8 @@ class BodyDriveHandle:
             level: Use axes that follow only the link's heading, with z up.
         """
         self._velocity = (*linear, *angular)
+        x, y, z, *turn = (value or 0.0 for value in self._velocity)
+        self._linear_target, self._angular_target = (x, y, z), (turn[0], turn[1], turn[2])
         self._level = level
         self._enable()
         self.hold()
@@ -78,17 +83,36 @@ class BodyDriveHandle:
         """Updates the actuators; called before each step, because they act in world axes."""
         if self._velocity == _FREE or not self._rows:
             return
-        turn = from_wxyz(self._turned.tolist())
-        axes = quat_from_rpy(0.0, 0.0, yaw_of(turn)) if self._level else turn
-        wanted = [value or 0.0 for value in self._velocity]
-        turning = rotate(turn, self._angular.tolist())
-        spin = rotate(axes, wanted[3:])
-        # The servo acts at the centre of mass, which rotates about the link's origin.
-        arm = rotate(turn, self.drive.centre)
-        target = np.array([*(rotate(axes, wanted[:3]) + np.cross(spin, arm)), *spin])
-        now = np.array([*(self._linear + np.cross(turning, arm)), *turning])
-        # With a limit on the force itself, the servo would overshoot within a step.
-        self._ctrl[:] = now + np.clip(target - now, -self.drive.band, self.drive.band)
+        w, x, y, z = self._turned.tolist()
+        vx, vy, vz, *angular = self._motion.tolist()
+        turn = axes = (x, y, z, w)
+        if self._level:
+            half = yaw_of(turn) / 2
+            axes = (0.0, 0.0, math.sin(half), math.cos(half))
+        # The servo acts at the centre of mass, which rotates about the link's origin. The cross
+        # products are written out, because this runs at every step.
+        x, y, z = rotate(turn, self.drive.centre)
+        wx, wy, wz = rotate(turn, angular)
+        sx, sy, sz = rotate(axes, self._angular_target)
+        tx, ty, tz = rotate(axes, self._linear_target)
+        now = (vx + (wy * z - wz * y), vy + (wz * x - wx * z), vz + (wx * y - wy * x), wx, wy, wz)
+        targets = (
+            tx + (sy * z - sz * y),
+            ty + (sz * x - sx * z),
+            tz + (sx * y - sy * x),
+            sx,
+            sy,
+            sz,
+        )
+        ctrl, band = self._ctrl, self.drive.band
+        for row in range(6):
+            # With a limit on the force itself, the servo would overshoot within a step.
+            change = targets[row] - now[row]
+            if change > band:
+                change = band
+            elif change < -band:
+                change = -band
+            ctrl[row] = now[row] + change
 
 
 class WrenchHandle:

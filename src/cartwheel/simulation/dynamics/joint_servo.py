@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, Literal
 
 import mujoco
@@ -30,11 +31,20 @@ class ServoHandle:
 
     shared = False
     """Whether a drive plugin also drives the joint."""
+    alone = True
+    """Whether no other handle drives the joint, so that the actuator keeps what was applied."""
+    period = math.inf
+    """Time between two commands while a position is commanded, s; unlimited if it is unknown."""
+    wake: Callable[[], None] = staticmethod(lambda: None)
+    """Called when `follow` has to be called at every step from now on."""
 
     def __init__(self, model: str, motor: Motor) -> None:
         self.model_name = model
         self.motor = motor
         self.mode: Mode = "idle"
+        self._applied: Mode = "idle"
+        """The mode in which `_apply` set the actuator; idle if it must be set again."""
+        self._awake = False
         self._law = (0.0, 0.0)
         self._turning = 0.0
         self._target = self._rate = 0.0
@@ -46,18 +56,23 @@ class ServoHandle:
         rotor = scoped(self.model_name, self.motor.joint, ROTOR)
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, name)
         joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
-        self._qpos, self._position = data.qpos, int(model.jnt_qposadr[joint])
-        self._qvel = data.qvel
+        # Memory views contain Python floats, and are cheaper than arrays.
+        self._qpos: Any = memoryview(data.qpos)
+        self._qvel: Any = memoryview(data.qvel)
+        self._position = int(model.jnt_qposadr[joint])
         self._step = float(model.opt.timestep)
         turned = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, rotor)
         self._rotor = int(model.jnt_dofadr[turned])
-        self._ctrl = data.ctrl
+        self._ctrl: Any = memoryview(data.ctrl)
         self._bias = model.actuator_biasprm[self.id]
         self._grip = model.tendon_frictionloss
         self._tendon = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._strength = float(self._grip[self._tendon])
         inertia = float(model.dof_M0[int(model.jnt_dofadr[joint])])
-        self._braking = _BRAKING * self._strength / max(inertia, 1e-9)
+        self._braking = 2 * (_BRAKING * self._strength / max(inertia, 1e-9))
+        self._commanded_again = self.period <= self._step
+        if self._awake or (self.mode == "position" and not self._commanded_again):
+            self._rouse()
         self._apply()
 
     def release(self) -> None:
@@ -68,12 +83,20 @@ class ServoHandle:
         """Applies an effort in N m or N, minus the damping in N m s/rad or N s/m times the
         velocity.
         """
-        self._give("effort", effort, damping)
+        if self._applied == "effort" and damping == self._law[1]:
+            self._law = (effort, damping)
+            self._ctrl[self.id] = effort
+            self._qvel[self._rotor] = 0.0
+        else:
+            self._give("effort", effort, damping)
 
     def command_velocity(self, velocity: float) -> None:
         """Holds a velocity in rad/s or m/s."""
-        self._limit = math.inf
-        self._turn("velocity", velocity)
+        if self._applied == "velocity":
+            self._turning = self._qvel[self._rotor] = velocity
+        else:
+            self._limit = math.inf
+            self._turn("velocity", velocity)
 
     def command_position(
         self,
@@ -92,7 +115,12 @@ class ServoHandle:
             max_effort: N m or N, if lower than the motor's limit.
         """
         self._target, self._rate = position, velocity
-        self._fastest, self._limit = max_velocity, max_effort
+        self._fastest = max_velocity
+        if max_effort != self._limit:
+            self._limit = max_effort
+            self._applied = "idle"
+        if not (self._awake or self._commanded_again):
+            self._rouse()
         self._lead()
 
     @property
@@ -100,21 +128,30 @@ class ServoHandle:
         """Whether it applies an effort or drives the joint."""
         return self.mode != "idle" and (self._law[0] != 0.0 or self._turning != 0.0)
 
-    @property
-    def follows(self) -> bool:
-        """Whether `follow` must be called."""
-        return self.mode == "position"
-
     def follow(self) -> None:
-        """Moves the joint toward its target position; called at every step."""
-        self._target += self._rate * self._step
-        self._lead()
+        """Moves the joint toward its target position, if there is one; called at every step."""
+        if self.mode == "position":
+            self._target += self._rate * self._step
+            self._lead()
 
     def _lead(self) -> None:
-        error = self._target - float(self._qpos[self._position])
-        speed = min(POSITION_BANDWIDTH * abs(error), math.sqrt(2 * self._braking * abs(error)))
-        wanted = self._rate + math.copysign(speed, error)
-        self._turn("position", min(max(wanted, -self._fastest), self._fastest))
+        error = self._target - self._qpos[self._position]
+        size = abs(error)
+        # Comparisons take a quarter of the time of `min` and `max`.
+        speed, braked = POSITION_BANDWIDTH * size, math.sqrt(self._braking * size)
+        speed = min(speed, braked)
+        wanted, fastest = self._rate + math.copysign(speed, error), self._fastest
+        if -fastest > wanted:  # noqa: PLR1730
+            wanted = -fastest
+        wanted = min(wanted, fastest)
+        if self._applied == "position":
+            self._turning = self._qvel[self._rotor] = wanted
+        else:
+            self._turn("position", wanted)
+
+    def _rouse(self) -> None:
+        self._awake = True
+        self.wake()
 
     def _give(self, mode: Mode, effort: float, damping: float) -> None:
         self.mode = mode
@@ -139,3 +176,4 @@ class ServoHandle:
             self._grip[self._tendon] = self._strength if self.shared else 0.0
         if holds or not self.shared:
             self._qvel[self._rotor] = self._turning
+        self._applied = self.mode if self.alone else "idle"
