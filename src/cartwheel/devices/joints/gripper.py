@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.action_server import ActionServer
-from cartwheel.devices.joints.actuator import JointActuator
 from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 from cartwheel.devices.periodic import Periodic
 from cartwheel.devices.ramp import ramp
@@ -24,8 +23,9 @@ Ending = Literal["succeed", "cancel", "abort"]
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GripperConfig:
     action: Literal["GripperCommand", "ParallelGripperCommand"]
-    """Type of the action ``gripper_cmd``. Goals of a ParallelGripperCommand can limit the
-    velocity."""
+    """Type of the action. Goals of a ParallelGripperCommand can limit the velocity."""
+    action_name: str = "gripper_cmd"
+    """Name of the action."""
     tolerance: float
     """Largest distance in rad or m at which a goal is reached."""
     max_effort: float
@@ -44,8 +44,40 @@ class GripperConfig:
     """Gains of a PID controller that computes efforts. None: positions are commanded."""
 
 
+class GripperJoint(Protocol):
+    """What a `Gripper` moves: a `JointActuator`, or several of them."""
+
+    command: float
+    """Commanded position, rad or m."""
+    strength: float
+    """Maximum effort, N m or N."""
+
+    @property
+    def joint(self) -> str:
+        """Name of the joint."""
+
+    @property
+    def position(self) -> float:
+        """Position, rad or m."""
+
+    @property
+    def velocity(self) -> float:
+        """Velocity, rad/s or m/s."""
+
+    @property
+    def effort(self) -> float:
+        """Effort, N m or N."""
+
+    @property
+    def lightness(self) -> float:
+        """Acceleration per effort, 1/(kg m²) or 1/kg."""
+
+    def set_effort(self, effort: DampedEffort) -> None:
+        """Commands an effort."""
+
+
 class Gripper(Component):
-    """Moves one joint by the action ``gripper_cmd``, with at most the goal's effort.
+    """Moves one joint by an action, with at most the goal's effort.
 
     Args:
         scope: Names of the action.
@@ -60,7 +92,7 @@ class Gripper(Component):
         scope: Scope,
         config: GripperConfig,
         *,
-        joint: JointActuator,
+        joint: GripperJoint,
         name: str,
         running: Callable[[], bool],
     ) -> None:
@@ -79,7 +111,11 @@ class Gripper(Component):
         self._active: Goal | None = None
         self._moved_ns = 0
         self._action = ActionServer(
-            self, "gripper_cmd", config.action, on_goal=self._on_goal, on_cancel=self._on_cancel
+            self,
+            config.action_name,
+            config.action,
+            on_goal=self._on_goal,
+            on_cancel=self._on_cancel,
         )
 
     def start(self, time_ns: int) -> None:

@@ -13,6 +13,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.dialects.ros_control.catalogue import controller_types
+from cartwheel.dialects.ros_control.fetch import TRANSLATED
 from cartwheel.errors import Diagnostic
 
 _OF_OTHER_ROS = {
@@ -35,7 +36,7 @@ _OF_OTHER_ROS = {
 
 @rule(devices_codes.CONTROLLER_TYPE_UNKNOWN)
 def controller_type_unknown(subject: Subject) -> Iterator[Diagnostic]:
-    known = sorted(controller_types())
+    known = sorted({*controller_types(), *TRANSLATED})
     for controller in used_controllers(subject):
         kind = controller.kind
         other = _OF_OTHER_ROS[controller.file.is_ros2].get(kind, "")

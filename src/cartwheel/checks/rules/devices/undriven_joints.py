@@ -9,7 +9,8 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint, PluginTag
-from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.tag_roles import WHEEL_ROLES
 from cartwheel.errors import Diagnostic
 
@@ -60,8 +61,10 @@ def _is_free(joint: Joint) -> bool:
 
 def _may_drive(tag: PluginTag) -> bool:
     """Whether a plugin drives joints, or is unknown, so that it may."""
+    plugin = plugin_named(tag.filename)
     return (
         not plugin_tags.is_simulated(tag)
+        or (plugin is not None and issubclass(plugin, ControlPlugin))
         or "control" in short_name(tag.filename)
         or bool(plugin_tags.roles_with(tag.filename, "joint", *WHEEL_ROLES))
     )

@@ -173,7 +173,7 @@ class JointTrajectoryController(Controller):
                 follower=self._follower,
                 reader=self._reader,
                 joints=self._joints,
-                running=lambda: self.running,
+                running=self.accepts_goals,
             )
         )
         self._state = self.advertise(
@@ -183,6 +183,10 @@ class JointTrajectoryController(Controller):
         )
         if not ros2:
             self.serve("query_state", "control_msgs/srv/QueryTrajectoryState", self._on_query)
+
+    def accepts_goals(self) -> bool:
+        """Called for a new goal: whether it is accepted."""
+        return self.running
 
     def start(self, time_ns: int) -> None:
         self._follower.start(time_ns)
