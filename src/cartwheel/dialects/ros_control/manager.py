@@ -38,6 +38,7 @@ class ControllerManager:
         self._last_ns: int | None = None
         self._sensing: list[Controller] = []
         """The running controllers that may publish quantities that are only known after a step."""
+        robot.take_over = self.take_over
         self.writes = True
         """Whether each update applies the commands to the joints; otherwise `write` does."""
 
@@ -152,6 +153,20 @@ class ControllerManager:
             for each in self._controllers.values()
             if each.running and type(each).sense is not Controller.sense
         ]
+
+    def take_over(self, name: str) -> None:
+        """Starts a controller at the next update, and stops those that command one of its joints.
+
+        Raises:
+            GraphError: See `switch`.
+        """
+        claims = self._controllers[name].claims.keys()
+        others = [
+            each.name
+            for each in self.controllers
+            if each.running and each.name != name and not claims.isdisjoint(each.claims)
+        ]
+        self.switch([name], others)
 
     def with_leaders(self, names: Sequence[str]) -> list[str]:
         """Returns the names, and those of all running controllers that command them.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,9 +60,16 @@ class ControlledRobot:
         """Control period, ns."""
         self.remappings: dict[str, Mapping[str, str]] = {}
         """Remapped topic names, by controller."""
+        self.take_over: Callable[[str], None] = _refuse
+        """Starts a controller and stops those that command its joints; see
+        `ControllerManager.take_over`."""
 
     def report_error(self, error: CartwheelError) -> None:
         """Reports the error of a request as a warning."""
         self.plugin.warn(
             error.code, error.message, at=error.origin, hint=error.hint or "", values=error.values
         )
+
+
+def _refuse(_: str) -> None:
+    """Starts no controller, because there is no manager yet."""

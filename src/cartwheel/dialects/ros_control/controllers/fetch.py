@@ -7,7 +7,6 @@ from typing import ClassVar
 
 from cartwheel.devices.joints.gripper import Gripper, GripperConfig
 from cartwheel.devices.joints.pid import DampedEffort
-from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.joint_trajectory import (
     JointTrajectoryController,
@@ -37,15 +36,8 @@ class FetchTrajectoryController(JointTrajectoryController):
 
     def accepts_goals(self) -> bool:
         """Starts the controller, so that each goal is accepted."""
-        plugin = self.robot.plugin
-        manager = plugin.manager if isinstance(plugin, ControlPlugin) else None
-        if not self.running and manager is not None:
-            others = [
-                each.name
-                for each in manager.controllers
-                if each.running and not self.claims.keys().isdisjoint(each.claims)
-            ]
-            manager.switch([self.name], others)
+        if not self.running:
+            self.robot.take_over(self.name)
             # The goal must not be lost when the manager starts the controller at its next update.
             super().start(self.part.time_ns)
             self._awake = True
