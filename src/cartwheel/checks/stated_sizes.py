@@ -89,9 +89,12 @@ def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:
         second = tuple(name for name in second if not _is_steered(robot, name, first)) or second
     name = next((name for name in size.tags if tag.element.find(name) is not None), "")
     written = list(tag.element.find_all(name)) if name else []
+    if len({nodes.number(each.text) for each in written}) == 1:
+        # Several wheel pairs with the same size.
+        written = written[:1]
     for index, element in enumerate(written):
         value = nodes.number(element.text)
-        # Repeated tags apply to one wheel pair each.
+        # Different sizes apply to one wheel pair each.
         pick = slice(index, index + 1) if len(written) > 1 else slice(None)
         if value is None or not first[pick] or (second and not second[pick]):
             continue
