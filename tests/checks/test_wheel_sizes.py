@@ -416,6 +416,18 @@ def test_the_turn_rate_of_a_skid_steered_robot_is_that_at_which_friction_torques
     assert not [each for each in report.findings if each.code is SKID_STEERING]
 
 
+def test_pairs_of_wheels_with_equal_separations_are_those_of_a_skid_steer(bench):
+    pairs = (
+        '<plugin name="p" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2'
+        "</num_wheel_pairs><left_joint>rear_left_joint</left_joint><left_joint>front_left_joint"
+        "</left_joint><right_joint>rear_right_joint</right_joint><right_joint>front_right_joint"
+        f"</right_joint>{f'<wheel_separation>{TRACK}</wheel_separation>' * 2}"
+        f"{f'<wheel_diameter>{2 * RADIUS}</wheel_diameter>' * 2}</plugin>"
+    )
+    (finding,) = [each for each in bench.report(car(pairs)).findings if each.code is SKID_STEERING]
+    assert finding.values["ratio"] == pytest.approx(TRACK**2 / (TRACK**2 + BASE**2), rel=1e-6)
+
+
 @pytest.mark.parametrize("places", [[0.0, 0.0], [-0.1, 0.0, 0.1]])
 def test_wheels_of_one_axle_do_not_slide_and_more_axles_turn_more_slowly(places):
     ratio = turn_ratio(0.4, [*places, *places])

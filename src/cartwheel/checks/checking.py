@@ -161,6 +161,10 @@ def _read(
             holed.add(id(parent))
             holder = nodes.parent_of(tree, parent)
             gaps += [each.origin for each in (parent, holder) if each is not None]
+            owner = nodes.parent_of(tree, holder) if holder is not None else None
+            if parent.tag == "geometry" and holder is not None and owner is not None:
+                # Without its shape, a visual would be an error as well.
+                owner.drop(holder)
             if tree.tag == "robot":
                 mended |= mend(tree)
 

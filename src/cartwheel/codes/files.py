@@ -188,3 +188,9 @@ STAND_IN_PARAMETER = Code(
     "warning",
     "a parameter of a macro is ignored because the package's stand-in does not support it",
 )
+FILE_ELSEWHERE = Code(
+    "CW163",
+    "file-elsewhere",
+    "warning",
+    "a file is not where the description says, and the file of the same package is used",
+)

@@ -217,12 +217,14 @@ def understand(opened: Opened) -> RobotDescription | WorldDescription:
             text=opened.text,
             diagnostics=opened.diagnostics,
         )
-        return replace(made, arguments=opened.arguments)
+        diagnostics = (*made.diagnostics, *opened.packages.moves())
+        return replace(made, arguments=opened.arguments, diagnostics=diagnostics)
     if root.tag in ("sdf", "gazebo"):
         from cartwheel.description.sdf import read_sdf
 
         found = read_sdf(root, opened.packages, text=opened.text)
-        return replace(found, diagnostics=(*opened.diagnostics, *found.diagnostics))
+        diagnostics = (*opened.diagnostics, *found.diagnostics, *opened.packages.moves())
+        return replace(found, diagnostics=diagnostics)
     kind, hint = _OTHER_KINDS.get(root.tag, ("", ""))
     raise root.fail(
         f"the file is {kind}" if kind else f"the root element <{root.tag}> is not supported",

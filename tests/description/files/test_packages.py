@@ -280,3 +280,44 @@ def test_large_trees_are_not_walked(tmp_path, monkeypatch):
         packages(robot(own)).find("nowhere")
     walked = [each for each in looked if each.parent == tmp_path / "ws"]
     assert 0 < len(walked) <= package_folders.MAX_ENTRIES
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "/home/me/ws/src/my_robot/meshes/base.stl",
+        "file:///home/me/ws/src/my_robot/meshes/base.stl",
+        "my_robot/meshes/base.stl",
+        "package://former_name/meshes/base.stl",
+    ],
+)
+def test_a_file_of_another_computer_is_found_in_its_package(tmp_path, uri):
+    own = package(tmp_path / "ws" / "src" / "my_robot")
+    mesh = own / "meshes" / "base.stl"
+    mesh.parent.mkdir()
+    mesh.write_text("solid base")
+    found = packages(robot(own))
+    assert found.resolve(uri, HERE, what="mesh").samefile(mesh)
+    (told,) = found.moves()
+    assert told.code is files.FILE_ELSEWHERE
+    assert told.values["name"] == uri
+    assert told.origin == HERE
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "/home/me/ws/src/my_robot/../../../secret.stl",
+        "../secret.stl",
+        "package://former_name/../../../secret.stl",
+        "http://localhost/my_robot/meshes/base.stl",
+        "/home/me/other/meshes/base.stl",
+    ],
+)
+def test_a_file_of_another_computer_is_not_searched_outside_its_package(tmp_path, uri):
+    own = package(tmp_path / "ws" / "src" / "my_robot")
+    (tmp_path / "secret.stl").write_text("solid secret")
+    found = packages(robot(own))
+    with pytest.raises(DescriptionError):
+        found.resolve(uri, HERE, what="mesh")
+    assert not found.found_elsewhere

@@ -604,7 +604,7 @@ def test_a_box_without_height_is_a_plate():
     assert named(found.diagnostics[0]) == "value-ignored"
     assert found.diagnostics[0].values["stated"] == "3.5 0.15 0"
     with raises(tags.VALUE_INVALID):
-        link('<visual name="v"><geometry><box><size>0 0 0</size></box></geometry></visual>')
+        link('<visual name="v"><geometry><box><size>1 1 -1</size></box></geometry></visual>')
 
 
 def test_impossible_inertia_matters_where_it_moves():

@@ -55,3 +55,13 @@ def test_warnings_are_distinct_by_their_lines_but_notes_are_not():
     later = replace(warning, origin=Origin(file="m.sdf", line=4))
     note, later_note = (replace(each, severity="info") for each in (warning, later))
     assert list(_distinct([warning, later, note, later_note])) == [warning, later, note]
+
+
+@pytest.mark.parametrize("size", ["0 0 0", "0 1 2"])
+def test_a_box_without_thickness_is_loaded(size):
+    part = f'<visual name="a"><geometry><box><size>{size}</size></box></geometry></visual>'
+    text = f'<sdf version="1.7"><model name="m">{LINK.format(parts=part)}</model></sdf>'
+    robot = load_text(text)
+    (visual,) = robot.links[0].visuals
+    assert min(visual.shape.size) > 0
+    assert coded(robot.diagnostics, tags.VALUE_IGNORED)

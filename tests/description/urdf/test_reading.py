@@ -7,6 +7,7 @@ import pytest
 from tests.coded import named, placed
 
 import cartwheel as cw
+from cartwheel.codes import tags
 from cartwheel.description import load_text
 from cartwheel.description import model as m
 from cartwheel.errors import DescriptionError
@@ -305,16 +306,6 @@ ERRORS = [
         "type-unknown box",
     ),
     (
-        urdf('<link name="a"><collision>', "<geometry/></collision></link>"),
-        3,
-        "tag-missing",
-    ),
-    (
-        urdf('<link name="a">', "<collision/></link>"),
-        3,
-        "tag-missing",
-    ),
-    (
         urdf(
             OPEN_VISUAL,
             '<origin xyz="0 0"/><geometry><box size="1 1 1"/></geometry>',
@@ -567,3 +558,15 @@ def test_a_warning_is_told_once_for_a_macro_called_twice():
         '<xacro:part name="a"/><xacro:part name="b"/>' + joint("j", "a", "b"),
     )
     assert sum(each.values.get("tag") == "oops" for each in load(twice).diagnostics) == 1
+
+
+@pytest.mark.parametrize("content", ["", "<geometry/>"])
+@pytest.mark.parametrize("kind", ["visual", "collision"])
+def test_a_shape_without_geometry_is_left_out(kind, content):
+    robot = load(urdf(link("a", f"{BODY}<{kind}>{content}</{kind}>")))
+    (only,) = robot.links
+    assert not only.visuals + only.collisions
+    (said,) = robot.diagnostics
+    assert (said.code, said.severity) == (tags.TAG_MISSING, "error")
+    assert said.values["left_out"] == kind
+    assert said.origin.line == 2

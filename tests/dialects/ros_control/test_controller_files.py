@@ -9,7 +9,7 @@ from tests.dialects.ros_control.arms import ros2_system as system
 import cartwheel as cw
 from cartwheel.codes import devices
 from cartwheel.description import load_robot
-from cartwheel.dialects.ros_control.files import ControllerFiles, ros2_file
+from cartwheel.dialects.ros_control.files import ControllerFiles, read_parameters, ros2_file
 from cartwheel.dialects.ros_control.substitution import substitute
 from cartwheel.errors import PluginError
 
@@ -125,6 +125,16 @@ def test_a_key_that_stands_twice_holds_both(spawn):
 """)
     assert started(world) == ["c"]
     assert warnings(world) == []
+
+
+def test_numbers_with_an_exponent_are_numbers_in_ros2_and_texts_in_ros1(tmp_path):
+    path = tmp_path / "a.yaml"
+    numbers = "[0.5, 1e6, -2E-3, .5e1, 1.e2, '3e4', e5, 0x1e5]"
+    path.write_text(f"c:\n  ros__parameters:\n    list: {numbers}\n")
+    (values,) = read_parameters(path)["c"].values()
+    assert values["list"] == [0.5, 1e6, -2e-3, 5.0, 100.0, "3e4", "e5", 0x1E5]
+    path.write_text(f"c:\n  list: {numbers}\n")
+    assert read_parameters(path)["c"]["list"][1] == "1e6"
 
 
 def test_nested_namespaces_are_the_same(spawn):

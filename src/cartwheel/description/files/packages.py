@@ -20,6 +20,7 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.files import fuel
 from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.missing_packages import Advice, how_to_install
+from cartwheel.description.files.other_places import other_places
 from cartwheel.description.files.package_folders import (
     around,
     is_dir,
@@ -38,7 +39,7 @@ from cartwheel.description.files.readable_files import (
     is_named,
     real,
 )
-from cartwheel.errors import DescriptionError, Origin
+from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 _RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
 FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
@@ -75,6 +76,9 @@ class Packages:
         self._search = PackageSearch(self.file, self.package_path, self._environment)
         self.stand_ins: dict[str, Origin | None] = {}
         """The packages whose stand-ins were read, with the first element that refers to each."""
+        self.found_elsewhere: dict[str, tuple[Path, Origin | None]] = {}
+        """Files that are not where the description says: the file that is used, and the first
+        element that refers to it, by the statement."""
 
     @property
     def folder(self) -> Path:
@@ -128,7 +132,14 @@ class Packages:
         Raises:
             DescriptionError: The file was not found; the hint lists the searched folders.
         """
-        candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
+        try:
+            candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
+        except DescriptionError as error:
+            missing = error.code is codes.FILE_MISSING
+            other = self.elsewhere(uri.strip(), origin) if missing else None
+            if other is None:
+                raise
+            return other
         for path in candidates:
             for each in dict.fromkeys((path, Path(unquote(str(path))))):
                 # Without permission to read a file, its existence is not revealed.
@@ -136,6 +147,9 @@ class Packages:
                     continue
                 if is_file(each) or (folder and each == path and is_dir(each)):
                     return each
+        other = self.elsewhere(uri, origin)
+        if other is not None:
+            return other
         if self.reach is not None and not any(map(self.may_read, candidates)):
             self._refuse(f'the {what} "{uri}"', origin)
         allowed = (each for each in candidates if self.reach is None or self.may_read(each))
@@ -156,6 +170,37 @@ class Packages:
                 known = self._search.package_advice(package)
                 raise _missing("package", package, message, origin, known)
         raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
+
+    def elsewhere(self, uri: str, origin: Origin | None) -> Path | None:
+        """The file that is meant by a path of another computer, such as its author's.
+
+        Returns:
+            The file, which is noted in `found_elsewhere`; None if there is none.
+        """
+        near = (
+            [self.folder] if origin is None else [Path(origin.file).absolute().parent, self.folder]
+        )
+        above = dict.fromkeys(each for start in near for each in (start, *start.parents))
+        candidates = other_places(uri, filter(self._is_ours, above), self._search.package)
+        for path in candidates:
+            if is_file(path) and self.may_read(path):
+                self.found_elsewhere.setdefault(uri, (path, origin))
+                return path
+        return None
+
+    def _is_ours(self, folder: Path) -> bool:
+        return any(folder == root or root in folder.parents for root in self._own)
+
+    def moves(self) -> Iterator[Diagnostic]:
+        """Reports the files that are not where the description says."""
+        for uri, (path, origin) in self.found_elsewhere.items():
+            yield codes.FILE_ELSEWHERE.diagnostic(
+                f'"{uri}" does not exist, so "{path}" is used',
+                origin=origin,
+                hint="Write package://NAME/FILE, or $(find NAME)/FILE in xacro, where NAME is the "
+                "name of the package, or a path relative to this file.",
+                values={"name": uri, "used": str(path)},
+            )
 
     def model_folders(self) -> list[Path]:
         """The folders that are searched for Gazebo models, in order."""

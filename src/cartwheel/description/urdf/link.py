@@ -101,20 +101,14 @@ def _visual(node: Node, default: str, ctx: UrdfContext) -> Visual | None:
 def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:
     """The shape of a visual or collision; None if it is skipped."""
     geometry = owner.child("geometry")
-    if geometry is None:
-        raise owner.fail(
-            f'a {kind} of link "{link}" has no <geometry>',
-            code=tags.TAG_MISSING,
-            values={"missing": "geometry", "link": link},
-        )
     for tag in SHAPES:
-        node = geometry.child(tag)
+        node = geometry.child(tag) if geometry is not None else None
         if node is None:
             continue
         if tag == "mesh":
             return _mesh(node, kind, link, ctx)
         return _primitive(node, kind, link, ctx)
-    if geometry.children:
+    if geometry is not None and geometry.children:
         wrong = geometry.children[0]
         raise wrong.fail(
             f'the geometry <{wrong.tag}> of link "{link}" is unknown',
@@ -122,12 +116,18 @@ def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape 
             code=tags.TYPE_UNKNOWN,
             values={"name": wrong.tag, "meant": meant(wrong.tag, SHAPES), "link": link},
         )
-    raise geometry.fail(
-        f'the <geometry> of a {kind} of link "{link}" is empty',
-        f"Add one of: {', '.join(SHAPES)}.",
-        code=tags.TAG_MISSING,
-        values={"link": link},
+    what = "has no <geometry>" if geometry is None else "has an empty <geometry>"
+    ctx.report(
+        tags.TAG_MISSING.diagnostic(
+            f'a {kind} of link "{link}" {what}, so the {kind} is ignored',
+            severity="error",
+            origin=owner.origin,
+            hint=f"Add <geometry> with one of: {', '.join(SHAPES)}. ROS and Gazebo do not load "
+            "this robot.",
+            values={"missing": "geometry", "link": link, "left_out": kind},
+        )
     )
+    return None
 
 
 def _primitive(node: Node, kind: str, link: str, ctx: UrdfContext) -> Shape | None:

@@ -75,7 +75,12 @@ def replace_functions(module: ModuleType, run: Run) -> None:
 
     def abs_filename_spec(given: str) -> str:
         path = original.abs_filename_spec(given)
-        return str(path) if glob.has_magic(path) else str(source_of(Path(path)))
+        if glob.has_magic(path):
+            return str(path)
+        found = source_of(Path(path))
+        if not found.exists():
+            found = run.packages.elsewhere(given, run.origin()) or found
+        return str(found)
 
     def process_include(
         element: Element, macros: object, symbols: object, expand: Callable[..., None]

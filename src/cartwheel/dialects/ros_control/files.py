@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from cartwheel.dialects.ros_control.controller import Controller
 
 _ROS2 = "ros__parameters"
+_EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+")
+"""Numbers that YAML 1.1 reads as texts if the dot or the sign of the exponent is missing."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -99,7 +102,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
         loader = yaml_text.loader()(text)
         node = loader.get_single_node()
         if node is not None and "ros__parameters" in text:
-            _join(node, set())
+            _as_ros2(node, set())
         content = loader.construct_document(node) if node is not None else None
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         text, line = yaml_text.fault(error)
@@ -115,14 +118,18 @@ def _unreadable(message: str, origin: Origin) -> PluginError:
     return PluginError(message, code=devices.CONTROLLERS_FILE_UNREADABLE, origin=origin)
 
 
-def _join(node: Any, seen: set[int]) -> None:
-    """Merges mappings with the same key, as ROS 2 does.
+def _as_ros2(node: Any, seen: set[int]) -> None:
+    """Merges mappings with the same key and reads ``1e6`` as a number, as ROS 2 does.
 
-    In YAML, and in ROS 1, the last of them is used.
+    In YAML 1.1, and in ROS 1, the last of the mappings is used, and ``1e6`` is a text.
     """
-    if node.id == "scalar" or id(node) in seen:
+    if id(node) in seen:
         return
     seen.add(id(node))
+    if node.id == "scalar":
+        if node.style is None and _EXPONENT.fullmatch(node.value):
+            node.tag = "tag:yaml.org,2002:float"
+        return
     if node.id == "mapping":
         kept: list[tuple[Any, Any]] = []
         first: dict[str, Any] = {}
@@ -135,7 +142,7 @@ def _join(node: Any, seen: set[int]) -> None:
                 first[str(key.value)] = value
         node.value = kept
     for each in node.value:
-        _join(each[1] if node.id == "mapping" else each, seen)
+        _as_ros2(each[1] if node.id == "mapping" else each, seen)
 
 
 def for_robot(content: dict[str, Any], path: Path, robot: RobotDescription) -> dict[str, Any]:

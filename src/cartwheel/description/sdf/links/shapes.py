@@ -132,8 +132,9 @@ def _sizes(shape: Node, tag: str, ctx: Context) -> Vec3:
         _warn_default(shape, tag, ctx)
         return (1.0, 1.0, 1.0)
     x, y, z = node.vec3()
-    if shape.tag == "box" and min(x, y, z) == 0 < max(x, y, z):
+    if shape.tag == "box" and min(x, y, z) == 0:
         # Gazebo's building editor writes this for the wall above a door that reaches the ceiling.
+        # Others write 0 0 0 for a link that is only a frame.
         ctx.warn(
             tags.VALUE_IGNORED,
             f"a side of the box has length 0 (size {node.text}), so {_FLAT * 1e3:g} mm is used",

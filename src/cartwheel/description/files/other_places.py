@@ -1,0 +1,42 @@
+"""Where a file may be that is not where a description says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+_DEEPEST = 8
+"""Number of folders in the path of a missing file that may be packages."""
+
+
+def other_places(
+    uri: str, folders: Iterable[Path], package: Callable[[str], Path | None]
+) -> Iterator[Path]:
+    """The places in which a missing file may be, likeliest first.
+
+    In ``/home/me/ws/src/my_robot/meshes/base.stl``, ``my_robot`` may be a package that is found on
+    this computer. A relative path may start in a folder above the description's, from which the
+    author runs xacro. In ``package://my_robot/meshes/base.stl``, ``my_robot`` may be a former name
+    of the description's own package.
+
+    Args:
+        uri: The statement in the description.
+        folders: The description's folder and those above it in its workspace.
+        package: Returns the folder of a package.
+    """
+    scheme, separator, rest = uri.partition("://")
+    if ".." in Path(uri).parts:
+        return
+    if not separator or scheme == "package":
+        given = Path(rest.partition("/")[2] if separator else uri)
+        if given.parts and not given.is_absolute():
+            yield from (folder / given for folder in folders)
+            return
+    elif scheme != "file":
+        return
+    given = Path(uri.removeprefix("file://"))
+    parts = given.parts[1:]
+    for index in range(len(parts) - 2, max(-1, len(parts) - 2 - _DEEPEST), -1):
+        found = package(parts[index]) if given.is_absolute() else None
+        if found is not None:
+            yield found.joinpath(*parts[index + 1 :])
