@@ -92,6 +92,8 @@ PLUGINS = {
     "gz-sim-velocity-control-system": "gz.velocity_control",
     "gz-sim-wheel-slip-system": "classic.forces.wheel_slip",
     "gz_ros2_control-system": "ros2_control.plugin",
+    "hector_gazebo_quadrotor_aerodynamics": "makers.flying.hector_propulsion",
+    "hector_gazebo_quadrotor_propulsion": "makers.flying.hector_propulsion",
     "hector_gazebo_quadrotor_simple_controller": "makers.flying.hector_quadrotor",
     "hector_gazebo_ros_baro": "makers.hector_baro",
     "hector_gazebo_ros_gps": "makers.hector_gps",
