@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
-from cartwheel.devices.drives.differential import WheelPair
+from cartwheel.devices.drives.differential import (
+    DifferentialDrive,
+    DifferentialDriveConfig,
+    WheelPair,
+)
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST
 from cartwheel.errors import PluginError
@@ -62,7 +66,19 @@ def wheel_pairs(
     return tuple(pairs)
 
 
-def report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> None:
+def add_differential_drive(
+    plugin: Plugin[Any],
+    config: DifferentialDriveConfig,
+    *,
+    yaw_rate: Callable[[], float] | None = None,
+) -> DifferentialDrive:
+    """Adds a differential drive, and reports swapped wheels; see `DifferentialDrive`."""
+    drive = plugin.add(DifferentialDrive(plugin.scope, config, yaw_rate=yaw_rate))
+    _report_swapped_wheels(plugin, config.pairs)
+    return drive
+
+
+def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> None:
     """Reports a left wheel on the right side, because the robot then turns the wrong way.
 
     If the wheels are beside each other along x, their axes define the sides.

@@ -6,24 +6,20 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
-from cartwheel.devices.drives.drive import DriveConfig
+from cartwheel.devices.drives.differential import DifferentialDriveConfig
 from cartwheel.dialects import drive_tags
 from cartwheel.dialects.common_tags import joints_tag
 from cartwheel.dialects.gz.drive_tags import (
+    CONTROL_RATE,
     GzLimitedParameters,
-    gz_name,
-    gz_odometry,
+    gz_drive,
     report_limits,
     separate_limits,
 )
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
 from cartwheel.errors import PluginError
-
-CONTROL_RATE = 100.0
-"""Rate of the control loop, which applies the limits, Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,21 +60,14 @@ class GzDiffDrive(Plugin[GzDiffDriveParameters]):
         report_limits(self, config)
         joints = list(zip(config.left_joint, config.right_joint, strict=True))
         pairs = wheel_pairs(self, joints, [config.wheel_separation], [2 * config.wheel_radius])
-        self.add(
-            DifferentialDrive(
-                self.scope,
-                DifferentialDriveConfig(
-                    pairs=pairs,
-                    linear=separate_limits(config, "linear"),
-                    angular=separate_limits(config, "angular"),
-                    limit_period=1 / CONTROL_RATE,
-                    odometry="positions",
-                    drive=DriveConfig(
-                        command_topic=gz_name(self, config.topic, "cmd_vel"),
-                        control_rate=CONTROL_RATE,
-                        odometry=gz_odometry(self, config),
-                    ),
-                ),
-            )
+        add_differential_drive(
+            self,
+            DifferentialDriveConfig(
+                pairs=pairs,
+                linear=separate_limits(config, "linear"),
+                angular=separate_limits(config, "angular"),
+                limit_period=1 / CONTROL_RATE,
+                odometry="positions",
+                drive=gz_drive(self, config),
+            ),
         )
-        report_swapped_wheels(self, pairs)

@@ -167,22 +167,6 @@ def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
     return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
 
 
-def gz_odometry(plugin: Plugin[Any], config: GzDriveParameters) -> OdometryConfig:
-    """Returns the topics and frames of a gz-sim drive's odometry.
-
-    Raises:
-        PluginError: The rate is negative.
-    """
-    name = plugin.part.name
-    return OdometryConfig(
-        topic=gz_name(plugin, config.odom_topic, "odometry"),
-        frame=config.frame or f"{name}/odom",
-        base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
-        rate=config.rate,
-        tf_topic=gz_name(plugin, config.tf_topic, "tf"),
-    )
-
-
 def gz_drive(plugin: Plugin[Any], config: GzDriveParameters, *, topic: str = "") -> DriveConfig:
     """Returns the topics and rates of a gz-sim drive.
 
@@ -194,8 +178,15 @@ def gz_drive(plugin: Plugin[Any], config: GzDriveParameters, *, topic: str = "")
     Raises:
         PluginError: The rate is negative.
     """
+    name = plugin.part.name
     return DriveConfig(
         command_topic=gz_name(plugin, config.topic or topic, "cmd_vel"),
         control_rate=CONTROL_RATE,
-        odometry=gz_odometry(plugin, config),
+        odometry=OdometryConfig(
+            topic=gz_name(plugin, config.odom_topic, "odometry"),
+            frame=config.frame or f"{name}/odom",
+            base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
+            rate=config.rate,
+            tf_topic=gz_name(plugin, config.tf_topic, "tf"),
+        ),
     )

@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.codes import running
 from cartwheel.description.model import Sensor
 from cartwheel.devices.bases.kobuki import KobukiSensors, KobukiSensorsConfig
-from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.differential import DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.devices.joints.states import JointStatesConfig
@@ -21,7 +21,7 @@ from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
 from cartwheel.errors import UnknownNameError
 
 _BASE = "mobile_base/"
@@ -104,38 +104,35 @@ class Kobuki(Plugin[KobukiParameters]):
             "std_msgs/msg/Empty",
             lambda _: self._drive.reckoning.restart(),
         )
-        self._drive = self.add(
-            DifferentialDrive(
-                self.scope,
-                DifferentialDriveConfig(
-                    pairs=pairs,
-                    max_torque=config.torque,
-                    odometry="positions",
-                    drive=DriveConfig(
-                        command_topic=_BASE + "commands/velocity",
-                        timeout=config.timeout,
-                        control_rate=0.0,
-                        odometry=OdometryConfig(
-                            topic="odom",
-                            frame="odom",
-                            base="base_footprint",
-                            rate=config.rate,
-                            transform=config.publish_tf,
-                            pose_covariance=_POSE_COVARIANCE,
-                        ),
-                        joint_states=JointStatesConfig(
-                            joints=joints,
-                            rate=config.rate,
-                            velocities=True,
-                            efforts=True,
-                            frame="base_link",
-                        ),
+        self._drive = add_differential_drive(
+            self,
+            DifferentialDriveConfig(
+                pairs=pairs,
+                max_torque=config.torque,
+                odometry="positions",
+                drive=DriveConfig(
+                    command_topic=_BASE + "commands/velocity",
+                    timeout=config.timeout,
+                    control_rate=0.0,
+                    odometry=OdometryConfig(
+                        topic="odom",
+                        frame="odom",
+                        base="base_footprint",
+                        rate=config.rate,
+                        transform=config.publish_tf,
+                        pose_covariance=_POSE_COVARIANCE,
+                    ),
+                    joint_states=JointStatesConfig(
+                        joints=joints,
+                        rate=config.rate,
+                        velocities=True,
+                        efforts=True,
+                        frame="base_link",
                     ),
                 ),
-                yaw_rate=lambda: sensors.unit.rates()[2],
-            )
+            ),
+            yaw_rate=lambda: sensors.unit.rates()[2],
         )
-        report_swapped_wheels(self, pairs)
 
     def _sensors_config(self, config: KobukiParameters) -> KobukiSensorsConfig:
         left, center, right = (

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.differential import DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig, planar_covariance
 from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
-from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
 from cartwheel.errors import PluginError
 
 
@@ -71,25 +71,22 @@ class MultiWheelDrive(Plugin[MultiWheelParameters]):
             for one, other in itertools.zip_longest(left, right)
         ]
         pairs = wheel_pairs(self, joints, [config.separation], [config.diameter])
-        self.add(
-            DifferentialDrive(
-                self.scope,
-                DifferentialDriveConfig(
-                    pairs=pairs,
-                    max_torque=config.torque,
-                    drive=DriveConfig(
-                        command_topic=config.command_topic,
-                        control_rate=config.rate,
-                        odometry=OdometryConfig(
-                            topic=config.odometry_topic if config.publish_message else None,
-                            frame=config.odometry_frame,
-                            base=config.base_frame,
-                            rate=config.rate,
-                            transform=config.publish_tf,
-                            pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
-                        ),
+        add_differential_drive(
+            self,
+            DifferentialDriveConfig(
+                pairs=pairs,
+                max_torque=config.torque,
+                drive=DriveConfig(
+                    command_topic=config.command_topic,
+                    control_rate=config.rate,
+                    odometry=OdometryConfig(
+                        topic=config.odometry_topic if config.publish_message else None,
+                        frame=config.odometry_frame,
+                        base=config.base_frame,
+                        rate=config.rate,
+                        transform=config.publish_tf,
+                        pose_covariance=planar_covariance(1e-5, 1e-5, 1e-3),
                     ),
                 ),
-            )
+            ),
         )
-        report_swapped_wheels(self, pairs)

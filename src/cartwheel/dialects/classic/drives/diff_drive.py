@@ -7,7 +7,6 @@ from typing import ClassVar, Literal
 
 from cartwheel.codes import devices
 from cartwheel.devices.drives.differential import (
-    DifferentialDrive,
     DifferentialDriveConfig,
     WheelPair,
 )
@@ -17,7 +16,7 @@ from cartwheel.devices.joints.states import JointStatesConfig
 from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
 from cartwheel.errors import PluginError
 
 _TORQUE = 5.0
@@ -191,25 +190,22 @@ class DiffDrive(Plugin[DiffDriveParameters]):
             order = tuple(name for pair in pairs for name in (pair.right, pair.left))
             states = JointStatesConfig(joints=order, rate=config.update_rate)
         encoder = config.source in ("encoder", "0")
-        self.add(
-            DifferentialDrive(
-                self.scope,
-                DifferentialDriveConfig(
-                    pairs=pairs,
-                    max_torque=torque,
-                    acceleration=config.wheel_acceleration,
-                    reverse=config.legacy_mode,
-                    odometry="positions" if encoder else "ground truth",
-                    drive=DriveConfig(
-                        command_topic=config.command_topic,
-                        control_rate=config.update_rate,
-                        odometry=odometry,
-                        joint_states=states,
-                    ),
+        add_differential_drive(
+            self,
+            DifferentialDriveConfig(
+                pairs=pairs,
+                max_torque=torque,
+                acceleration=config.wheel_acceleration,
+                reverse=config.legacy_mode,
+                odometry="positions" if encoder else "ground truth",
+                drive=DriveConfig(
+                    command_topic=config.command_topic,
+                    control_rate=config.update_rate,
+                    odometry=odometry,
+                    joint_states=states,
                 ),
-            )
+            ),
         )
-        report_swapped_wheels(self, pairs)
 
     def _wheel_pairs(self) -> tuple[WheelPair, ...]:
         config = self.config

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.devices.drives.differential import DifferentialDrive, DifferentialDriveConfig
+from cartwheel.devices.drives.differential import DifferentialDriveConfig
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.odometry import OdometryConfig
 from cartwheel.dialects import drive_tags
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, tag
-from cartwheel.dialects.wheel_pairs import report_swapped_wheels, wheel_pairs
+from cartwheel.dialects.wheel_pairs import add_differential_drive, wheel_pairs
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,25 +76,22 @@ class SkidSteerDrive(Plugin[SkidSteerParameters]):
         config = self.config
         joints = [(config.left_front, config.right_front), (config.left_rear, config.right_rear)]
         pairs = wheel_pairs(self, joints, [config.wheel_separation], [config.wheel_diameter])
-        self.add(
-            DifferentialDrive(
-                self.scope,
-                DifferentialDriveConfig(
-                    pairs=pairs,
-                    max_torque=config.torque,
-                    drive=DriveConfig(
-                        command_topic=config.command_topic,
-                        control_rate=config.update_rate,
-                        odometry=OdometryConfig(
-                            topic=config.odometry_topic,
-                            frame=config.odometry_frame,
-                            base=config.base_frame,
-                            rate=config.update_rate,
-                            transform=config.broadcast_tf,
-                            pose_covariance=drive_tags.covariance(config),
-                        ),
+        add_differential_drive(
+            self,
+            DifferentialDriveConfig(
+                pairs=pairs,
+                max_torque=config.torque,
+                drive=DriveConfig(
+                    command_topic=config.command_topic,
+                    control_rate=config.update_rate,
+                    odometry=OdometryConfig(
+                        topic=config.odometry_topic,
+                        frame=config.odometry_frame,
+                        base=config.base_frame,
+                        rate=config.update_rate,
+                        transform=config.broadcast_tf,
+                        pose_covariance=drive_tags.covariance(config),
                     ),
                 ),
-            )
+            ),
         )
-        report_swapped_wheels(self, pairs)

@@ -214,10 +214,7 @@ class JointTrajectoryController(Controller):
         prefix = self.type.partition("_")[0]
         if prefix == "pos":
             return "position"
-        for interface in _INTERFACES:
-            if interface == prefix:
-                return interface
-        wanted = list(given.interfaces)
+        wanted = [prefix] if prefix in _INTERFACES else list(given.interfaces)
         for interface in _INTERFACES:
             if interface in wanted:
                 return interface
