@@ -1,4 +1,4 @@
-"""Datagrams on the port of a flight controller, from one program or several."""
+"""Bytes on the ports of flight controllers: datagrams of several programs, and a stream."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import struct
 
 from tests.campaign.target import FaultError, Target
 from tests.devices.autopilots.ardupilot_client import servo_packet
+from tests.devices.autopilots.px4_client import controls, heartbeat
 
 from cartwheel.devices.autopilots.ardupilot_packets import VehicleState, encode_binary, encode_json
 from cartwheel.devices.autopilots.conversation import Conversation
+from cartwheel.devices.autopilots.px4_link import Px4Link
 from cartwheel.devices.autopilots.reports import Reports
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
@@ -86,4 +88,58 @@ def run_one(data: bytes) -> None:
             raise FaultError(f"{len(reports)} reports")
 
 
-TARGETS = (Target(name="ardupilot", seeds=seeds, run_one=run_one),)
+class _Stream:
+    """Returns the bytes of an input, 100 at a time, from one program."""
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+        self.peer: tuple[str, int] | None = ("127.0.0.1", 1)
+
+    def accept(self) -> None:
+        pass
+
+    def receive(self, seconds: float) -> bytes | None:
+        piece, self.data = self.data[:100], self.data[100:]
+        return piece or None
+
+    def send(self, data: bytes) -> None:
+        pass
+
+    def drop(self) -> None:
+        self.peer = None
+
+    def close(self) -> None:
+        pass
+
+
+def px4_seeds() -> list[bytes]:
+    """Frames of PX4, broken frames, and other bytes."""
+    frames = [heartbeat(), *(controls(number, [0.5] * 16) for number in range(4))]
+    stream = b"".join(frames)
+    return [stream, stream[:-1], b"GET / HTTP/1.1" + stream, frames[1][:40] + stream, b"\xfd" * 50]
+
+
+def run_px4(data: bytes) -> None:
+    """Reads the stream, with and without lock step."""
+    for lock_step in (True, False):
+        port = _Stream(data)
+        reports: list[Diagnostic] = []
+        link = Px4Link(
+            port,  # type: ignore[arg-type]
+            lock_step=lock_step,
+            reports=Reports(reports.append, title="the plugin", origin=None),
+        )
+        while port.data:
+            received = link.next()
+            outputs = () if received is None else received.outputs
+            if any(each is not None and not -1 <= each <= 1 for each in outputs):
+                raise FaultError("an output is not between -1 and 1")
+            link.send(b"state")
+        if len(reports) > _MOST_REPORTS:
+            raise FaultError(f"{len(reports)} reports")
+
+
+TARGETS = (
+    Target(name="ardupilot", seeds=seeds, run_one=run_one),
+    Target(name="px4", seeds=px4_seeds, run_one=run_px4),
+)

@@ -18,7 +18,7 @@ MODULES: dict[str, tuple[str, ...]] = {
     "fuzz_yaml": ("controllers", "gz-bridge"),
     "fuzz_live": ("live",),
     "fuzz_processes": ("kills", "worlds-in-use"),
-    "fuzz_autopilots": ("ardupilot",),
+    "fuzz_autopilots": ("ardupilot", "px4"),
     "fuzz_ros1": ("xmlrpc", "http", "tcpros_header", "tcpros", "ros1_message"),
 }
 """Modules, and the targets of each: known without an import, which takes seconds."""
