@@ -3,7 +3,7 @@
 import threading
 
 import pytest
-from tests.viewer.conftest import SIZE, eventually, new_page
+from tests.viewer.conftest import eventually, new_page
 
 import cartwheel as cw
 from cartwheel.bridges.recording.opening import open_recording
@@ -54,7 +54,7 @@ def cinema(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(browser, cinema):
-    made = new_page(browser, viewport=SIZE, device_scale_factor=0.5)
+    made = new_page(browser)
     faults = []
     made.on("pageerror", lambda error: faults.append(error.stack))
     made.goto(cinema.viewer.url)
