@@ -43,10 +43,12 @@ class Effort:
     carts: tuple[int, ...]
     every: int
     """One of so many seeded faults is checked."""
+    turn: float
+    """Wall time of each run with bridges, s."""
 
 
-FULL = Effort(rounds=25, seconds=4.0, images=10, starts=5, carts=(1, 5, 10, 20), every=1)
-QUICK = Effort(rounds=2, seconds=0.2, images=1, starts=1, carts=(1, 2), every=20)
+FULL = Effort(rounds=25, seconds=4.0, images=10, starts=5, carts=(1, 5, 10, 20), every=1, turn=1.0)
+QUICK = Effort(rounds=2, seconds=0.2, images=1, starts=1, carts=(1, 2), every=20, turn=0.2)
 
 
 def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:

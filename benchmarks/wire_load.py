@@ -1,6 +1,6 @@
 """One simulation with some of the bridges, and a subscriber of each.
 
-python -m benchmarks.wire_load WIRE... [--pairs N]
+python -m benchmarks.wire_load WIRE... [--pairs N] [--turn SECONDS]
 """
 
 from __future__ import annotations
@@ -122,8 +122,14 @@ def _picture() -> Any:
     return picture
 
 
-def run(wires: list[str], pairs: int) -> dict[str, Any]:
+def run(wires: list[str], pairs: int, turn: float) -> dict[str, Any]:
     """Publishes within the process and to the bridges, in turns.
+
+    Args:
+        wires: The bridges.
+        pairs: Number of turns in real time.
+        turn: Wall time of each turn in real time, s. There are fewer turns at full speed if it is
+            short.
 
     Returns:
         Under `real` (real time) and `full` (full speed), three numbers for both turns of each
@@ -143,7 +149,7 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
         gc.collect()
         gc.freeze()
 
-        def go(speed: float | None, seconds: float = 1.0, *, loud: bool = True) -> list[float]:
+        def go(speed: float | None, seconds: float, *, loud: bool = True) -> list[float]:
             """Runs for a wall time; returns the three numbers of one turn."""
             load.loud = loud
             simulation.set_speed(speed)
@@ -172,14 +178,14 @@ def run(wires: list[str], pairs: int) -> dict[str, Any]:
         expected = {names.get(wire, wire) for wire in wires}
         graph = session.graph
         go_until(lambda: all(expected <= set(graph.topic(t).subscribers) for t in TYPES))
-        go(1.0, 1.0)
+        go(1.0, turn)
         for reader in readers.values():
             reader.ages()
-        real = compare(1.0, 1.0, pairs)
+        real = compare(1.0, turn, pairs)
         return {
             "real": real,
             "ages": {wire: reader.ages() for wire, reader in readers.items()},
-            "full": compare(None, _TURN, _TURNS * pairs),
+            "full": compare(None, _TURN, max(1, round(_TURNS * pairs * turn))),
         }
 
 
@@ -257,5 +263,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("wires", nargs="+", choices=WIRES)
     parser.add_argument("--pairs", type=int, default=8)
+    parser.add_argument("--turn", type=float, default=1.0, help="wall time in s")
     given = parser.parse_args()
-    print(json.dumps(run(given.wires, given.pairs)))
+    print(json.dumps(run(given.wires, given.pairs, given.turn)))

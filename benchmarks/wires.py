@@ -41,17 +41,18 @@ def figures(effort: Effort) -> Iterator[Figure]:
         wires.insert(-1, "foxglove")
     pairs = max(1, effort.rounds // 2)
     for wire in wires:
-        yield from _of(_TITLES[wire], [wire], pairs)
+        yield from _of(_TITLES[wire], [wire], pairs, effort.turn)
     if importlib.util.find_spec("zenoh"):
-        yield from _of(_TITLES["zenoh"], ["zenoh"], pairs)
+        yield from _of(_TITLES["zenoh"], ["zenoh"], pairs, effort.turn)
     # A simulation cannot use DDS and Zenoh at the same time.
-    yield from _of(
-        f"at once: {', '.join(_TITLES[wire] for wire in wires)}", wires, pairs, all_=True
-    )
+    title = f"at once: {', '.join(_TITLES[wire] for wire in wires)}"
+    yield from _of(title, wires, pairs, effort.turn, all_=True)
 
 
-def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> Iterator[Figure]:
-    found = _measured(wires, pairs)
+def _of(
+    group: str, wires: Sequence[str], pairs: int, turn: float, *, all_: bool = False
+) -> Iterator[Figure]:
+    found = _measured(wires, pairs, turn)
     group = f"wires, {group}"
     yield Figure(
         group=group,
@@ -90,10 +91,13 @@ def _of(group: str, wires: Sequence[str], pairs: int, *, all_: bool = False) -> 
     )
 
 
-def _measured(wires: Sequence[str], pairs: int) -> dict[str, Any]:
+def _measured(wires: Sequence[str], pairs: int, turn: float) -> dict[str, Any]:
     environment = {"ROS_MASTER_URI": f"http://127.0.0.1:{_PORT}", "ROS_HOSTNAME": "127.0.0.1"}
     done = subprocess.run(
-        [sys.executable, "-m", "benchmarks.wire_load", *wires, "--pairs", str(pairs)],
+        [
+            *(sys.executable, "-m", "benchmarks.wire_load", *wires),
+            *("--pairs", str(pairs), "--turn", str(turn)),
+        ],
         env={"ROS_DOMAIN_ID": "183", **os.environ, **environment},
         stdout=subprocess.PIPE,
         check=True,
