@@ -17,7 +17,7 @@ run: ## simulate the cart in the browser, with a post in front of its camera
 
 test: ## run all tests in WORKERS processes
 	@tools/setup.sh test
-	@$(BIN)/pytest -q -n $(WORKERS) --dist loadfile $(ARGS)
+	@$(BIN)/pytest -q -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(ARGS)
 
 campaign: ## fuzz all readers of files and sockets for MINUTES
 	@tools/setup.sh test

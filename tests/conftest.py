@@ -39,6 +39,9 @@ if os.environ.get("CARTWHEEL_CODES_ONLY"):
 
 GRAVITY = 9.8
 HERE = Pose()
+_TESTS = Path(__file__).parent
+_LONG = {"api", "benchmarks", "bridges", "campaign", "cli", "codes_only", "docs", "ros1", "viewer"}
+"""Folders whose tests start many processes."""
 _PLACE = Origin(file="test.sdf", line=1)
 
 # The same examples in each run, however long a busy machine takes to make and to try them.
@@ -62,6 +65,8 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    # Long files first, so that at the end no process runs one of them alone.
+    items.sort(key=lambda item: item.path.relative_to(_TESTS).parts[0] not in _LONG)
     if os.environ.get("CARTWHEEL_CODES_ONLY"):
         left_out = [item for item in items if item.get_closest_marker("wording")]
         config.hook.pytest_deselected(items=left_out)

@@ -155,6 +155,8 @@ def new_page(browser):
 
 def open_page(browser, arena, *, shadows=False):
     """A page that shows the scene; shadows would double the time of each image."""
+    scene = arena.viewer._page.server.scene
+    scene.configure_default_lights(enabled=True, cast_shadow=shadows)
     page = new_page(browser)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(error.stack))
@@ -164,7 +166,6 @@ def open_page(browser, arena, *, shadows=False):
     eventually(lambda: arena.viewer._page.clients, what="the browser")
     # The stage between the panels is narrow here: step back until cart and post stand in it.
     for client in arena.viewer._page.server.get_clients().values():
-        client.scene.configure_default_lights(enabled=True, cast_shadow=shadows)
         client.camera.position = (-4.4, -5.2, 3.4)
         client.camera.look_at = (1.3, 0.0, 0.3)
     return page
