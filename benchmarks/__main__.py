@@ -12,12 +12,13 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, check, headless, process, sensors, wires
+from benchmarks import camera, check, headless, process, sensors, unread, wires
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
 _PARTS = {
     "headless": headless,
+    "unread": unread,
     "camera": camera,
     "sensors": sensors,
     "process": process,

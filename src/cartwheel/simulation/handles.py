@@ -324,14 +324,16 @@ class MotorHandle:
         self.motor = motor
         self.target = 0.0
         # Until the model is compiled, commands are only stored.
-        self._qvel: Any = [0.0]
-        self._dof = 0
+        self.rotors: Any = [0.0]
+        """Velocities of the compiled model; `dof` is the index of this motor's rotor. A caller at a
+        high rate may set both this velocity and `target` itself, which is what `command` does."""
+        self.dof = 0
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
         name = scoped(self.model_name, self.motor.joint, ROTOR)
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
-        self._qvel, self._dof = memoryview(data.qvel), int(model.jnt_dofadr[self.id])
+        self.rotors, self.dof = memoryview(data.qvel), int(model.jnt_dofadr[self.id])
         self.command(self.target)
 
     @property
@@ -342,7 +344,7 @@ class MotorHandle:
     def command(self, target: float) -> None:
         """Sets the target velocity, rad/s or m/s."""
         self.target = target
-        self._qvel[self._dof] = target
+        self.rotors[self.dof] = target
 
 
 class CameraHandle:

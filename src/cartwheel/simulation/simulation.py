@@ -134,7 +134,9 @@ class Simulation(Models):
             if change is not None and change < due:
                 due = change
             # Without tasks, commands still do not wait longer than until the next check.
-            count = min(left, due - engine.step, watch.due - engine.step)
+            due = min(due, watch.due)
+            count = due - engine.step
+            count = min(count, left)
             if separation.roots or faults.pending is not None:
                 count = 1
             if self.steps_allowed is not None:

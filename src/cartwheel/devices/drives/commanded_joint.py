@@ -62,4 +62,5 @@ class Wheel:
 
     @command.setter
     def command(self, speed: float) -> None:
-        self._motor.command(speed)
+        motor = self._motor
+        motor.target = motor.rotors[motor.dof] = speed

@@ -165,7 +165,7 @@ class DifferentialDrive(Drive):
 
     def measure(self, seconds: float) -> None:
         """Adds the motion since the last call, `seconds` ago, to the dead reckoning."""
-        source = self._config.odometry
+        source, pair = self._config.odometry, self._config.pairs[0]
         if source == "ground truth":
             return
         rotation = None if self._yaw_rate is None else self._yaw_rate() * seconds
@@ -182,7 +182,6 @@ class DifferentialDrive(Drive):
                 if before is None:
                     return
                 left, right = self._rotation[0] - before[0], self._rotation[1] - before[1]
-            pair = self._config.pairs[0]
             forward, turn = axle_motion(
                 left * pair.left_radius, right * pair.right_radius, pair.separation
             )

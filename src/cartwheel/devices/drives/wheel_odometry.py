@@ -20,17 +20,16 @@ class WheelOdometry(Component):
     def __init__(self, scope: Scope, config: OdometryConfig, reckoning: DeadReckoning) -> None:
         super().__init__(scope)
         self.reckoning = reckoning
-        self._periodic = Periodic(config.rate)
+        self.periodic = Periodic(config.rate)
+        """Determines when the odometry is due. Until then, `publish` need not be called."""
         self._odometry = self.add(Odometry(scope, config))
 
     def start(self, time_ns: int) -> None:
         """Restarts at the origin, at rest."""
         self.reckoning.restart()
-        self._periodic.start(time_ns)
+        self.periodic.start(time_ns)
 
     def publish(self, time_ns: int) -> None:
         """Publishes the odometry if it is due and has subscribers."""
-        if time_ns < self._periodic.next_ns:
-            return
-        if self._periodic.due(time_ns) and self._odometry.wanted():
+        if self.periodic.due(time_ns) and self._odometry.wanted():
             self._odometry.publish(time_ns, *self.reckoning.motion())

@@ -180,8 +180,9 @@ class JointActuator:
             if low > target:  # noqa: PLR1730
                 target = low
             target = min(target, high)
-            if self._motor is not None:
-                self._motor.command(target)
+            motor = self._motor
+            if motor is not None:
+                motor.target = motor.rotors[motor.dof] = target
             else:
                 self._follow_velocity(target, seconds)
         elif active == "position":
@@ -192,7 +193,13 @@ class JointActuator:
                 if limits.lower > target:  # noqa: PLR1730
                     target = limits.lower
                 target = min(target, limits.upper)
-            self._follow_position(target, fastest, seconds)
+            servo = self._servo
+            if servo is not None and not self.pids:
+                servo.command_position(
+                    target, velocity=self.rate, max_velocity=fastest, max_effort=self.strength
+                )
+            else:
+                self._follow_position(target, fastest, seconds)
         elif active == "effort":
             self._write_effort()
         elif active == "held":

@@ -59,18 +59,18 @@ class ActuatorStates(Component):
             self.advertise(config.dynamic_topic, _DYNAMIC) if config.dynamic_topic else None
         )
         self._names = [*config.names, *config.others]
-        self._periodic = Periodic(config.rate)
+        self.periodic = Periodic(config.rate)
+        """Determines when the states are due. Until then, `update` need not be called."""
         self._JointState = message_class(_STATES)
 
     def start(self, time_ns: int) -> None:
         """Publishes at the rate from now on."""
-        self._periodic.start(time_ns)
+        self.periodic.start(time_ns)
 
     def update(self, time_ns: int) -> None:
         """Publishes the current states when due."""
-        if time_ns < self._periodic.next_ns:
+        if not self.periodic.due(time_ns):
             return
-        self._periodic.due(time_ns)
         dynamic = self._dynamic is not None and self._dynamic.wanted
         if not (self._publisher.wanted or dynamic):
             return

@@ -55,7 +55,12 @@ class ControlPlugin(Plugin[Any]):
             manager.writes = False
             robot.hardware.expect_commands(0.0)
             part.schedule(0, before=lambda: manager.write(part.time_ns, part.period_ns(0) / 1e9))
-        part.schedule(rate, after=lambda: manager.sense(part.time_ns), active=manager.senses)
+        part.schedule(
+            rate,
+            after=lambda: manager.sense(part.time_ns),
+            active=manager.senses,
+            topics=manager.sensed,
+        )
         return manager
 
     def _sensors(self) -> list[RobotSensor]:

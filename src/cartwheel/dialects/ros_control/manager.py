@@ -17,6 +17,7 @@ from cartwheel.dialects.ros_control.switching import (
     wrong_state,
 )
 from cartwheel.errors import Origin
+from cartwheel.graph import Publisher
 
 
 class ControllerManager:
@@ -36,8 +37,10 @@ class ControllerManager:
         self._starting: list[Controller] = []
         self._stopping: list[Controller] = []
         self._last_ns: int | None = None
+        self.sensed: list[Publisher] = []
+        """Topics of quantities that are only known after a step."""
         self._sensing: list[Controller] = []
-        """The running controllers that may publish quantities that are only known after a step."""
+        """The running controllers that publish such quantities."""
         robot.take_over = self.take_over
         self.writes = True
         """Whether each update applies the commands to the joints; otherwise `write` does."""
@@ -78,6 +81,8 @@ class ControllerManager:
                 values={"controller": name, "parameters": tuple(unread)},
             )
         self._controllers[name] = controller
+        if type(controller).sense is not Controller.sense:
+            self.sensed += controller.publishers
         self._order = update_order(self._controllers)
         return controller
 
@@ -98,6 +103,9 @@ class ControllerManager:
         if controller.running:
             raise wrong_state(name, "is running", hint="Stop the controller first.")
         del self._controllers[name]
+        for publisher in controller.publishers:
+            if publisher in self.sensed:
+                self.sensed.remove(publisher)
         self._order = update_order(self._controllers)
         self._begun.discard(name)
         controller.close()

@@ -183,9 +183,10 @@ class DiffDriveController(Controller):
         self._drive.start()
 
     def update(self, time_ns: int, seconds: float) -> None:
-        drive = self._drive
+        drive, odometry = self._drive, self._odometry
         drive.measure(seconds)
-        self._odometry.publish(time_ns)
+        if time_ns >= odometry.periodic.next_ns:
+            odometry.publish(time_ns)
         drive.command(*self._command.at(time_ns))
         drive.actuate(seconds)
         if self._limited is not None and self._limited.wanted:

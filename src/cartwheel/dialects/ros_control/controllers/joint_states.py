@@ -166,4 +166,5 @@ class JointStateController(Controller):
         self._states.start(time_ns)
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        self._states.update(time_ns)
+        if time_ns >= self._states.periodic.next_ns:
+            self._states.update(time_ns)

@@ -1,0 +1,91 @@
+"""Simulations without subscribers, compared with MuJoCo alone: the cart and published robots."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import os
+import statistics
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+
+import cartwheel as cw
+from benchmarks.carts import Bare, driving
+from benchmarks.figure import Effort, Figure
+from cartwheel.corpus import robots_in
+from cartwheel.description import load_robot
+from cartwheel.dialects.ros_control.suggestion import suggested
+from cartwheel.errors import CartwheelError
+
+_ROOT = Path(__file__).parents[1]
+_RATIO, _ADDED_US = 1.35, 6.0
+"""The goal is the larger of this multiple of MuJoCo alone, and this time added to it."""
+_SLOW = 1e-3
+"""Time of a step above which a robot is left out, s: what Cartwheel adds cannot be measured."""
+_TWIST = "geometry_msgs/msg/Twist"
+
+
+def figures(effort: Effort) -> Iterator[Figure]:
+    """The cart, and each robot of the folder of published robots that can be loaded."""
+    with driving() as world:
+        yield _measured("cart", world, effort)
+    corpus = Path(os.environ.get("CARTWHEEL_CORPUS", _ROOT.parent / "shared" / "corpus"))
+    if not corpus.is_dir():
+        return
+    for file in robots_in(corpus)[:: effort.every]:
+        with contextlib.suppress(CartwheelError), cw.World(lenient=True) as world:
+            robot = load_robot(file)
+            world.spawn(robot, controllers=suggested(robot))
+            _drive(world)
+            world.run(2.0)
+            if _seconds(partial(world.run, 0.1)) / _steps(world, 0.1) < _SLOW:
+                yield _measured(str(file.relative_to(corpus)), world, effort)
+
+
+def _measured(name: str, world: cw.World, effort: Effort) -> Figure:
+    """The median ratio of the CPU times of pairs, measured in turn."""
+    seconds = effort.seconds / 8
+    ratios, added, base = [], [], []
+    for index in range(effort.rounds):
+        gc.collect()
+        _drive(world)
+        world.run(0.01)
+        bare = Bare(world)
+        if index % 2:
+            alone = _seconds(partial(bare.step, seconds))
+            ours = _seconds(partial(world.run, seconds))
+        else:
+            ours = _seconds(partial(world.run, seconds))
+            alone = _seconds(partial(bare.step, seconds))
+        ratios.append(ours / alone)
+        steps = _steps(world, seconds)
+        added.append((ours - alone) / steps * 1e6)
+        base.append(alone / steps * 1e6)
+    ratio, more = statistics.median(ratios), statistics.median(added)
+    return Figure(
+        group="without subscribers, CPU time",
+        name=name,
+        value=ratio,
+        unit="ratio",
+        goal=max(_RATIO, 1.0 + _ADDED_US / statistics.median(base)),
+        note=f"{more:+.1f} us per step",
+    )
+
+
+def _drive(world: cw.World) -> None:
+    """Commands all bases, because commands can expire."""
+    for topic in world.graph.topics():
+        if topic.subscribers and topic.type == _TWIST:
+            world.publish(topic.name, linear_x=0.3, angular_z=0.2)
+
+
+def _steps(world: cw.World, seconds: float) -> int:
+    return round(seconds * 1e9 / world.session.simulation.step_ns)
+
+
+def _seconds(way: Callable[[], object]) -> float:
+    start = time.process_time()
+    way()
+    return time.process_time() - start
