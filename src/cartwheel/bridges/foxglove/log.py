@@ -7,12 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.foxglove.forms import schema_of
+from cartwheel.bridges.rosout import TOPIC, TYPE, line
 from cartwheel.errors import Diagnostic
-from cartwheel.messages import encode_cdr, message_class, stamp
 
-TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
 NODE = "cartwheel"
-_LEVELS = {"info": 20, "warning": 30, "error": 40}
 _KEPT = 100
 """Maximum number of stored lines."""
 
@@ -52,17 +50,7 @@ class Log:
     def write(self, diagnostic: Diagnostic) -> None:
         """Logs a diagnostic."""
         time_ns = self._time_ns()
-        origin = diagnostic.origin
-        message: Any = message_class(TYPE)(
-            stamp=stamp(time_ns),
-            level=_LEVELS[diagnostic.severity],
-            name=NODE,
-            msg=diagnostic.text,
-            file=origin.file if origin else "",
-            function="",
-            line=origin.line if origin else 0,
-        )
-        data = encode_cdr(message)
+        data = line(diagnostic, node=NODE, time_ns=time_ns)
         self._said.append((time_ns, data))
         if self._readers:
             self.channel.log(data, log_time=time_ns)

@@ -8,10 +8,10 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.foxglove.incoming import offered
-from cartwheel.bridges.foxglove.log import TOPIC as LOG
 from cartwheel.bridges.foxglove.log import Log
 from cartwheel.bridges.foxglove.publication import READER, Publication
 from cartwheel.bridges.mirror import offered_by_others
+from cartwheel.bridges.rosout import TOPIC as LOG
 from cartwheel.codes.wires import TYPE_UNSUPPORTED
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.graph import Service, TopicInfo

@@ -186,18 +186,13 @@ class Ros1Bridge:
             Peer(self.master_uri, timeout=_FIRST_ANSWER).call("getPid", self.name)
         except UnreachableError as error:
             host, _ = host_and_port(self.master_uri)
-            if is_local(host) and error.silent:
+            if not is_local(host) or error.silent:
                 raise CartwheelError(
                     f"the ROS master does not respond: {error.message}",
                     code=ROS_MASTER_UNAVAILABLE,
-                    hint="Another program, or a roscore that hangs, is listening on its port.",
-                    values={"uri": self.master_uri},
-                ) from None
-            if not is_local(host):
-                raise CartwheelError(
-                    f"the ROS master does not respond: {error.message}",
-                    code=ROS_MASTER_UNAVAILABLE,
-                    hint="ROS_MASTER_URI refers to a different computer. Check that roscore is "
+                    hint="Another program, or a roscore that hangs, is listening on its port."
+                    if is_local(host)
+                    else "ROS_MASTER_URI refers to a different computer. Check that roscore is "
                     "running there.",
                     values={"uri": self.master_uri},
                 ) from None

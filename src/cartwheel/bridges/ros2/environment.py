@@ -25,12 +25,7 @@ def discovery_range(environment: Mapping[str, str] = os.environ) -> Reach:
     only = environment.get("ROS_LOCALHOST_ONLY", "").strip()
     given = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
     if only not in ("", "0", "1"):
-        raise CartwheelError(
-            f'ROS_LOCALHOST_ONLY has the invalid value "{only}"',
-            code=ROS_VARIABLE_INVALID,
-            hint="Set it to 0 or 1.",
-            values={"variable": "ROS_LOCALHOST_ONLY", "value": only},
-        )
+        raise _invalid("ROS_LOCALHOST_ONLY", only, "0 or 1")
     if only == "1":
         return Reach(range="LOCALHOST")
     if not given:
@@ -41,11 +36,8 @@ def discovery_range(environment: Mapping[str, str] = os.environ) -> Reach:
         return Reach(range="LOCALHOST", peers=peers)
     if given in ("SUBNET", "SYSTEM_DEFAULT"):
         return Reach(range="SUBNET", peers=peers)
-    raise CartwheelError(
-        f'ROS_AUTOMATIC_DISCOVERY_RANGE has the invalid value "{given}"',
-        code=ROS_VARIABLE_INVALID,
-        hint="Set it to OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT.",
-        values={"variable": "ROS_AUTOMATIC_DISCOVERY_RANGE", "value": given},
+    raise _invalid(
+        "ROS_AUTOMATIC_DISCOVERY_RANGE", given, "OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT"
     )
 
 
@@ -57,10 +49,14 @@ def domain_id(environment: Mapping[str, str] = os.environ) -> int:
     """
     given = environment.get("ROS_DOMAIN_ID", "").strip() or "0"
     if not given.isdecimal() or int(given) > LAST_DOMAIN:
-        raise CartwheelError(
-            f'ROS_DOMAIN_ID has the invalid value "{given}"',
-            code=ROS_VARIABLE_INVALID,
-            hint=f"Set it to a number between 0 and {LAST_DOMAIN}.",
-            values={"variable": "ROS_DOMAIN_ID", "value": given},
-        )
+        raise _invalid("ROS_DOMAIN_ID", given, f"a number between 0 and {LAST_DOMAIN}")
     return int(given)
+
+
+def _invalid(variable: str, value: str, valid: str) -> CartwheelError:
+    return CartwheelError(
+        f'{variable} has the invalid value "{value}"',
+        code=ROS_VARIABLE_INVALID,
+        hint=f"Set it to {valid}.",
+        values={"variable": variable, "value": value},
+    )

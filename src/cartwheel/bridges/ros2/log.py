@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from cartwheel.bridges.loop import Loop
 from cartwheel.bridges.ros2.middleware import Middleware, Outlet, publisher
+from cartwheel.bridges.rosout import TOPIC, TYPE, line
 from cartwheel.errors import Diagnostic
-from cartwheel.messages import encode_cdr, message_class, stamp
-
-TOPIC, TYPE = "/rosout", "rcl_interfaces/msg/Log"
-_LEVELS = {"info": 20, "warning": 30, "error": 40}
 
 
 class Log:
@@ -35,18 +31,9 @@ class Log:
 
     def write(self, diagnostic: Diagnostic) -> None:
         """Logs a diagnostic. Callable on any thread."""
-        origin = diagnostic.origin
-        message: Any = message_class(TYPE)(
-            stamp=stamp(self._time_ns()),
-            level=_LEVELS[diagnostic.severity],
-            name=self._node,
-            msg=diagnostic.text,
-            file=origin.file if origin else "",
-            function="",
-            line=origin.line if origin else 0,
-        )
-        self._loop.post(lambda: self._send(message))
+        time_ns = self._time_ns()
+        self._loop.post(lambda: self._send(diagnostic, time_ns))
 
-    def _send(self, message: Any) -> None:
+    def _send(self, diagnostic: Diagnostic, time_ns: int) -> None:
         if self._outlet is not None:
-            self._outlet.send(encode_cdr(message))
+            self._outlet.send(line(diagnostic, node=self._node, time_ns=time_ns))

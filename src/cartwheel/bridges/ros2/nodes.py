@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from cartwheel.bridges import rosout
 from cartwheel.bridges.mirror import Closable
-from cartwheel.bridges.ros2 import log, parameters
+from cartwheel.bridges.ros2 import parameters
 from cartwheel.bridges.ros2.middleware import Middleware, publisher
 from cartwheel.bridges.ros2.services import Services
 from cartwheel.bridges.ros2.type_descriptions import TYPE, get_type_description
@@ -23,7 +24,7 @@ class OwnNode:
     def __init__(self, middleware: Middleware, offers: Services, name: str) -> None:
         self._parts: list[Closable] = [
             middleware.publish(publisher(topic, kind, node=name))
-            for topic, kind in ((log.TOPIC, log.TYPE), (parameters.EVENTS, parameters.EVENT))
+            for topic, kind in ((rosout.TOPIC, rosout.TYPE), (parameters.EVENTS, parameters.EVENT))
         ]
         self._parts.append(
             offers.offer(f"{name}/get_type_description", TYPE, get_type_description, node=name)

@@ -158,28 +158,16 @@ class NodeParameters:
     def _checked(self, given: Any) -> tuple[Parameter, Value]:
         known = self._parameters.get(given.name)
         if known is None:
-            raise CartwheelError(
-                f'parameter "{given.name}" has not been declared',
-                code=PARAMETER_REFUSED,
-                values={"parameter": given.name},
-            )
+            raise _refused(given.name, "has not been declared")
         if known.set is None:
-            raise CartwheelError(
-                f'parameter "{given.name}" is read-only',
-                code=PARAMETER_REFUSED,
-                values={"parameter": given.name},
-            )
+            raise _refused(given.name, "is read-only")
         wanted, found = parameter_type(known.get()), int(given.value.type)
         if found == wanted:
             return known, getattr(given.value, FIELDS[found])
         if (wanted, found) == (3, 2):
             # ``ros2 param set`` sends 2 as an integer.
             return known, float(given.value.integer_value)
-        raise CartwheelError(
-            f'parameter "{given.name}" must be of type {_NAMES[wanted]}',
-            code=PARAMETER_REFUSED,
-            values={"parameter": given.name, "type": _NAMES[wanted]},
-        )
+        raise _refused(given.name, f"must be of type {_NAMES[wanted]}", type=_NAMES[wanted])
 
     def _publish(self, changed: Sequence[Any]) -> None:
         if self._events is None:
@@ -193,3 +181,11 @@ class NodeParameters:
 
 def _response(name: str, **fields: Any) -> Any:
     return service_classes(f"rcl_interfaces/srv/{name}")[1](**fields)
+
+
+def _refused(parameter: str, why: str, **values: str) -> CartwheelError:
+    return CartwheelError(
+        f'parameter "{parameter}" {why}',
+        code=PARAMETER_REFUSED,
+        values={"parameter": parameter, **values},
+    )

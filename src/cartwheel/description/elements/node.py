@@ -164,15 +164,13 @@ class Node:
             )
         return value
 
-    def number_of(
-        self, name: str, default: float | None = None, *, infinite: bool = False
-    ) -> float:
+    def number_of(self, name: str, default: float | None = None) -> float:
         """An attribute as a number; required without a default."""
         value = self.get(name) if default is not None else self.require(name)
         if value is None:
             assert default is not None
             return default
-        return numbers.number(value, self._attribute_label(name), self.origin, infinite=infinite)
+        return numbers.number(value, self._attribute_label(name), self.origin)
 
     def optional_number_of(self, name: str, *, infinite: bool = False) -> float | None:
         """An attribute as a number, or None if it is missing."""
@@ -259,10 +257,10 @@ class Node:
         node = self.find(path)
         return node.text if node is not None else default
 
-    def number_at(self, path: str, default: float, *, infinite: bool = False) -> float:
+    def number_at(self, path: str, default: float) -> float:
         """The number at a path."""
         node = self._filled(path)
-        return node.number(infinite=infinite) if node is not None else default
+        return node.number() if node is not None else default
 
     def optional_number_at(self, path: str, *, infinite: bool = False) -> float | None:
         """The number at a path, or None if the element is missing."""

@@ -23,7 +23,7 @@ from cartwheel.description.model import (
 from cartwheel.description.urdf.context import UrdfContext, read_origin
 from cartwheel.description.urdf.inertia import _listed, read_inertial
 from cartwheel.description.urdf.material import read_material
-from cartwheel.errors import DescriptionError, Origin
+from cartwheel.errors import DescriptionError
 from cartwheel.similar_names import meant, suggestion
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
@@ -36,7 +36,6 @@ class ReadLink:
     link: Link
     """Without inertial and pose."""
     inertial: Inertial | None
-    inertial_origin: Origin | None
 
 
 def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
@@ -72,7 +71,6 @@ def read_link(node: Node, ctx: UrdfContext) -> ReadLink:
             name=name, visuals=tuple(visuals), collisions=tuple(collisions), origin=node.origin
         ),
         inertial=read_inertial(inertial) if inertial is not None else None,
-        inertial_origin=inertial.origin if inertial is not None else None,
     )
 
 
