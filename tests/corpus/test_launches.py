@@ -103,6 +103,19 @@ def test_defaults_are_used_where_no_launch_file_gives_a_value(package):
     assert not use.simulated
 
 
+@pytest.mark.parametrize(
+    ("condition", "expected"),
+    [('side == "left"', "yes"), ('side != "left"', "no"), ("side", "yes"), ("clock()", "yes")],
+)
+def test_conditions_on_known_texts_choose_a_value(package, condition, expected):
+    text = INCLUDED.replace(
+        'LaunchConfiguration("sim")', f'"yes" if {condition} else "no"'
+    ).replace("    share =", '    side = "left"\n    share =')
+    folder = package(rsp_dot_launch_dot_py=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.arguments["sim_mode"] == expected
+
+
 def test_launch_files_of_ros1_name_arguments_controllers_and_conditions(package):
     folder = package(sim_dot_launch=ROS1, control_dot_launch=CONTROL)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))

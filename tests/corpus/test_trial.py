@@ -7,6 +7,7 @@ import pytest
 from cartwheel.api import World
 from cartwheel.codes.devices import (
     CONTROLLERS_NOT_FOUND,
+    PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
 )
 from cartwheel.codes.files import INCLUDE_ABSENT
@@ -142,6 +143,41 @@ def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tr
     assert {fault.source for fault in faults} == {"unknown"}
 
 
+def test_the_legacy_mode_explains_a_turn_to_the_wrong_side(tried):
+    legacy = cart(0.1).replace("<legacyMode>false", "<legacyMode>true")
+    verdict = tried(legacy)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("turn", PLUGIN_PARAMETER_OBSOLETE)
+    # With swapped wheels, the robot turns as commanded.
+    swapped = legacy.replace("left_joint</", "x</").replace("right_joint</", "left_joint</")
+    verdict = tried(swapped.replace("x</", "right_joint</"))
+    assert verdict.good, verdict.faults
+
+
+def test_a_vehicle_without_known_sides_faces_where_its_wheels_roll(tmp_path, tried):
+    # All wheels are on the x axis, so that it drives along y.
+    path = tmp_path / "drive.yaml"
+    path.write_text(
+        "drive:\n  type: diff_drive_controller/DiffDriveController\n  left_wheel: left_joint\n"
+        "  right_wheel: right_joint\n  wheel_separation: 0.2\n  wheel_radius: 0.05\n"
+    )
+    joints = "".join(
+        f'<transmission name="{side}"><type>transmission_interface/SimpleTransmission</type>'
+        f'<joint name="{side}_joint"><hardwareInterface>hardware_interface/VelocityJointInterface'
+        f'</hardwareInterface></joint><actuator name="{side}"/></transmission>'
+        for side in ("left", "right")
+    )
+    control = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
+    turned = cart(0.1).split('<gazebo><plugin name="drive"')[0]
+    turned = turned.replace('name="base"', 'name="body"').replace('"base"', '"body"')
+    root = (
+        '<link name="base"/><joint name="turn" type="fixed"><parent link="base"/>'
+        '<child link="body"/><origin xyz="0 0 0" rpy="0 0 -1.5707963"/></joint>'
+    )
+    (drive,) = tried(root, turned, joints, control, controllers=[path]).drives
+    assert abs(drive.error) < 0.02, drive
+
+
 def test_the_robots_own_limits_are_no_fault(tried):
     slow = "<max_velocity>0.1</max_velocity></plugin>"
     verdict = tried(cart(0.1).replace("libgazebo_ros_diff_drive.so", "gz-sim-diff-drive-system")
@@ -171,6 +207,18 @@ def test_what_is_top_heavy_tips(tried):
     verdict = tried(BOX.format(name="base", at="0.2 0 0", size="0.1 0.1 0.3"))
     assert verdict.stand.state in ("tips", "moves")
     assert verdict.stand.tilt > 1.0
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("stand", UNBALANCED)
+
+
+def test_an_arm_whose_limits_exclude_zero_is_balanced_where_it_starts(tried):
+    # The weight is above the base at 0, and beside it at the lower limit.
+    upper = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]
+    joint = ARM[ARM.index('<joint name="shoulder"') : ARM.index("<transmission")]
+    upper = upper.replace('xyz="0 0 0.1"', 'xyz="0 0 0.5"').replace('"1"/>', '"3"/>')
+    joint = joint.replace('lower="-1" upper="1"', 'lower="1" upper="2"')
+    joint = joint.replace("<limit", '<dynamics friction="100" damping="1"/><limit')
+    verdict = tried(BOX.format(name="base", at="0 0 0", size="0.2 0.2 0.1"), upper, joint)
     (fault,) = verdict.faults
     assert (fault.test, fault.code) == ("stand", UNBALANCED)
 

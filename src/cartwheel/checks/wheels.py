@@ -158,6 +158,12 @@ def gap_between(robot: Robot, left: Joint, right: Joint) -> Floats:
     return np.asarray(places[0] - places[1])
 
 
+def is_legacy(drive: Drive) -> bool:
+    """Whether ``<legacyMode>`` reverses the turning direction of a drive."""
+    stated = drive.tag.element.find("legacyMode")
+    return stated is not None and stated.text.strip().lower() in ("true", "1")
+
+
 def faces_sideways(gap: Floats) -> bool:
     """Whether a robot faces along y, from the vector between its left and right wheel."""
     return bool(abs(gap[1]) < _TURNED * abs(gap[0]))

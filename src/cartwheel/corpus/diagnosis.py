@@ -70,6 +70,7 @@ _JOINTS = frozenset(
         devices.EFFORT_LIMIT_TOO_LOW,
         devices.CONTROLLER_GAINS_MISSING,
         devices.JOINT_CLAIMED_TWICE,
+        running.JOINT_DRIVEN_TWICE,
     }
 )
 
@@ -91,7 +92,8 @@ def faults(
     # Two plugins of a kind are one fault.
     missing = {fault.subject: fault for fault in reversed([*_missing(verdict, description)])}
     yield from reversed(missing.values())
-    yield from _measured(verdict, findings)
+    idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
+    yield from _measured(verdict, findings, idle if not verdict.controllers else None)
 
 
 def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
@@ -130,9 +132,13 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
     if lost is not None and wheels and not verdict.movers:
         yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
     for tag in managers(description):
-        reason = _coded(said, frozenset({devices.HARDWARE_NOT_SIMULATED}))
+        replaced = [
+            each
+            for each in said
+            if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
+        ]
         reason = (
-            reason
+            _first(replaced)
             or _coded(said, _CONTROL)
             or devices.CONTROLLERS_NOT_FOUND.diagnostic(
                 "no file contains controllers for this controller manager", origin=tag.origin
@@ -141,12 +147,18 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 
 
-def _measured(verdict: Verdict, findings: Callable[[], Sequence[Diagnostic]]) -> Iterator[Fault]:
-    """The failed tests of a robot that was loaded, with reasons."""
+def _measured(
+    verdict: Verdict, findings: Callable[[], Sequence[Diagnostic]], idle: Diagnostic | None
+) -> Iterator[Fault]:
+    """The failed tests of a robot that was loaded, with reasons.
+
+    `idle` is the reason why no controller holds the joints; None if one runs or none is needed.
+    """
     said = verdict.diagnostics
+    fallen: Diagnostic | None = None
     if verdict.stand is not None and not verdict.stands:
-        reason = _first(each for each in (*said, *findings()) if _explains_fall(each))
-        yield Fault(test="stand", subject=verdict.stand.state, reason=reason)
+        fallen = _first(each for each in (*said, *findings()) if _explains_fall(each)) or idle
+        yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:
         reason = _coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
@@ -164,7 +176,8 @@ def _measured(verdict: Verdict, findings: Callable[[], Sequence[Diagnostic]]) ->
             yield Fault(test="turn", subject=drive.topic, reason=reason)
     for reach in verdict.reaches:
         if not reach.arrived:
-            reason = _of_joint((*said, *findings()), reach.joint)
+            # A robot that fell may lie on its joints.
+            reason = _of_joint((*said, *findings()), reach.joint) or fallen
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
@@ -187,9 +200,14 @@ def _of_drive(
         # Fewer wheels than predicted carry the robot.
         return factors[robot.SKID_STEERING][0]
     product = math.prod(factor for _, factor in factors.values())
-    for each, factor in factors.values():
-        if any(abs(ratio - one) <= _AGREES * abs(one) for one in (factor, product)):
-            return each
+    legacy = next((each for each in found if _reverses(each)), None) if turning else None
+    for sign, cause in ((1.0, None), (-1.0, legacy)):
+        if sign < 0 and cause is None:
+            continue
+        for each, factor in (*factors.values(), (cause, 1.0)):
+            ratios = (sign * factor, sign * product)
+            if each is not None and any(abs(ratio - e) <= _AGREES * abs(e) for e in ratios):
+                return each
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
         expected = [1.0, *(factor for _, factor in factors.values())]
@@ -197,6 +215,14 @@ def _of_drive(
             return next(iter(factors.values()))[0]
     codes = _TURNING if turning else _DRIVING
     return _first(each for each in found if each.code in codes)
+
+
+def _reverses(finding: Diagnostic) -> bool:
+    """Whether it reports ``<legacyMode>``, which reverses the turning direction."""
+    return (
+        finding.code is devices.PLUGIN_PARAMETER_OBSOLETE
+        and finding.values.get("tag") == "legacyMode"
+    )
 
 
 def _factor(finding: Diagnostic, turning: bool) -> float | None:

@@ -23,7 +23,8 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     """The direction in which parallel wheels roll, a unit vector in the robot's frame.
 
     It points toward +x, or, for wheels with an axis along x, away from the side on which the left
-    wheel would be on the right. Without parallel wheels it is x, as in REP 103.
+    wheel would be on the right, or, if that is unknown, in the direction in which the wheels roll.
+    Without parallel wheels it is x, as in REP 103.
 
     Args:
         robot: The robot.
@@ -49,7 +50,7 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     if abs(forward[0]) > 0.1:
         sign = math.copysign(1.0, forward[0])
     else:
-        sign = _side(robot, forward)
+        sign = _side(robot, forward) or _rolling(robot, speeds, forward)
     return sign * forward[0], sign * forward[1]
 
 
@@ -59,7 +60,9 @@ def _axis(robot: Robot, name: str) -> tuple[float, float, float]:
 
 
 def _side(robot: Robot, forward: tuple[float, float]) -> float:
-    """1 if the left wheels of the drives are to the left of this direction, otherwise -1."""
+    """1 if the left wheels of the drives are to the left of this direction, -1 if they are to the
+    right, and 0 if the drives are unknown.
+    """
     for drive in robot.drives:
         sides = [
             [
@@ -78,4 +81,15 @@ def _side(robot: Robot, forward: tuple[float, float]) -> float:
         across = forward[0] * (ly - ry) - forward[1] * (lx - rx)
         if across:
             return math.copysign(1.0, across)
-    return 1.0
+    return 0.0
+
+
+def _rolling(robot: Robot, speeds: Mapping[str, float], forward: tuple[float, float]) -> float:
+    """1 if most wheels roll in this direction on the ground, otherwise -1."""
+    rolled = sum(
+        math.copysign(1.0, speed * (axis[1] * forward[0] - axis[0] * forward[1]))
+        for name, speed in speeds.items()
+        if name in robot.joints and robot.joints[name].child in robot.placed
+        for axis in [_axis(robot, name)]
+    )
+    return math.copysign(1.0, rolled)

@@ -74,7 +74,8 @@ def add_differential_drive(
 ) -> DifferentialDrive:
     """Adds a differential drive, and reports swapped wheels; see `DifferentialDrive`."""
     drive = plugin.add(DifferentialDrive(plugin.scope, config, yaw_rate=yaw_rate))
-    _report_swapped_wheels(plugin, config.pairs)
+    if not config.reverse:
+        _report_swapped_wheels(plugin, config.pairs)
     return drive
 
 

@@ -161,8 +161,7 @@ class _Reader:
         if isinstance(node, ast.BinOp):
             return _combined(node.op, self.value(node.left), self.value(node.right))
         if isinstance(node, ast.IfExp):
-            self.value(node.test)
-            return self.value(node.body)
+            return self.value(node.orelse if self._holds(node.test) is False else node.body)
         if isinstance(node, ast.Attribute):
             value = self.value(node.value)
             if node.attr == "parent" and isinstance(value, str):
@@ -174,6 +173,16 @@ class _Reader:
         if isinstance(node, ast.Call):
             return self._call(node)
         return _NOTHING
+
+    def _holds(self, test: ast.expr) -> bool | None:
+        """Whether a condition on texts holds; None if it is unknown."""
+        if isinstance(test, ast.Compare) and len(test.ops) == 1:
+            left, right = self.value(test.left), self.value(test.comparators[0])
+            if isinstance(test.ops[0], ast.Eq | ast.NotEq) and _is_known(left, right):
+                return bool((left == right) == isinstance(test.ops[0], ast.Eq))
+            return None
+        value = self.value(test)
+        return value != "" if _is_known(value) else None
 
     def _call(self, node: ast.Call) -> Any:
         named = isinstance(node.func, ast.Name | ast.Attribute)
@@ -321,3 +330,7 @@ def _combined(operator: ast.operator, left: Any, right: Any) -> Any:
             return left + right
         return _text(left) + _text(right)
     return _NOTHING
+
+
+def _is_known(*values: Any) -> bool:
+    return all(isinstance(each, str) and UNKNOWN not in each for each in values)

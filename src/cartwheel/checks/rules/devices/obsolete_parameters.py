@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from cartwheel.checks import edits, nodes, plugin_tags
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
+from cartwheel.checks.wheels import is_legacy
 from cartwheel.codes import devices as devices_codes
 from cartwheel.errors import Diagnostic
 
@@ -30,7 +31,7 @@ def plugin_obsolete(subject: Subject) -> Iterator[Diagnostic]:
                         **edits.whole(each, nodes.written(torque.tags[0], {}, each.text.strip())),
                     )
             legacy = element.find("legacyMode")
-            if legacy is not None and legacy.text.strip().lower() in ("true", "1"):
+            if legacy is not None and is_legacy(drive):
                 yield devices_codes.PLUGIN_PARAMETER_OBSOLETE.diagnostic(
                     message="Gazebo 11 ignores <legacyMode>, so the robot turns in the opposite "
                     "direction",

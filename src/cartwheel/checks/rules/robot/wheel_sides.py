@@ -12,6 +12,7 @@ from cartwheel.checks.wheels import (
     axis_senses,
     faces_sideways,
     gap_between,
+    is_legacy,
     wheel_pairs,
     wheel_place,
 )
@@ -25,7 +26,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
         poses = [wheel_place(robot, joint) for joint in (left, right)]
         element = drive.left_tag
         gap = gap_between(robot, left, right)
-        if element is None:
+        if element is None or is_legacy(drive):
             continue
         senses = axis_senses(robot, left, right)
         reversed_ = bool(senses) and all(sense < -CAMBER for sense in senses)
