@@ -434,6 +434,20 @@ def test_a_wheel_beside_its_axis_has_its_own_diameter(bench, spoil):
     )
 
 
+def test_a_caster_wheel_that_does_not_swivel_slides_in_turns(bench, spoil):
+    rough = ("<mu1>0.0</mu1>", "<mu1>1.0</mu1>")
+    wheel = ('<joint name="caster_joint" type="fixed">', '<joint name="caster_joint" type="{}">')
+
+    def found(kind, axis):
+        joint = (wheel[0], wheel[1].format(kind) + f'<axis xyz="{axis}"/>')
+        return bench.find(spoil(rough, joint), "caster-friction")
+
+    (finding,) = found("continuous", "0 1 0")
+    assert finding.values["link"] == "caster_link"
+    # A swivel does not resist.
+    assert not found("continuous", "0 0 1")
+
+
 def test_tags_of_a_link_that_stand_at_its_joint_are_told_together(bench, spoil, take):
     text = spoil(('reference="caster_link"', 'reference="caster_joint"'))
     (finding,) = bench.find(text, "tag-misplaced")

@@ -7,7 +7,7 @@ from tests.dialects.ros_control.arms import ROS1, beam, robot, ros2_joint, ros2_
 from tests.dialects.ros_control.arms import ros2_system as system
 
 import cartwheel as cw
-from cartwheel.codes import devices
+from cartwheel.codes import devices, files
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.files import ControllerFiles, read_parameters, ros2_file
 from cartwheel.dialects.ros_control.substitution import substitute
@@ -87,6 +87,25 @@ def test_a_file_that_is_missing_costs_what_it_would_start(tmp_path):
         (told,) = (each for each in world.diagnostics if each.severity == "error")
         assert told.code is devices.CONTROLLERS_FILE_UNREADABLE
         assert told.values["file"].endswith("gone.yaml")
+        assert started(world) == ["group"]
+
+
+def test_a_file_of_another_computer_is_the_one_in_the_package(tmp_path):
+    package = tmp_path / "my_arm"
+    (package / "config").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_arm</name></package>")
+    (package / "config" / "there.yaml").write_text(
+        f"controller_manager: {{ros__parameters: {{group: {{type: {GROUP}}}}}}}\n"
+        "group: {ros__parameters: {joints: [beam_joint]}}"
+    )
+    body = beam("beam", "world") + system(ros2_joint("beam_joint"))
+    urdf = package / "arm.urdf"
+    stated = "/home/me/ws/install/my_arm/share/my_arm/config/there.yaml"
+    urdf.write_text(robot(body, ros2_plugin(stated)))
+    with cw.World("empty") as world:
+        world.spawn(urdf)
+        (told,) = (each for each in world.diagnostics if each.code is files.FILE_ELSEWHERE)
+        assert told.values["name"] == stated
         assert started(world) == ["group"]
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, files, running
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros2_control.components import HardwareComponents
@@ -164,6 +165,15 @@ class Ros2Control(ControlPlugin):
             # folder.
             path = Path("" if origin.file.startswith("<") else origin.file).parent / path
         if not path.is_file():
+            packages = Packages(None if origin.file.startswith("<") else Path(origin.file))
+            other = packages.elsewhere(text, origin)
+            if other is not None:
+                self.warn(
+                    files.FILE_ELSEWHERE,
+                    f'"{text}" does not exist, so "{other}" is used',
+                    values={"name": text, "used": str(other)},
+                )
+                return other
             self.warn(
                 devices.CONTROLLERS_FILE_UNREADABLE,
                 f'<parameters>: the file "{text}" does not exist, so its controllers do not start',

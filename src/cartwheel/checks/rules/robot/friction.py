@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links
+from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links, wheel_place
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
-from cartwheel.description.model import Link
+from cartwheel.description.model import Joint, Link
 from cartwheel.errors import Diagnostic
+from cartwheel.geometry import rotate
 
 SLIPPERY = 0.01
+_PARALLEL = 0.95
+"""Minimum cosine between parallel axles."""
+_AHEAD = 0.02
+"""Minimum distance between the axles of a caster and of the driven wheels, m."""
 
 
 @rule(robot_codes.WHEEL_FRICTIONLESS)
@@ -46,7 +53,10 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
             continue
         for link in robot.description.links:
             holder = robot.inbound.get(link.name)
-            if "caster" not in link.name.lower() or holder is None or holder.type != "fixed":
+            if "caster" not in link.name.lower() or holder is None:
+                continue
+            rolls = _rolls_only_forward(robot, holder)
+            if holder.type != "fixed" and not rolls:
                 continue
             if not _touches_ground(robot, link, wheels):
                 continue
@@ -56,13 +66,31 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
             yield robot_codes.CASTER_FRICTION.diagnostic(
-                message=f'the caster "{link.name}" cannot roll, and its friction coefficient is '
-                f"{'1, the default' if mu is None else f'{mu:g}'}",
+                message=f'the caster "{link.name}" cannot '
+                f"{'swivel, so it slides when the robot turns' if rolls else 'roll'}, and its "
+                f"friction coefficient is {'1, the default' if mu is None else f'{mu:g}'}",
                 values={"link": link.name, "friction": mu},
                 origin=collision.origin,
                 instead=text,
                 hint="Add these tags to the robot, or change the existing values.",
             )
+
+
+def _rolls_only_forward(robot: Robot, holder: Joint) -> bool:
+    """Whether a wheel's axle is parallel to the driven one, but not above it or on a swivel."""
+    if holder.type != "continuous":
+        return False
+    axis = rotate(wheel_place(robot, holder).orientation, holder.axis.xyz)
+    for driven in wheel_joints(robot):
+        same_body = robot.rigid_root(driven.parent) == robot.rigid_root(holder.parent)
+        axle = rotate(wheel_place(robot, driven).orientation, driven.axis.xyz)
+        between = np.subtract(
+            wheel_place(robot, holder).position, wheel_place(robot, driven).position
+        )
+        ahead = np.cross(axle, between)[2]
+        if same_body and abs(np.dot(axis, axle)) > _PARALLEL and abs(ahead) > _AHEAD:
+            return True
+    return False
 
 
 def _names_nothing(subject: Subject) -> bool:
