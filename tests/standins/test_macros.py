@@ -1,6 +1,7 @@
 """The macros of the stand-ins: their frames are at the documented places, their sensors publish."""
 
 import re
+from pathlib import Path
 
 import pytest
 from tests.coded import coded
@@ -81,8 +82,9 @@ def test_every_macro_is_called():
         defined |= set(re.findall(r'<xacro:macro name="(?!stand_in_)([\w-]+)"', file.read_text()))
     for file in stand_ins().rglob("*.xacro"):
         defined -= set(re.findall(r"<xacro:([\w-]+) ", file.read_text()))
-    called = {call.text.split()[0].removeprefix("<xacro:").rstrip("/>") for call in CALLS}
-    called = {re.split(r"[ />]", each)[0] for each in called}
+    tests = Path(__file__).parent.glob("test_*.py")
+    texts = [*(call.text for call in CALLS), *(file.read_text() for file in tests)]
+    called = {name for text in texts for name in re.findall(r"<xacro:([\w-]+)", text)}
     assert defined - called == set()
 
 
@@ -98,9 +100,27 @@ def test_example_robots(file):
     assert any(link.sensors for link in robot.links)
 
 
+@pytest.mark.parametrize("name", ["Black", "DarkGrey", "Grey", "LightGrey", "Orange", "White"])
+def test_constants_and_materials_of_pal(name):
+    robot = load_text(
+        f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{BASE}'
+        '<xacro:include filename="$(find pal_urdf_utils)/urdf/deg_to_rad.urdf.xacro"/>'
+        '<xacro:include filename="$(find pal_urdf_utils)/urdf/materials.urdf.xacro"/>'
+        f'<link name="a"><visual><origin rpy="${{90 * deg_to_rad}} 0 0"/><geometry>'
+        f'<sphere radius="1"/></geometry><material name="{name}"/></visual></link>'
+        '<joint name="j" type="fixed"><parent link="base_link"/><child link="a"/></joint></robot>'
+    )
+    assert isinstance(robot, RobotDescription)
+    (used,) = coded(robot, STAND_IN_USED)
+    assert list(robot.diagnostics) == [used]
+    visual = robot.link("a").visuals[0]
+    assert visual.material is not None and visual.material.diffuse is not None
+    assert rotate(visual.pose.orientation, (0, 1, 0)) == pytest.approx((0, 0, 1))
+
+
 def test_each_folder_is_the_package_of_its_name():
     folders = [each for each in stand_ins().iterdir() if each.is_dir()]
-    assert len(folders) >= 12
+    assert len(folders) >= 14
     for folder in folders:
         assert package_name(folder) == folder.name
 
