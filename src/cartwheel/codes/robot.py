@@ -142,7 +142,7 @@ WHEELS_OFF_GROUND = Code(
     "CW237",
     "wheels-off-ground",
     "warning",
-    "a link is lower than the driven wheels, so the wheels do not touch the ground",
+    "the robot stands on other links, so driven wheels do not touch the ground",
 )
 OVERLAPPING_COLLISIONS = Code(
     "CW238",

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from cartwheel.checks.robot import Robot
+from cartwheel.checks.resting import center_of_mass, starting_poses
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.kinematics import link_poses
 from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic
-from cartwheel.geometry import Pose
 
 _TOUCHES = 0.03
 """Maximum height of a supporting point above the lowest one, relative to the robot's size."""
@@ -28,8 +26,8 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
         held = any(joint.parent == "world" for joint in robot.description.joints)
         if robot.description.static or held or not robot.is_placed or robot.incomplete:
             continue
-        poses = _starting_poses(robot)
-        center = _center_of_mass(robot, poses)
+        poses = starting_poses(robot)
+        center = center_of_mass(robot, poses)
         clouds = [
             solid.placed(poses[link.name])
             for link in robot.description.links
@@ -47,33 +45,6 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
                 origin=robot.description.origin,
                 hint="Check whether all wheels and casters have a <collision> at the same height.",
             )
-
-
-def _starting_poses(robot: Robot) -> Mapping[str, Pose]:
-    """Poses of the links with each joint at 0, or at its nearest limit, by name."""
-    positions = {
-        joint.name: min(max(0.0, joint.axis.lower), joint.axis.upper)
-        for joint in robot.description.joints
-        if joint.type in ("revolute", "prismatic")
-        and joint.axis.lower is not None
-        and joint.axis.upper is not None
-        and not joint.axis.lower <= 0.0 <= joint.axis.upper
-    }
-    if not positions:
-        return {link.name: link.pose for link in robot.description.links}
-    return link_poses(robot.description, positions)
-
-
-def _center_of_mass(robot: Robot, poses: Mapping[str, Pose]) -> Floats | None:
-    """The robot's centre of mass in its frame, m; None without masses."""
-    weighted, total = np.zeros(3), 0.0
-    for link in robot.description.links:
-        mass = link.inertial.mass if link.inertial is not None else None
-        if link.inertial is None or not mass:
-            continue
-        weighted += mass * np.array((poses[link.name] @ link.inertial.pose).position)
-        total += mass
-    return weighted / total if total > 0 else None
 
 
 def _outside(points: Floats, center: Floats, size: float) -> float:

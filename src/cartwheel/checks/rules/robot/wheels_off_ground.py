@@ -2,46 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
+import numpy as np
+
+from cartwheel.checks.resting import Surfaces, rest_of
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links, wheel_radius
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.model import Link
+from cartwheel.description.model import Joint, Link
 from cartwheel.errors import Diagnostic
+from cartwheel.geometry import rotate
+
+_SINKS = 3e-4
+"""Height, m, from which a wheel does not drive, measured with carts of 1 to 100 kg."""
+_STIFF = 1e6
+"""Stiffness, N/m, of contacts into which no robot sinks noticeably."""
+_GRAVITY = 9.81
+_EXACT = 1e-5
+"""m."""
+_UP = np.array([0.0, 0.0, 1.0])
+_VERTICAL = 0.99
+"""Minimum vertical component of a steering axis."""
 
 
 @rule(robot_codes.WHEELS_OFF_GROUND)
 def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        joints = wheel_joints(robot)
-        parts = {name for joint in joints for name in wheel_links(robot, joint)}
-        heights = [
-            lowest(robot, *wheel_links(robot, joint))
-            for joint in joints
-            if robot.whole(joint.child)
-        ]
-        wheels = [height for height in heights if height is not None]
-        if not wheels or robot.description.static or not robot.is_placed:
+        if robot.description.static or not robot.is_placed:
             continue
-        bottom = min(wheels)
-        radius = wheel_radius(robot, joints[0]) or 0.1
-        for link in robot.description.links:
-            if link.name in parts or link.name in robot.cut or _rolls(robot, link):
-                continue
-            height = lowest(robot, link.name)
-            if height is None or bottom - height <= max(0.1 * radius, 0.005):
-                continue
-            yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
-                message=f'the collision of link "{link.name}" extends '
-                f"{1000 * (bottom - height):.3g} mm below the driven wheels, so they do "
-                "not touch the ground",
-                values={"link": link.name, "depth": bottom - height},
-                origin=link.collisions[0].origin,
-                hint=f'Raise the collision, or lower the joint of "{joints[0].child}".',
-            )
+        found = list(_low_links(robot))
+        yield from found or _raised_sides(robot)
+
+
+def _low_links(robot: Robot) -> Iterator[Diagnostic]:
+    """Links far below the driven wheels that are not meant to touch the ground."""
+    joints = wheel_joints(robot)
+    parts = {name for joint in joints for name in wheel_links(robot, joint)}
+    heights = [
+        lowest(robot, *wheel_links(robot, joint)) for joint in joints if robot.whole(joint.child)
+    ]
+    wheels = [height for height in heights if height is not None]
+    if not wheels:
+        return
+    bottom = min(wheels)
+    radius = wheel_radius(robot, joints[0]) or 0.1
+    for link in robot.description.links:
+        if link.name in parts or link.name in robot.cut or _rolls(robot, link):
+            continue
+        height = lowest(robot, link.name)
+        if height is None or bottom - height <= max(0.1 * radius, 0.005):
+            continue
+        yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
+            message=f'the collision of link "{link.name}" extends '
+            f"{1000 * (bottom - height):.3g} mm below the driven wheels, so they do "
+            "not touch the ground",
+            values={"link": link.name, "depth": bottom - height},
+            origin=link.collisions[0].origin,
+            hint=f'Raise the collision, or lower the joint of "{joints[0].child}".',
+        )
 
 
 def _rolls(robot: Robot, link: Link) -> bool:
@@ -50,3 +71,114 @@ def _rolls(robot: Robot, link: Link) -> bool:
     moves = holder is not None and holder.type in ("continuous", "ball", "revolute", "prismatic")
     name = link.name.lower()
     return moves or any(word in name for word in ("caster", "castor", "wheel", "roller", "ball"))
+
+
+def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
+    """Drives whose left or right wheels are all above the plane on which the robot stands."""
+    held = any(joint.parent == "world" for joint in robot.description.joints)
+    joints = wheel_joints(robot)
+    names = {joint.name for joint in joints}
+    if held or not joints or not all(robot.whole(joint.child) for joint in joints):
+        return
+    below: dict[str, list[Joint]] = {name: [] for name in robot.links}
+    for joint in robot.inbound.values():
+        if joint.child in below and joint.parent in below:
+            below[joint.parent].append(joint)
+    rigid = _rigid(robot, below)
+    rest = rest_of(robot, rigid)
+    if rest is None:
+        return
+    bearing = [name for name in rigid if (rest.height(robot, [name]) or 0.0) < _SINKS]
+    limit = _SINKS + _softness(robot, bearing)
+    for drive in robot.drives:
+        sides = [
+            [_wheel(robot.joints[name], below) for name in side if name in names]
+            for side in (drive.left, drive.right)
+        ]
+        wheels = {name for side in sides for wheel in side for name in wheel}
+        if not wheels <= set(rigid):
+            continue
+        raised = [
+            wheel
+            for side in sides
+            if (rest.height(robot, [name for wheel in side for name in wheel]) or 0.0) > limit
+            for wheel in side
+        ]
+        if raised:
+            others = [name for name in rigid if name not in wheels]
+            yield from _report(robot, others, bearing, [wheel[0] for wheel in raised], wheels)
+
+
+def _report(
+    robot: Robot, others: list[str], bearing: list[str], raised: list[str], wheels: set[str]
+) -> Iterator[Diagnostic]:
+    """A finding, unless no other part is lower than the wheels while the robot is level."""
+    bottom = Surfaces(robot, wheels).lowest(_UP)
+    points = {name: Surfaces(robot, [name]).lowest(_UP) for name in others}
+    low = {
+        name: float(bottom[2] - point[2])
+        for name, point in points.items()
+        if bottom is not None and point is not None and bottom[2] - point[2] > _EXACT
+    }
+    feet = [name for name in low if name in bearing]
+    if not feet:
+        return
+    amounts = {name: f"{1000 * depth:.2g} mm" for name, depth in low.items()}
+    yield robot_codes.WHEELS_OFF_GROUND.diagnostic(
+        message=f"the robot stands on {_quoted(feet)}, "
+        f"{_listed([amounts[name] for name in feet])} below the driven wheels, so "
+        f"{_quoted(raised)} {'does' if len(raised) == 1 else 'do'} not touch the ground",
+        values={"links": tuple(feet), "depth": max(low[name] for name in feet)},
+        origin=robot.links[feet[0]].collisions[0].origin,
+        hint="Raise "
+        + _listed([f'"{name}" by {amount}' for name, amount in amounts.items()])
+        + ", or lower the wheels.",
+    )
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return _listed([f'"{name}"' for name in names])
+
+
+def _listed(texts: list[str]) -> str:
+    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))
+
+
+def _wheel(joint: Joint, below: Mapping[str, list[Joint]]) -> list[str]:
+    """The links that a wheel's joint holds, including the rollers of a mecanum wheel."""
+    found = {joint.child: None}
+    waiting = [joint.child]
+    while waiting:
+        children = [each.child for each in below[waiting.pop()] if each.child not in found]
+        found.update(dict.fromkeys(children))
+        waiting += children
+    return list(found)
+
+
+def _rigid(robot: Robot, below: Mapping[str, list[Joint]]) -> list[str]:
+    """The links that the robot's weight does not move up or down.
+
+    Joints that steer or roll do not let it; springs, rockers and arms do.
+    """
+    # Whether an undriven joint above the link rolls: a further one would make it a rocker.
+    rolled = dict.fromkeys((name for name in robot.links if name not in robot.inbound), False)
+    waiting = list(rolled)
+    while waiting:
+        parent = waiting.pop()
+        for joint in below[parent]:
+            axis = rotate(robot.links[joint.child].pose.orientation, joint.axis.xyz)
+            turns = joint.type in ("continuous", "revolute") and abs(axis[2]) > _VERTICAL
+            rolls = joint.type in ("continuous", "ball") and not turns
+            if joint.type != "fixed" and not turns and (not rolls or rolled[parent]):
+                continue
+            rolled[joint.child] = rolled[parent] or (rolls and joint.name not in robot.driven)
+            waiting.append(joint.child)
+    return [name for name in robot.links if name in rolled and name not in robot.cut]
+
+
+def _softness(robot: Robot, bearing: Iterable[str]) -> float:
+    """How far the robot sinks at most into contacts that are stated to be soft, m."""
+    stated = [c.surface.kp for name in bearing for c in robot.links[name].collisions]
+    softest = min((kp for kp in stated if kp is not None and kp > 0), default=_STIFF)
+    mass = sum(link.inertial.mass for link in robot.description.links if link.inertial is not None)
+    return mass * _GRAVITY / softest if softest < _STIFF else 0.0

@@ -1,0 +1,241 @@
+"""The plane on which a robot stands, and wheels that do not touch it."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from cartwheel.checks.resting import Surfaces, center_of_mass, rest_of, starting_poses
+from cartwheel.checks.robot import Robot
+from cartwheel.description import load_text
+from cartwheel.description.model import RobotDescription
+
+RULE = "wheels-off-ground"
+RADIUS, BALL = 0.05, 0.02
+FOUR = {
+    "ahead": (0.15, 0),
+    "behind": (-0.15, 0),
+    "left_ball": (-0.15, 0.1),
+    "right_ball": (-0.15, -0.1),
+}
+TWO = {"ahead": (0.15, 0), "behind": (-0.15, 0)}
+ONE = {"ahead": (0.15, 0)}
+
+
+def link(name, mass, shape, rpy="0 0 0"):
+    inertia = f'ixx="{mass / 100}" iyy="{mass / 100}" izz="{mass / 100}" ixy="0" ixz="0" iyz="0"'
+    return (
+        f'<link name="{name}"><inertial><mass value="{mass}"/><inertia {inertia}/></inertial>\n'
+        f'<collision><origin rpy="{rpy}"/><geometry>{shape}</geometry></collision></link>\n'
+    )
+
+
+def joint(child, kind, xyz, *, parent="base_link", axis="0 1 0"):
+    limit = '<limit upper="0.02" effort="9" velocity="1"/>' if kind == "prismatic" else ""
+    return (
+        f'<joint name="{child}_joint" type="{kind}"><parent link="{parent}"/>'
+        f'<child link="{child}"/><origin xyz="{xyz}"/><axis xyz="{axis}"/>{limit}</joint>\n'
+    )
+
+
+def cart(gap=0.0, *, places=None, sprung=(), rolling=(), more=""):
+    """A cart whose balls are below its driven wheels.
+
+    Args:
+        gap: How far below, m.
+        places: Name to place of each ball; None for four.
+        sprung: Balls and wheels that a prismatic joint holds.
+        rolling: Balls that roll.
+        more: Further elements.
+    """
+    parts = [link("base_link", 5, '<box size="0.4 0.3 0.05"/>')]
+    for name, y in (("left", 0.17), ("right", -0.17)):
+        wheel = f'<cylinder radius="{RADIUS}" length="0.03"/>'
+        parts.append(link(name, 0.25, wheel, "1.5707963 0 0"))
+        parent, place = "base_link", f"0 {y} 0"
+        if name in sprung:
+            parts.append(link(f"{name}_arm", 0.1, '<sphere radius="0.001"/>'))
+            parts.append(joint(f"{name}_arm", "prismatic", place, axis="0 0 1"))
+            parent, place = f"{name}_arm", "0 0 0"
+        parts.append(joint(name, "continuous", place, parent=parent))
+        parts.append(f'<gazebo reference="{name}"><mu1>1</mu1><mu2>1</mu2></gazebo>')
+    for name, (x, y) in (FOUR if places is None else places).items():
+        kind = "prismatic" if name in sprung else "continuous" if name in rolling else "fixed"
+        axis = "0 0 1" if kind == "prismatic" else "0 1 0"
+        parts.append(link(name, 0.05, f'<sphere radius="{BALL}"/>'))
+        parts.append(joint(name, kind, f"{x} {y} {BALL - RADIUS - gap}", axis=axis))
+        parts.append(f'<gazebo reference="{name}"><mu1>0.1</mu1><mu2>0.1</mu2></gazebo>')
+    return f"""<robot name="cart">{"".join(parts)}{more}
+    <gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">
+    <leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>
+    <wheelSeparation>0.34</wheelSeparation><wheelDiameter>{2 * RADIUS}</wheelDiameter>
+    <wheelTorque>10</wheelTorque></plugin></gazebo></robot>"""
+
+
+def weight(place):
+    return link("weight", 2, '<sphere radius="0.01"/>') + joint("weight", "fixed", place)
+
+
+def as_robot(text):
+    description = load_text(text)
+    assert isinstance(description, RobotDescription)
+    return Robot(description, None)
+
+
+@pytest.mark.parametrize("places", [TWO, FOUR], ids=["two", "four"])
+@pytest.mark.parametrize(("gap", "drives"), [(0.0, True), (0.0005, False), (0.003, False)])
+def test_a_cart_drives_if_nothing_is_found(bench, make, places, gap, drives):
+    text = cart(gap, places=places)
+    assert (bench.find(text, RULE) == []) == drives
+    world = make.world()
+    robot = world.spawn(load_text(text), z=RADIUS + gap + 0.001)
+    world.run(1)
+    start = robot.pose
+    world.publish("/cmd_vel", linear_x=0.3)
+    world.run(2)
+    driven = (start.inverse() @ robot.pose).position[0]
+    assert driven == pytest.approx(0.6, rel=0.05) if drives else abs(driven) < 0.1
+
+
+def test_the_parts_on_which_it_stands(bench):
+    (found,) = bench.find(cart(0.0023), RULE)
+    assert found.values["links"] == tuple(FOUR)
+    assert found.values["depth"] == pytest.approx(0.0023)
+    text = cart(0.0023)
+    assert found.origin.line == text[: text.index("<sphere")].count("\n") + 1
+
+
+@pytest.mark.wording
+def test_the_advice_says_how_far_to_raise_them(bench):
+    (found,) = bench.find(cart(0.0023), RULE)
+    assert 'stands on "ahead", "behind", "left_ball" and "right_ball"' in found.message
+    assert '"left" and "right" do not touch the ground' in found.message
+    assert 'Raise "ahead" by 2.3 mm' in found.hint
+
+
+@pytest.mark.wording
+def test_between_two_casters_it_leans_on_one_wheel(bench):
+    (found,) = bench.find(cart(0.001, places=TWO, more=weight("0 0.1 0")), RULE)
+    assert found.values["links"] == ("ahead", "behind")
+    assert '"right"' in found.message and '"left"' not in found.message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        cart(0.0002),
+        cart(0.003, places=ONE | {"behind": (-0.15, 0)}, sprung=("behind",)),
+        cart(0.003, sprung=("left", "right")),
+        cart(0.003, more='<gazebo reference="ahead"><kp>1000</kp></gazebo>'),
+        cart(-0.001),
+        cart(0.003).replace("<robot", '<robot static="1"').replace(
+            "</robot>", '<link name="world"/><joint name="w" type="fixed"><parent link="world"/>'
+            '<child link="base_link"/></joint></robot>'),
+    ],
+    ids=["0.2 mm", "sprung caster", "sprung wheels", "soft", "higher", "held"],
+)  # fmt: skip
+def test_nothing_is_found(bench, text):
+    assert bench.find(text, RULE) == []
+
+
+def test_a_robot_that_leans_forward_stands_on_its_wheels(bench):
+    """Its weight is ahead of the wheels, so only the caster and the wheels carry it."""
+    assert bench.find(cart(0.003, places=ONE, more=weight("0.1 0 0.05")), RULE) == []
+
+
+def test_rolling_casters_carry_it(bench):
+    assert bench.find(cart(0.001, rolling=tuple(FOUR)), RULE)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_plane_is_that_of_the_lower_hull(seed):
+    """Against all triangles of corners around the centre of mass."""
+    random = np.random.default_rng(seed)
+    parts = [link("body", 5, '<box size="0.1 0.1 0.1"/>')]
+    for number, (x, y) in enumerate(itertools.product((-0.2, 0.2), repeat=2)):
+        size = " ".join(f"{each:.4f}" for each in random.uniform(0.02, 0.08, 3))
+        at = f"{x} {y} {random.uniform(-0.11, -0.1):.5f}"
+        parts.append(link(f"foot{number}", 0.2, f'<box size="{size}"/>'))
+        parts.append(joint(f"foot{number}", "fixed", at, parent="body"))
+    robot = as_robot(f'<robot name="r">{"".join(parts)}</robot>')
+    center = center_of_mass(robot, starting_poses(robot))
+    rest = rest_of(robot, robot.links)
+    assert center is not None and rest is not None
+    cloud = np.unique(
+        np.concatenate(
+            [s.placed(robot.links[n].pose) for n, ss in robot.collisions.items() for s in ss]
+        ).round(9),
+        axis=0,
+    )
+    assert ((cloud @ rest.normal) >= rest.offset - 2e-6).all()
+    lowest = np.inf
+    for three in itertools.combinations(cloud, 3):
+        matrix = np.column_stack([np.array(three)[:, :2], np.ones(3)]).T
+        if abs(np.linalg.det(matrix)) > 1e-12:
+            weights = np.linalg.solve(matrix, [center[0], center[1], 1])
+            if weights.min() >= -1e-9:
+                lowest = min(lowest, float(weights @ np.array(three)[:, 2]))
+    level = (rest.offset - rest.normal[:2] @ center[:2]) / rest.normal[2]
+    assert level == pytest.approx(lowest, abs=3e-6)
+
+
+def test_round_shapes_are_exact():
+    """A turned wheel of 32 corners would be up to 0.5 % of its radius too high."""
+    shapes = (
+        '<sphere radius="0.2"/>',
+        '<cylinder radius="0.2" length="0.1"/>',
+        '<capsule radius="0.2" length="0.1"/>',
+    )
+    for shape in shapes:
+        for angle in (0.03, 0.1, 1.234):
+            text = link("a", 1, shape, f"1.5707963267948966 {angle} 0")
+            robot = as_robot(f'<robot name="r">{text}</robot>')
+            point = Surfaces(robot, ["a"]).lowest(np.array([0.0, 0.0, 1.0]))
+            assert point is not None
+            assert point[2] == pytest.approx(-0.2, abs=1e-9)
+
+
+def test_the_search_is_bounded(monkeypatch):
+    """A bowl of a thousand balls."""
+    parts = [link("body", 5, '<sphere radius="0.001"/>')]
+    for number, angle in enumerate(np.linspace(0, 50, 1000)):
+        far = number / 1000
+        at = f"{far * np.cos(angle)} {far * np.sin(angle)} {far**2 / 10 - 0.5}"
+        parts.append(link(f"ball{number}", 0.001, '<sphere radius="0.01"/>'))
+        parts.append(joint(f"ball{number}", "fixed", at, parent="body"))
+    robot = as_robot(f'<robot name="r">{"".join(parts)}</robot>')
+    calls = []
+    lowest = Surfaces.lowest
+    monkeypatch.setattr(Surfaces, "lowest", lambda *a: calls.append(1) or lowest(*a))
+    assert rest_of(robot, robot.links) is not None
+    assert len(calls) < 40
+
+
+@pytest.mark.parametrize("driven", [True, False])
+def test_rockers_do_not_carry_it(bench, driven):
+    """A ball below two rolling joints, of which the plugin may drive the upper one."""
+    more = (
+        link("rocker", 0.05, '<sphere radius="0.001"/>')
+        + joint("rocker", "continuous", "0.15 0 0")
+        + link("rocker_ball", 0.05, f'<sphere radius="{BALL}"/>')
+        + joint("rocker_ball", "continuous", f"0 0 {BALL - RADIUS - 0.003}", parent="rocker")
+    )
+    behind = {name: place for name, place in FOUR.items() if name != "ahead"}
+    text = cart(0.003, places=behind, more=more + weight("0.1 0 0.05"))
+    if driven:
+        text = text.replace(
+            "</robot>", '<transmission name="t"><joint name="rocker_joint"/></transmission></robot>'
+        )
+    assert (bench.find(text, RULE) != []) == driven
+
+
+def test_a_robot_that_tips_over_has_no_plane():
+    parts = link("body", 5, '<box size="0.1 0.1 0.1"/>') + link(
+        "far", 50, '<sphere radius="0.01"/>'
+    )
+    parts += joint("far", "fixed", "1 0 0.5", parent="body")
+    robot = as_robot(f'<robot name="r">{parts}</robot>')
+    assert rest_of(robot, robot.links) is None
+    assert rest_of(robot, []) is None
