@@ -67,7 +67,7 @@ FAULTS: tuple[Mutation, ...] = (
     Mutation(name="xacro: call misspelt", at=_CALLS, code="xacro-name-unknown", edit=misspell_tag),
     Mutation(name="xacro: block misspelt", at="//xacro:insert_block", code="xacro-name-unknown",
         edit=lambda node: node.set("name", "plcae")),
-    Mutation(name="xacro: include misspelt", at="/robot", code="file-missing",
+    Mutation(name="xacro: include misspelt", at="/robot", code="include-absent",
         edit=insert(f"<xacro:include {_XACRO} filename='wheels.xacro'/>")),
     Mutation(name="xacro: call without a prefix", at="//xacro:wheel", code="xacro-prefix",
         edit=lambda node: setattr(node, "tag", "wheel")),
