@@ -7,8 +7,7 @@ import math
 from collections.abc import Mapping
 
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import wheel_place
-from cartwheel.geometry import rotate
+from cartwheel.checks.wheels import wheel_axis, wheel_place
 
 FORWARD = (1.0, 0.0)
 _ROLLS = 0.2
@@ -38,7 +37,7 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
         and (joint := robot.joints.get(name)) is not None
         and joint.type in ("continuous", "revolute")
         and joint.child in robot.placed
-        and abs((axis := _axis(robot, name))[2]) <= _HORIZONTAL
+        and abs((axis := wheel_axis(robot, robot.joints[name]))[2]) <= _HORIZONTAL
     ]
     if not lines:
         return FORWARD
@@ -52,11 +51,6 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     else:
         sign = _side(robot, forward) or _rolling(robot, speeds, forward)
     return sign * forward[0], sign * forward[1]
-
-
-def _axis(robot: Robot, name: str) -> tuple[float, float, float]:
-    joint = robot.joints[name]
-    return rotate(wheel_place(robot, joint).orientation, joint.axis.xyz)
 
 
 def _side(robot: Robot, forward: tuple[float, float]) -> float:
@@ -90,6 +84,6 @@ def _rolling(robot: Robot, speeds: Mapping[str, float], forward: tuple[float, fl
         math.copysign(1.0, speed * (axis[1] * forward[0] - axis[0] * forward[1]))
         for name, speed in speeds.items()
         if name in robot.joints and robot.joints[name].child in robot.placed
-        for axis in [_axis(robot, name)]
+        for axis in [wheel_axis(robot, robot.joints[name])]
     )
     return math.copysign(1.0, rolled)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, is_dataclass
 from typing import Any, ClassVar, Generic, TypeVar, get_args
 
 from cartwheel.codes import devices
 from cartwheel.component import Component, Scope, Shared
-from cartwheel.description.model import PluginTag, Sensor
+from cartwheel.description.model import Element, PluginTag, Sensor
 from cartwheel.dialects.tags import SMALLEST, invalid, read
 from cartwheel.errors import Origin
 from cartwheel.graph import Action, ActionTopics, Goal
@@ -17,6 +17,7 @@ from cartwheel.graph.actionlib import STATUS_RATE
 from cartwheel.simulation import Part
 
 C = TypeVar("C")
+T = TypeVar("T")
 
 
 @dataclass(kw_only=True, slots=True)
@@ -71,10 +72,7 @@ class Plugin(Component, Generic[C]):
         self.tag = tag
         self.sensor: Sensor | None = sensor
         super().__init__(self._scope(part, shared, tag))
-        self.config: C
-        self.config, diagnostics = read(self.parameters, tag.element)
-        for diagnostic in diagnostics:
-            part.report(diagnostic)
+        self.config: C = self.read_tags(self.parameters, tag.element)
         try:
             self.configure()
         except BaseException:
@@ -178,6 +176,17 @@ class Plugin(Component, Generic[C]):
     def remaps(self, name: str) -> bool:
         """Whether the tag remaps this private name (``out`` for ``~/out``)."""
         return name in self.scope.remappings
+
+    def read_tags(self, cls: type[T], element: Element, *, ignore: Iterable[str] = ()) -> T:
+        """Fills a parameter dataclass from an element and reports its diagnostics; see `read`.
+
+        Raises:
+            PluginError: A value has the wrong type, or a required tag is missing.
+        """
+        config, diagnostics = read(cls, element, ignore=ignore)
+        for diagnostic in diagnostics:
+            self.part.report(diagnostic)
+        return config
 
     def warn_ignored(self, name: str, reason: str) -> None:
         """Warns that a tag has no effect; `reason` follows in the message."""

@@ -37,6 +37,30 @@ class PidGains:
     """Maximum output, N m or N."""
 
 
+def limited_gains(
+    p: float, i: float, d: float, *, integral: tuple[float, float], output: tuple[float, float]
+) -> PidGains:
+    """Gains with a limited integral term, as in gz-math: a maximum is at least its minimum.
+
+    Args:
+        p: Proportional gain; see `PidGains`.
+        i: Integral gain.
+        d: Derivative gain.
+        integral: Minimum and maximum of the integral term, N m or N.
+        output: Minimum and maximum output, N m or N.
+    """
+    return PidGains(
+        p=p,
+        i=i,
+        d=d,
+        i_min=integral[0],
+        i_max=max(integral),
+        stored="limited term",
+        u_min=output[0],
+        u_max=max(output),
+    )
+
+
 class DampedEffort(NamedTuple):
     """An effort that decreases with the joint's velocity: ``effort - damping * velocity``.
 

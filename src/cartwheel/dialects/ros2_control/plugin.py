@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from cartwheel.codes import devices, files, running
+from cartwheel.codes import devices, running
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
@@ -167,12 +167,9 @@ class Ros2Control(ControlPlugin):
         if not path.is_file():
             packages = Packages(None if origin.file.startswith("<") else Path(origin.file))
             other = packages.elsewhere(text, origin)
+            for diagnostic in packages.moves():
+                self.part.report(diagnostic)
             if other is not None:
-                self.warn(
-                    files.FILE_ELSEWHERE,
-                    f'"{text}" does not exist, so "{other}" is used',
-                    values={"name": text, "used": str(other)},
-                )
                 return other
             self.warn(
                 devices.CONTROLLERS_FILE_UNREADABLE,

@@ -10,12 +10,11 @@ from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links, wheel_place
+from cartwheel.checks.wheels import lowest, wheel_axis, wheel_joints, wheel_links, wheel_place
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
 from cartwheel.description.model import Joint, Link
 from cartwheel.errors import Diagnostic
-from cartwheel.geometry import rotate
 
 SLIPPERY = 0.01
 _PARALLEL = 0.95
@@ -80,10 +79,10 @@ def _rolls_only_forward(robot: Robot, holder: Joint) -> bool:
     """Whether a wheel's axle is parallel to the driven one, but not above it or on a swivel."""
     if holder.type != "continuous":
         return False
-    axis = rotate(wheel_place(robot, holder).orientation, holder.axis.xyz)
+    axis = wheel_axis(robot, holder)
     for driven in wheel_joints(robot):
         same_body = robot.rigid_root(driven.parent) == robot.rigid_root(holder.parent)
-        axle = rotate(wheel_place(robot, driven).orientation, driven.axis.xyz)
+        axle = wheel_axis(robot, driven)
         between = np.subtract(
             wheel_place(robot, holder).position, wheel_place(robot, driven).position
         )

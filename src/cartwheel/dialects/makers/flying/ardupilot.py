@@ -11,12 +11,12 @@ from cartwheel.description.model import Element, Sensor
 from cartwheel.devices.autopilots.ardupilot import ArduPilot, ArduPilotConfig
 from cartwheel.devices.autopilots.channels import ChannelConfig
 from cartwheel.devices.autopilots.datagrams import HOST
-from cartwheel.devices.joints.pid import PidGains
+from cartwheel.devices.joints.pid import PidGains, limited_gains
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.makers.flying.ports import MOST_PORT, check_address
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.sdf.imu import read_inertial_unit
-from cartwheel.dialects.tags import SMALLEST, invalid, missing, read, tag, vector
+from cartwheel.dialects.tags import SMALLEST, invalid, missing, tag, vector
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Pose
 
@@ -229,9 +229,7 @@ class ArduPilotPlugin(Plugin[ArduPilotParameters]):
         Raises:
             PluginError: A value is invalid.
         """
-        config, diagnostics = read(_ControlTags, element, ignore=_NO_EFFECT)
-        for diagnostic in diagnostics:
-            self.part.report(diagnostic)
+        config = self.read_tags(_ControlTags, element, ignore=_NO_EFFECT)
         stated = element.attribute("channel") or element.attribute("id") or str(place)
         if not stated.strip().isdecimal() or int(stated) >= 32:
             raise invalid("control", stated, "the number of a channel from 0 to 31", element.origin)
@@ -290,9 +288,7 @@ class ArduPilotPlugin(Plugin[ArduPilotParameters]):
         """
         topics: dict[int, str] = {}
         for element in self.tag.element.find_all("sensor"):
-            config, diagnostics = read(_RangeTags, element)
-            for diagnostic in diagnostics:
-                self.part.report(diagnostic)
+            config = self.read_tags(_RangeTags, element)
             if not 1 <= config.index <= _MOST_RANGES or config.index in topics:
                 wanted = f"a different number from 1 to {_MOST_RANGES} for each rangefinder"
                 raise invalid("index", config.index, wanted, element.origin)
@@ -304,15 +300,12 @@ class ArduPilotPlugin(Plugin[ArduPilotParameters]):
 
 
 def _gains(config: _ControlTags) -> PidGains:
-    return PidGains(
-        p=config.p,
-        i=config.i,
-        d=config.d,
-        i_min=config.i_min,
-        i_max=max(config.i_min, config.i_max),
-        stored="limited term",
-        u_min=config.cmd_min,
-        u_max=max(config.cmd_min, config.cmd_max),
+    return limited_gains(
+        config.p,
+        config.i,
+        config.d,
+        integral=(config.i_min, config.i_max),
+        output=(config.cmd_min, config.cmd_max),
     )
 
 

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Literal, TypeVar
+from typing import ClassVar, Literal
 
 from cartwheel.codes import devices
 from cartwheel.description.model import Element, PluginTag, Sensor
 from cartwheel.devices.autopilots.channels import ChannelConfig
 from cartwheel.devices.autopilots.px4 import MotorConfig, Px4, Px4Config
-from cartwheel.devices.joints.pid import PidGains
+from cartwheel.devices.joints.pid import PidGains, limited_gains
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.makers.flying.ports import MOST_PORT, check_address
 from cartwheel.dialects.makers.flying.px4_gps import GPS_PLUGIN, gps_topics
 from cartwheel.dialects.makers.flying.px4_sensors import px4_topic
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import invalid, read, tag
+from cartwheel.dialects.tags import invalid, tag
 
-T = TypeVar("T")
 _OUTPUTS = 16
 _ANY_ADDRESS = "INADDR_ANY"
 _KINDS: dict[str, Literal["velocity", "position", "exact position", "message"]] = {
@@ -230,7 +229,7 @@ class Px4Interface(Plugin[Px4Parameters]):
         channels, disarmed = [], []
         group = self.tag.element.find("control_channels")
         for element in group.find_all("channel") if group is not None else ():
-            config = self._read(_ChannelTags, element)
+            config = self.read_tags(_ChannelTags, element)
             if config.index in motors:
                 wanted = "a different number for each channel"
                 raise invalid("input_index", config.index, wanted, element.origin)
@@ -274,7 +273,7 @@ class Px4Interface(Plugin[Px4Parameters]):
                 )
             return None
         pid = element.find("joint_control_pid")
-        gains = self._read(_PidTags, pid) if pid is not None else _PidTags()
+        gains = self.read_tags(_PidTags, pid) if pid is not None else _PidTags()
         default = f"control_position_gztopic_{config.index}"
         return ChannelConfig(
             number=config.index,
@@ -288,22 +287,12 @@ class Px4Interface(Plugin[Px4Parameters]):
             most_error=gains.most_error or math.inf,
         )
 
-    def _read(self, tags: type[T], element: Element) -> T:
-        """Reads the tags in an element, and reports what is wrong with them."""
-        config, diagnostics = read(tags, element)
-        for diagnostic in diagnostics:
-            self.part.report(diagnostic)
-        return config
-
 
 def _gains(config: _PidTags) -> PidGains:
-    return PidGains(
-        p=config.p,
-        i=config.i,
-        d=config.d,
-        i_min=config.i_min,
-        i_max=max(config.i_min, config.i_max),
-        stored="limited term",
-        u_min=config.cmd_min,
-        u_max=max(config.cmd_min, config.cmd_max),
+    return limited_gains(
+        config.p,
+        config.i,
+        config.d,
+        integral=(config.i_min, config.i_max),
+        output=(config.cmd_min, config.cmd_max),
     )
