@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-import contextlib
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import Literal
 
 from cartwheel import description as descriptions
+from cartwheel.api.messaging import MessagingWorld, several
 from cartwheel.api.model import Model
-from cartwheel.api.running import RunningWorld
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
-from cartwheel.graph import Graph, Mailbox, Publisher, check_message
-from cartwheel.messages import from_dict, from_flat
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
-from cartwheel.simulation.limits import check_size
-
-if TYPE_CHECKING:
-    from cartwheel.bridges.recording import Encoding, Recorder
-
-T = TypeVar("T", bound=str | Path)
 
 
-class World(RunningWorld):
+class World(MessagingWorld):
     """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.
@@ -87,7 +77,7 @@ class World(RunningWorld):
         without: str | Sequence[str] = (),
     ) -> None:
         connections = plan = None
-        files = _several(record)
+        files = several(record)
         # A port may be 0, which selects a free port.
         if ros1 or ros2 or foxglove is not False or viewer is not False or files:
             from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, port
@@ -103,10 +93,10 @@ class World(RunningWorld):
                 viewer_port=port(viewer, None),
                 recordings=tuple(Path(file) for file in files),
                 recording=RecordingOptions(
-                    topics=tuple(_several(record_topics)), overwrite=overwrite
+                    topics=tuple(several(record_topics)), overwrite=overwrite
                 ),
             )
-            connections = Connections(host=host, allow_origin=_several(allow_origin))
+            connections = Connections(host=host, allow_origin=several(allow_origin))
         session: Session | None = None
         try:
             if connections is not None and plan is not None:
@@ -118,16 +108,16 @@ class World(RunningWorld):
                 seed=seed,
                 strict=strict,
                 lenient=lenient,
-                bridge=[Path(file) for file in _several(bridge)],
-                allow_path=[Path(folder) for folder in _several(allow_path)],
-                plugins=[Path(file) for file in _several(plugins)],
-                package_path=[Path(folder) for folder in _several(package_path)],
-                without=_several(without),
+                bridge=[Path(file) for file in several(bridge)],
+                allow_path=[Path(folder) for folder in several(allow_path)],
+                plugins=[Path(file) for file in several(plugins)],
+                package_path=[Path(folder) for folder in several(package_path)],
+                without=several(without),
             )
             super().__init__(
                 session,
                 host=host,
-                allow_origin=_several(allow_origin),
+                allow_origin=several(allow_origin),
                 connections=connections,
                 plan=plan,
             )
@@ -137,12 +127,6 @@ class World(RunningWorld):
             if session is not None:
                 session.close()
             raise
-
-    @property
-    def graph(self) -> Graph:
-        """The world's topics and services."""
-        self.lock.check()
-        return self.session.graph
 
     @property
     def time(self) -> float:
@@ -195,7 +179,7 @@ class World(RunningWorld):
             PluginError: A plugin cannot be used, the model has no controller manager, or a
                 controller file is invalid.
         """
-        folders = [Path(folder) for folder in _several(package_path)]
+        folders = [Path(folder) for folder in several(package_path)]
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(
                 robot,
@@ -204,7 +188,7 @@ class World(RunningWorld):
             )
         given = any((x, y, z, roll, pitch, yaw))
         pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
-        files = [Path(file) for file in _several(controllers)]
+        files = [Path(file) for file in several(controllers)]
         with self.used(change=True):
             spawned = self.session.spawn(
                 robot, name=name, pose=pose, controllers=files, package_path=folders
@@ -221,177 +205,7 @@ class World(RunningWorld):
             self.session.simulation.pose(name)
         return Model(self, name)
 
-    def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
-        """Publishes a message on an existing topic.
-
-        Args:
-            topic: Topic name.
-            message: A message or a mapping of its fields. The default message contains zeros.
-            fields: The fields instead of `message`. Join nested names with ``_``: ``linear_x=0.5``.
-
-        Raises:
-            UnknownNameError: The topic does not exist.
-            SimulationError: The world is closed.
-            GraphError: The message type does not have a given field, or `message` is not a message
-                of the topic's type.
-        """
-        self.check_open()
-        kind = self.graph.topic(topic).type
-        if fields:
-            message = from_flat(kind, fields)
-        elif message is None or isinstance(message, Mapping):
-            message = from_dict(kind, message or {})
-        else:
-            check_message(topic, kind, message)
-        self.graph.publish(topic, kind, message)
-
-    def subscribe(
-        self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
-    ) -> None:
-        """Calls `callback` with each message during `run`.
-
-        An exception in the callback stops `run` after the current step. The next `run` continues
-        from there.
-
-        Args:
-            topic: Topic name.
-            callback: Receives each message. It must not change the message.
-            type: As in `advertise`. Required if the topic does not exist yet.
-
-        Raises:
-            UnknownNameError: The topic does not exist and no type is given, or the type does not
-                exist.
-            SimulationError: The world is closed.
-            GraphError: The topic has a different type, or the definition of the type is invalid.
-        """
-        self.check_open()
-        simulation = self.session.simulation
-
-        def guarded(message: Any) -> None:
-            try:
-                callback(message)
-            except BaseException as error:  # noqa: BLE001 - raised by `run`
-                simulation.faults.defer(error)
-
-        full = None if type is None else self.message_class(type).__msgtype__
-        self.graph.subscribe(topic, guarded, type_name=full)
-
-    def advertise(self, topic: str, type: str) -> Publisher:
-        """Advertises a topic, and returns its publisher.
-
-        `Publisher.publish` raises a `GraphError` for a value that is not a message of the type.
-
-        Args:
-            topic: Topic name.
-            type: ``geometry_msgs/msg/Twist``, or a type that a package of the workspace defines.
-
-        Raises:
-            UnknownNameError: The type does not exist.
-            SimulationError: The world is closed.
-            GraphError: The topic exists with a different type, or the definition of the type is
-                invalid.
-        """
-        self.check_open()
-        full = self.message_class(type).__msgtype__
-        return self.graph.advertise(topic, full, checked=True)
-
-    def message_class(self, type: str) -> Any:
-        """Returns the class of a message type: a dataclass with the message's fields.
-
-        Args:
-            type: ``geometry_msgs/msg/Twist``, or a type that a package of the workspace defines.
-
-        Raises:
-            UnknownNameError: The type does not exist.
-            GraphError: The definition of the type is invalid.
-        """
-        return self.graph.types.message_class(str(type))
-
-    def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
-        """Buffers the topic's messages, to be read after `run`.
-
-        `get` waits only if a different thread runs the world. In the thread that runs it, no
-        message can arrive while `get` waits, so an empty mailbox returns None at once.
-
-        Args:
-            topic: Name of an existing topic.
-            size: Capacity in messages, at least 1. A full mailbox drops the oldest message.
-
-        Raises:
-            UnknownNameError: The topic does not exist.
-            SimulationError: The world is closed.
-            CartwheelError: `size` is out of range.
-        """
-        self.check_open()
-        check_size(size)
-        return self.graph.mailbox(topic, size=size, can_come=self._run_by_another)
-
-    def _run_by_another(self) -> bool:
-        """Whether a different thread ran the world last and is still alive."""
-        owner = self.session.simulation.owner
-        return owner != threading.get_ident() and any(
-            thread.ident == owner for thread in threading.enumerate()
-        )
-
-    @contextlib.contextmanager
-    def record(
-        self,
-        file: str | Path,
-        *,
-        topics: str | Sequence[str] = (),
-        encoding: Encoding | None = None,
-        overwrite: bool = False,
-    ) -> Iterator[Recorder]:
-        """Records messages within a ``with`` block.
-
-        Args:
-            file: ``.mcap``, ``.bag``, ``.db3``, or a folder for a ROS 2 bag.
-            topics: Patterns such as ``/camera/*``, ``re:/imu|/odom``, ``!/tf``; empty for all
-                topics.
-            encoding: Message encoding in ``.mcap`` files: ``ros2`` or ``ros1``.
-            overwrite: Replace an existing file.
-
-        Raises:
-            RecordingError: The file cannot be written. Failures during the recording are raised
-                when the block ends.
-        """
-        from cartwheel.bridges.recording import Recorder
-        from cartwheel.gazebo.robot_descriptions import RobotDescriptions
-
-        simulation = self.session.simulation
-        recorder = Recorder(
-            self.graph,
-            file,
-            time_ns=lambda: simulation.time_ns,
-            topics=_several(topics),
-            encoding=encoding,
-            overwrite=overwrite,
-            notes=self.session.notes,
-            report=simulation.report,
-        )
-        robots = None
-        try:
-            with self.lock:
-                if self._connections is None or not self._connections.assembly.describes_robots:
-                    robots = RobotDescriptions(simulation, self.graph)
-                recorder.start()
-                simulation.drain()
-            try:
-                yield recorder
-            finally:
-                recorder.close()
-        finally:
-            with self.lock:
-                simulation.drain()
-                if robots is not None:
-                    robots.close()
-
     def reset(self) -> None:
         """Resets simulation time and all models to their initial state."""
         with self.used(change=True) as simulation:
             simulation.reset()
-
-
-def _several(values: T | Sequence[T]) -> list[T]:
-    """The items of a sequence. A single text or path is one item, not a sequence of characters."""
-    return [values] if isinstance(values, str | Path) else list(values)
