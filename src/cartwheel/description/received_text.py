@@ -8,7 +8,8 @@ from typing import NoReturn
 
 from cartwheel.codes.files import XACRO_NOT_EXPANDED
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.files.packages import FIND, Packages
+from cartwheel.description.files.other_places import FIND
+from cartwheel.description.files.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
 
 _COMMAND = re.compile(r"\$\(\s*([\w-]+)")

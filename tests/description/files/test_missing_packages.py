@@ -5,6 +5,7 @@ from tests.coded import raises
 
 from cartwheel import World
 from cartwheel.codes.files import (
+    FILE_ELSEWHERE,
     FILE_MISSING,
     INCLUDE_ABSENT,
     LINK_RECONNECTED,
@@ -157,3 +158,44 @@ def test_the_hint_says_how_to_get_the_package(load, monkeypatch):
     assert "Install the package with apt" in hint()
     monkeypatch.setenv("ROS_DISTRO", "noetic")
     assert "sudo apt install ros-noetic-laser-x. Or" in hint()
+
+
+@pytest.mark.parametrize("package", ["$(find former)", "package://former", "$(find laser_x)"])
+def test_an_include_from_the_own_package_under_its_former_name(load, package):
+    robot = load(
+        INCLUDE.format(f"{package}/urdf/base.xacro"),
+        INCLUDE.format(f"{package}/urdf/absent.xacro"),
+        base=BASE,
+    )
+    assert [link.name for link in robot.links] == ["base"]
+    ((line, values),) = reported(robot, FILE_ELSEWHERE)
+    assert line == 1
+    assert values["name"] == f"{package}/urdf/base.xacro"
+    assert values["used"].endswith("src/mine/urdf/base.xacro")
+    assert [line for line, _ in reported(robot, INCLUDE_ABSENT)] == [2]
+
+
+@pytest.mark.parametrize("package", ["$(find former)", "package://former"])
+def test_an_include_under_a_former_name_never_leads_back_to_itself(load, package):
+    robot = load(
+        BASE,
+        INCLUDE.format(f"{package}/urdf/robot.xacro"),
+        INCLUDE.format(f"{package}/urdf/part.xacro"),
+        part=INCLUDE.format(f"{package}/urdf/robot.xacro") + '<link name="part"/>',
+    )
+    assert {link.name for link in robot.links} == {"base", "part"}
+    assert len(reported(robot, INCLUDE_ABSENT)) == 2
+    ((_, values),) = reported(robot, FILE_ELSEWHERE)
+    assert values["name"] == f"{package}/urdf/part.xacro"
+
+
+def test_a_yaml_file_of_the_own_package_under_its_former_name(load, tmp_path):
+    (tmp_path / "src" / "mine" / "size.yaml").write_text("mass: 2.5")
+    robot = load(
+        '<xacro:property name="size" value="${xacro.load_yaml(\'$(find former)/size.yaml\')}"/>',
+        BASE.replace('mass value="1"', "mass value=\"${size['mass']}\""),
+    )
+    assert robot.links[0].inertial.mass == 2.5
+    assert [values["name"] for _, values in reported(robot, FILE_ELSEWHERE)] == [
+        "$(find former)/size.yaml"
+    ]

@@ -289,6 +289,8 @@ def test_large_trees_are_not_walked(tmp_path, monkeypatch):
         "file:///home/me/ws/src/my_robot/meshes/base.stl",
         "my_robot/meshes/base.stl",
         "package://former_name/meshes/base.stl",
+        "$(find former_name)/meshes/base.stl",
+        "$(find-pkg-share former_name)/meshes/base.stl",
     ],
 )
 def test_a_file_of_another_computer_is_found_in_its_package(tmp_path, uri):
@@ -310,6 +312,7 @@ def test_a_file_of_another_computer_is_found_in_its_package(tmp_path, uri):
         "/home/me/ws/src/my_robot/../../../secret.stl",
         "../secret.stl",
         "package://former_name/../../../secret.stl",
+        "$(find former_name)/../../../secret.stl",
         "http://localhost/my_robot/meshes/base.stl",
         "/home/me/other/meshes/base.stl",
     ],

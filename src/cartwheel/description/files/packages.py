@@ -7,8 +7,7 @@ Then the environment variables of ROS 1, ROS 2 and Gazebo are used.
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
@@ -20,7 +19,7 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.files import fuel
 from cartwheel.description.files.install_rules import source_of
 from cartwheel.description.files.missing_packages import Advice, how_to_install
-from cartwheel.description.files.other_places import other_places
+from cartwheel.description.files.other_places import FIND, how_to_refer_to, other_places
 from cartwheel.description.files.package_folders import (
     around,
     is_dir,
@@ -42,7 +41,6 @@ from cartwheel.description.files.readable_files import (
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
 _RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
-FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 
 
 class Packages:
@@ -118,7 +116,13 @@ class Packages:
         return found
 
     def resolve(
-        self, uri: str, origin: Origin | None = None, *, what: str = "file", folder: bool = False
+        self,
+        uri: str,
+        origin: Origin | None = None,
+        *,
+        what: str = "file",
+        folder: bool = False,
+        without: Collection[str] = (),
     ) -> Path:
         """The existing file or model folder for a URI.
 
@@ -128,6 +132,7 @@ class Packages:
             origin: Origin of the URI.
             what: What it is, for the error.
             folder: Whether a folder is also accepted, as for an included model.
+            without: Files that cannot be meant; see `elsewhere`.
 
         Raises:
             DescriptionError: The file was not found; the hint lists the searched folders.
@@ -135,8 +140,9 @@ class Packages:
         try:
             candidates = list(dict.fromkeys(self._candidates(uri.strip(), origin)))
         except DescriptionError as error:
-            missing = error.code is codes.FILE_MISSING
-            other = self.elsewhere(uri.strip(), origin) if missing else None
+            if error.code is not codes.FILE_MISSING:
+                raise
+            other = self.elsewhere(uri.strip(), origin, without=without)
             if other is None:
                 raise
             return other
@@ -147,7 +153,7 @@ class Packages:
                     continue
                 if is_file(each) or (folder and each == path and is_dir(each)):
                     return each
-        other = self.elsewhere(uri, origin)
+        other = self.elsewhere(uri, origin, without=without)
         if other is not None:
             return other
         if self.reach is not None and not any(map(self.may_read, candidates)):
@@ -171,8 +177,15 @@ class Packages:
                 raise _missing("package", package, message, origin, known)
         raise _missing(what, uri, f'the {what} "{uri}" does not exist', origin, _absent(candidates))
 
-    def elsewhere(self, uri: str, origin: Origin | None) -> Path | None:
+    def elsewhere(
+        self, uri: str, origin: Origin | None, *, without: Collection[str] = ()
+    ) -> Path | None:
         """The file that is meant by a path of another computer, such as its author's.
+
+        Args:
+            uri: The statement in the description.
+            origin: Origin of the statement.
+            without: Files that cannot be meant, such as those that contain the statement.
 
         Returns:
             The file, which is noted in `found_elsewhere`; None if there is none.
@@ -182,8 +195,9 @@ class Packages:
         )
         above = dict.fromkeys(each for start in near for each in (start, *start.parents))
         candidates = other_places(uri, filter(self._is_ours, above), self._search.package)
+        excluded = {real(Path(each)) for each in without}
         for path in candidates:
-            if is_file(path) and self.may_read(path):
+            if is_file(path) and self.may_read(path) and real(path) not in excluded:
                 self.found_elsewhere.setdefault(uri, (path, origin))
                 return path
         return None
@@ -197,8 +211,7 @@ class Packages:
             yield codes.FILE_ELSEWHERE.diagnostic(
                 f'"{uri}" does not exist, so "{path}" is used',
                 origin=origin,
-                hint="Write package://NAME/FILE, or $(find NAME)/FILE in xacro, where NAME is the "
-                "name of the package, or a path relative to this file.",
+                hint=how_to_refer_to(path),
                 values={"name": uri, "used": str(path)},
             )
 

@@ -6,12 +6,13 @@ defined. Afterwards, the remaining links are connected again, so that the robot 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from cartwheel.codes import files as codes
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.files.packages import FIND, Packages
+from cartwheel.description.files.other_places import FIND
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.losses import loss
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
 from cartwheel.similar_names import suggestion
@@ -64,19 +65,24 @@ class Absences:
                 raise
             return f"$(find {package})"
 
-    def leave_out_include(self, name: str, path: str, origin: Origin) -> None:
+    def leave_out_include(
+        self, name: str, path: str, origin: Origin, *, active: Collection[str]
+    ) -> None:
         """Reports an include whose file does not exist.
 
         Args:
             name: The file as the include states it, with its expressions evaluated.
             path: The absolute path.
             origin: The include.
+            active: The files that contain the include, outermost first.
         """
         found = FIND.search(name)
         package = found[1] if found else ""
         self.files.append(AbsentFile(name, package))
         try:
-            self.packages.resolve(name if package else path, origin, what="included file")
+            self.packages.resolve(
+                name if package else path, origin, what="included file", without=active
+            )
         except DescriptionError as error:
             self._first = self._first or error
             self.diagnostics.append(

@@ -73,13 +73,17 @@ def replace_functions(module: ModuleType, run: Run) -> None:
             )
         return run.parse(xml.read_bytes(path), xml.shown_path(path))
 
+    def active() -> list[str]:
+        """The file that is being read, and the files that include it."""
+        return [each for each in space.filestack if each]
+
     def abs_filename_spec(given: str) -> str:
         path = original.abs_filename_spec(given)
         if glob.has_magic(path):
             return str(path)
         found = source_of(Path(path))
         if not found.exists():
-            found = run.packages.elsewhere(given, run.origin()) or found
+            found = run.packages.elsewhere(given, run.origin(), without=active()) or found
         return str(found)
 
     def process_include(
@@ -97,7 +101,7 @@ def replace_functions(module: ModuleType, run: Run) -> None:
         ):
             original.process_include(element, macros, symbols, expand)
             return
-        run.absences.leave_out_include(name, path, element.origin)
+        run.absences.leave_out_include(name, path, element.origin, active=active())
         replace_node(element, by=None)
 
     def leave_out_call(node: Element, symbols: object) -> None:
