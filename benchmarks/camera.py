@@ -126,7 +126,7 @@ def _ours(world: cw.World, size: tuple[int, int]) -> Callable[[], object]:
     lens = dataclasses.replace(camera, width=size[0], height=size[1])
     handle = CameraHandle("cart_0", "camera1", lens)
     handle.bind(simulation.model, simulation.data)
-    return lambda: simulation.engine.renderer.render(simulation.data, handle)
+    return lambda: simulation.engine.renderer.render(handle)
 
 
 class _Theirs:
@@ -134,14 +134,14 @@ class _Theirs:
 
     def __init__(self, world: cw.World, size: tuple[int, int], *, defaults: bool) -> None:
         simulation = world.session.simulation
-        model = copy.deepcopy(simulation.model)
+        visuals, self._data = simulation.engine.visuals.current()
+        model = copy.deepcopy(visuals)
         model.vis.global_.offwidth, model.vis.global_.offheight = size
         fresh = mujoco.MjSpec().compile()
         if defaults:
             for name in ("offsamples", "shadowsize"):
                 setattr(model.vis.quality, name, getattr(fresh.vis.quality, name))
             model.light_castshadow[:] = 1
-        self._data = simulation.data
         self._renderer: Any = mujoco.Renderer(model, height=size[1], width=size[0])
 
     def render(self) -> object:

@@ -132,7 +132,7 @@ def test_a_small_plane_is_drawn_as_large_as_it_says_and_a_ground_to_the_horizon(
         <plane><normal>1 0 0</normal><size>{written}</size></plane></geometry></visual></link>
         </model>"""
     )
-    model = make.world(sign, ground=None).session.simulation.model
+    model, _ = make.world(sign, ground=None).session.simulation.engine.visuals.current()
     assert model.geom_size[0, :2] == pytest.approx(half)
 
 

@@ -148,11 +148,12 @@ def test_a_lone_triangle_is_drawn_as_it_is_and_is_solid(make, tmp_path):
         f"""<model name="shard"><static>1</static><link name="l">
         <visual name="v">{shape}</visual><collision name="c">{shape}</collision></link></model>"""
     )
-    model = make.world(shard).session.simulation.model
-    body = model.body("shard::l").id
-    drawn, solid = [i for i in range(model.ngeom) if model.geom_bodyid[i] == body]
-    assert model.mesh_facenum[model.geom_dataid[drawn]] == 1
-    assert (model.geom_contype[drawn], model.geom_conaffinity[drawn]) == (0, 0)
+    simulation = make.world(shard).session.simulation
+    visuals, _ = simulation.engine.visuals.current()
+    (drawn,) = np.flatnonzero(visuals.geom_bodyid == visuals.body("shard::l").id)
+    assert visuals.mesh_facenum[visuals.geom_dataid[drawn]] == 1
+    model = simulation.model
+    (solid,) = np.flatnonzero(model.geom_bodyid == model.body("shard::l").id)
     # The engine takes no shape without a volume.
     assert model.geom(solid).name == "shard::l::c"
     assert model.mesh_facenum[model.geom_dataid[solid]] > 1
@@ -167,9 +168,9 @@ def test_a_plane_that_is_seen_on_a_moving_link_is_a_plate(make):
         <visual name="v"><pose>0.101 0 0 0 0 0</pose><geometry><plane><normal>1 0 0</normal>
         <size>0.1 0.06</size></plane></geometry></visual></link></model>"""
     )
-    model = make.world(label).session.simulation.model
-    (seen,) = [model.geom(i) for i in range(model.ngeom) if model.geom(i).group[0] == 1
-               and model.geom(i).bodyid[0] == model.body("label::l").id]  # fmt: skip
+    model, _ = make.world(label).session.simulation.engine.visuals.current()
+    body = model.body("label::l").id
+    (seen,) = [model.geom(i) for i in range(model.ngeom) if model.geom_bodyid[i] == body]
     assert seen.type[0] == mujoco.mjtGeom.mjGEOM_BOX
     axis = np.zeros(9)
     mujoco.mju_quat2Mat(axis, seen.quat)

@@ -16,6 +16,7 @@ from cartwheel.simulation.clock import Task, Topic, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
 from cartwheel.simulation.sensing.rendering import Renderer
+from cartwheel.simulation.sensing.visual_model import VisualModel
 from cartwheel.world.additions import Addition
 from cartwheel.world.build import step_of
 from cartwheel.world.contact import Bounce
@@ -56,7 +57,8 @@ class Engine:
         """Number of time resets."""
         self.model: Any = None
         self.data: Any = None
-        self.renderer = Renderer()
+        self.visuals = VisualModel()
+        self.renderer = Renderer(self.visuals)
         self.diagnostics: list[Diagnostic] = list(world.diagnostics)
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []
         self.on_fault: Callable[[object, BaseException], None] = _raise
@@ -72,6 +74,7 @@ class Engine:
     def close(self) -> None:
         """Frees rendering resources and removes all callbacks."""
         self.renderer.close()
+        self.visuals.forget()
         self.on_fault = _raise
         for listeners in (self.on_diagnostic, self.on_tasks, self.on_entries):
             listeners.clear()
@@ -116,7 +119,11 @@ class Engine:
             callback(diagnostic)
 
     def replace(
-        self, model: Any, alignments: Sequence[Alignment] = (), bounces: Sequence[Bounce] = ()
+        self,
+        model: Any,
+        alignments: Sequence[Alignment] = (),
+        bounces: Sequence[Bounce] = (),
+        compile_visuals: Callable[[], Any] | None = None,
     ) -> None:
         """Replaces the model and keeps the state of every joint that exists in both models.
 
@@ -124,6 +131,7 @@ class Engine:
             model: The MuJoCo model.
             alignments: Friction directions.
             bounces: Surfaces with restitution.
+            compile_visuals: See `VisualModel.bind`.
         """
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         data = mujoco.MjData(model)
@@ -135,7 +143,7 @@ class Engine:
         except SimulationError as error:
             self.report(error.diagnostic("warning"))
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
-        self.renderer.bind(model)
+        self.visuals.bind(model, data, compile_visuals)
 
     def forward(self) -> None:
         """Computes poses, contacts and forces for the current state, which does not change.

@@ -182,17 +182,19 @@ class Part(Requests):
         """An image from a camera, shape (height, width, 3), RGB.
 
         Raises:
+            WorldError: A visual cannot be built.
             SimulationError: OpenGL is missing, or was opened before a fork. The hint gives the fix.
         """
-        return self._engine.renderer.render(self._engine.data, camera)
+        return self._engine.renderer.render(camera)
 
     def render_with_depth(self, camera: CameraHandle) -> tuple[Image, Depth]:
         """The image, and depths along the camera's axis in m, shape (height, width).
 
         Raises:
+            WorldError: A visual cannot be built.
             SimulationError: OpenGL is missing, or was opened before a fork. The hint gives the fix.
         """
-        return self._engine.renderer.render_with_depth(self._engine.data, camera)
+        return self._engine.renderer.render_with_depth(camera)
 
     def count_command(self) -> None:
         """Counts an external action on the model; see `Simulation.recover`."""

@@ -389,9 +389,18 @@ class Requests:
         maximum: float,
         visuals: bool = False,
     ) -> RayHandle:
-        """Rays from a link into the world; see `RayHandle`."""
+        """Rays from a link into the world; see `RayHandle`.
+
+        With `visuals`, they hit visuals instead of collisions.
+        """
         handle = RayHandle(
-            self.name, link, pose, directions, minimum=minimum, maximum=maximum, visuals=visuals
+            self.name,
+            link,
+            pose,
+            directions,
+            minimum=minimum,
+            maximum=maximum,
+            visuals=self._engine.visuals if visuals else None,
         )
         self.handles.append(handle)
         return handle

@@ -2,7 +2,7 @@
 
 from cartwheel.world import mujoco_import  # noqa: F401 - before all others
 from cartwheel.world.additions import reports
-from cartwheel.world.build import Build, build
+from cartwheel.world.build import Build, build, build_visuals
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor
 from cartwheel.world.unused import unreadable, unused
 
@@ -12,6 +12,7 @@ __all__ = [
     "ModelEntry",
     "Motor",
     "build",
+    "build_visuals",
     "reports",
     "unreadable",
     "unused",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 
@@ -31,6 +31,8 @@ from cartwheel.world.shapes import Assets, pose_arguments, solids
 from cartwheel.world.tyres import Axle, Steering, axle_of, is_upright, lowest, tread_of, tyre
 from cartwheel.world.visuals import add_visual
 
+Shapes = Literal["all", "collisions", "visuals"]
+"""The shapes of a spec."""
 COLLISION_GROUP = 4
 TYRE_MASS = 1e-6
 """Mass of a tyre that slips on its wheel, kg: small enough to have no effect."""
@@ -65,6 +67,7 @@ class BodyBuilder:
         assets: Its meshes and textures.
         step: Time step, s.
         without: Additions to the description that are omitted.
+        shapes: The shapes to add.
     """
 
     def __init__(
@@ -73,11 +76,14 @@ class BodyBuilder:
         assets: Assets,
         step: float,
         without: Collection[Addition] = (),
+        shapes: Shapes = "all",
     ) -> None:
         self._spec = spec
         self._assets = assets
         self._step = step
         self._without = without
+        self._visuals = shapes != "collisions"
+        self._collisions = shapes != "visuals"
         self.added: list[Added] = []
         """What was added to the descriptions."""
         self.surfaces: list[contact.BuiltSurface] = []
@@ -181,13 +187,13 @@ class BodyBuilder:
             self._set_inertial(entry, body, link.name, link.inertial, moves=moves)
         if not link.gravity:
             body.gravcomp = 1.0
-        for visual in link.visuals:
+        for visual in link.visuals if self._visuals else ():
             add_visual(body, visual, self._assets, moves=moves)
         for light in link.lights:
             add_light(body, scoped(entry.name, link.name, light.name), light)
         if axle is not None and link.name in entry.slips:
             body = _add_tyre(entry, body, link, axle)
-        for collision in link.collisions:
+        for collision in link.collisions if self._collisions else ():
             name = scoped(entry.name, link.name, collision.name)
             shape, place = self._rounded(entry, link, collision, axle)
             there = link.pose @ place

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import warnings
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 
@@ -12,14 +10,23 @@ import numpy as np
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
-from cartwheel.errors import Origin, WorldError
+from cartwheel.errors import WorldError
 from cartwheel.world import chains, contact, dragging, joints, pairs
 from cartwheel.world.actuation import ROTOR_INERTIA
 from cartwheel.world.additions import Added, Addition
-from cartwheel.world.bodies import BodyBuilder
+from cartwheel.world.bodies import BodyBuilder, Shapes
 from cartwheel.world.entry import ModelEntry, scoped
-from cartwheel.world.lights import add_light
 from cartwheel.world.shapes import Assets
+from cartwheel.world.spec import (
+    DEFAULT_STEP,
+    compile_error,
+    compiled,
+    divide_floors,
+    empty_spec,
+    step_of,
+)
+
+__all__ = ["DEFAULT_STEP", "Build", "build", "build_visuals", "step_of"]
 
 LONGEST_CHAIN = 500
 """Maximum links in a chain: the compile time grows with the third power."""
@@ -27,18 +34,6 @@ MOST_CONTACTS = 10_000
 """Maximum initial contacts: beyond, a step takes seconds and the solver runs out of memory."""
 _CROWD = 60
 """Minimum number of shapes for the contact limit to be exceeded."""
-DEFAULT_STEP = 0.005
-"""s; see ``docs/physics.md`` for the reasons."""
-
-
-_MOST_AMBIENT = 0.4
-"""SDF's default. Worlds for new Gazebo state 1, which Gazebo's renderer dims; here it would leave
-no shading.
-"""
-_CELLS = 100
-"""Maximum grid cells on each side of a plane's centre."""
-_LEAST_CELL = 0.2
-"""Minimum size of a grid cell, m."""
 _SHORTEST = 0.01
 """Length used to judge the speed of a rotating body without a shape, m."""
 
@@ -57,16 +52,12 @@ class Build:
     xml: str | None = None
 
 
-def step_of(world: WorldDescription) -> float:
-    """The step length in s, from the world or the default."""
-    return world.physics.max_step_size or DEFAULT_STEP
-
-
 def build(
     world: WorldDescription,
     entries: Iterable[ModelEntry],
     *,
     without: Collection[Addition] = (),
+    shapes: Shapes = "all",
     xml: bool = False,
 ) -> Build:
     """Compiles a world.
@@ -75,6 +66,8 @@ def build(
         world: Gravity, lights, physics.
         entries: The models in the world, including the world's own.
         without: Additions to the descriptions that are omitted.
+        shapes: The shapes to compile. Visuals take most of the time, but only affect
+            `MjModel.dof_length`, by which the engine decides that a body is at rest.
         xml: Also write the model as MJCF.
 
     Raises:
@@ -82,23 +75,59 @@ def build(
     """
     entries = list(entries)
     try:
-        return _built(world, entries, without, xml=xml)
+        return _built(world, entries, without, shapes, xml=xml)
     except ValueError as error:
         # Duplicate names raise an error as soon as they are added.
         if not str(error).startswith("Error: "):
             raise
-        raise _explain(str(error), entries) from None
+        raise compile_error(str(error), entries) from None
+
+
+def build_visuals(
+    world: WorldDescription,
+    entries: Iterable[ModelEntry],
+    *,
+    without: Collection[Addition] = (),
+) -> mujoco.MjModel:
+    """Compiles the visuals of a world, for images.
+
+    The model has the same bodies, joints, cameras and lights as that of `build`, in the same order.
+
+    Args:
+        world: Lights and background.
+        entries: As for `build`.
+        without: As for `build`.
+
+    Raises:
+        WorldError: A visual cannot be built; the error has the origin if it is known.
+    """
+    entries = list(entries)
+    spec = empty_spec(world)
+    bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep, without, "visuals")
+    try:
+        for entry in entries:
+            bodies.add(entry)
+        model = compiled(spec)
+    except ValueError as error:
+        if not str(error).startswith("Error: "):
+            raise
+        raise compile_error(str(error), entries) from None
+    # Poses are those of another model's bodies, so none of these bodies may rest.
+    model.opt.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
+    divide_floors(model)
+    return model
 
 
 def _built(
     world: WorldDescription,
     entries: list[ModelEntry],
     without: Collection[Addition],
+    shapes: Shapes,
     *,
     xml: bool,
 ) -> Build:
-    spec = _empty(world)
-    bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep, without)
+    spec = empty_spec(world)
+    bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep, without, shapes)
     for entry in entries:
         _check_chain(entry)
         bodies.add(entry)
@@ -125,15 +154,15 @@ def _built(
         if pair.alignment is not None:
             alignments.append(pair.alignment)
     try:
-        model = _compiled(spec)
+        model = compiled(spec)
         # The engine estimates its memory from the degrees of freedom, but pairs of bodies also need
         # some.
         pairs_of_bodies = 2 * model.nbody**2
         if pairs_of_bodies > model.narena / 2:
             spec.memory = model.narena + 2 * pairs_of_bodies
-            model = _compiled(spec)
+            model = compiled(spec)
     except (ValueError, mujoco.FatalError) as error:
-        raise _explain(str(error), entries) from None
+        raise compile_error(str(error), entries) from None
     _check_contacts(model, entries)
     # A body without extent has only its velocity as a measure of rest; it must not sleep while
     # spinning.
@@ -143,7 +172,7 @@ def _built(
         for option in (spec.option, model.opt):
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
     _judge_without_rotors(model)
-    _divide_floors(model)
+    divide_floors(model)
     added = [*bodies.added, *softened.values(), *added]
     if "chain-drag" not in without:
         added += _drag(spec, model, entries)
@@ -186,13 +215,6 @@ def _drag(
                 value=coefficient,
                 origin=found[1].origin,
             )
-
-
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    with warnings.catch_warnings():
-        # The engine counts the same warnings at run time, and the simulation reports them.
-        warnings.simplefilter("ignore", UserWarning)
-        return spec.compile()
 
 
 def _check_chain(entry: ModelEntry) -> None:
@@ -262,97 +284,9 @@ def _judge_without_rotors(model: mujoco.MjModel) -> None:
         model.stat.meaninertia = max(float(masses.mean()), 1e-9)
 
 
-def _divide_floors(model: mujoco.MjModel) -> None:
-    """Splits planes into many cells in worlds with lamps: lighting is computed at cell corners.
-
-    Sunlight is uniform, so one cell is enough for it.
-    """
-    if (model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL).all():
-        return
-    planes = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
-    half = model.geom_size[planes, :2].max(axis=1)
-    model.geom_size[planes, 2] = np.maximum(half / _CELLS, _LEAST_CELL)
-
-
 def _felt(entries: Iterable[ModelEntry]) -> Iterator[str]:
     """Scoped names of links for which contacts are needed."""
     for entry in entries:
         for link in entry.description.links:
             if link.name in entry.felt or any(each.type == "contact" for each in link.sensors):
                 yield scoped(entry.name, link.name)
-
-
-def _empty(world: WorldDescription) -> mujoco.MjSpec:
-    spec = mujoco.MjSpec()
-    spec.modelname = world.name
-    spec.compiler.degree = False
-    spec.compiler.autolimits = False
-    spec.compiler.boundmass = 0
-    spec.option.timestep = step_of(world)
-    spec.option.gravity = list(world.gravity)
-    # Solves motors and contacts in one system. The other implicit integrators damp a servo only
-    # after the contacts were solved without it, so a driven wheel slips by the difference.
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
-    # This integrator includes damping in its system; mj_Euler, which completes a step after the
-    # state was read, would apply the damping twice.
-    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
-    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    spec.option.impratio = contact.FRICTION_IMPEDANCE_RATIO
-    spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
-    # Keeps lengths that MuJoCo scales by the model's extent in metres.
-    spec.stat.extent = 1.0
-    # The laser_retro of a geom.
-    spec.nuser_geom = 1
-    spec.visual.global_.offwidth = 16
-    spec.visual.global_.offheight = 16
-    # Multisampling and shadows would be most of the cost in a software renderer.
-    spec.visual.quality.offsamples = 0
-    spec.visual.quality.shadowsize = 0
-    ambient = [min(value, _MOST_AMBIENT) for value in world.ambient[:3]]
-    spec.visual.headlight.ambient = ambient
-    # A weak headlight keeps the shape of faces visible that point away from the sun.
-    spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
-    spec.visual.headlight.specular = [0, 0, 0]
-    sky = list(world.background[:3])
-    spec.add_texture(
-        name="sky",
-        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
-        rgb1=sky,
-        rgb2=sky,
-        width=1,
-        height=6,
-    )
-    for light in world.lights:
-        add_light(spec.worldbody, light.name, light)
-    return spec
-
-
-def _explain(message: str, entries: list[ModelEntry]) -> WorldError:
-    """The error for a message of MuJoCo's compiler, at the origin of the named element.
-
-    Only this function parses the compiler's messages.
-    """
-    text = message.splitlines()[0].removeprefix("Error: ")
-    for entry in entries:
-        for link in entry.description.links:
-            named: list[tuple[str, Origin]] = [(scoped(entry.name, link.name), link.origin)]
-            named += [(scoped(entry.name, link.name, c.name), c.origin) for c in link.collisions]
-            for name, origin in reversed(named):
-                if re.search(rf"'{re.escape(name)}'", message):
-                    return _refused(entry, text, origin)
-        for joint in entry.description.joints:
-            if re.search(rf"'{re.escape(scoped(entry.name, joint.name))}'", message):
-                return _refused(entry, text, joint.origin)
-    newest = entries[-1] if entries else None
-    return _refused(newest, text, newest.description.origin if newest else None)
-
-
-def _refused(entry: ModelEntry | None, text: str, origin: Origin | None) -> WorldError:
-    model = f'model "{entry.name}"' if entry else "the world"
-    return WorldError(
-        f"{model} cannot be simulated: {text}",
-        code=world_codes.MODEL_NOT_BUILT,
-        origin=origin,
-        values={"model": entry.name if entry else "", "reason": text},
-    )

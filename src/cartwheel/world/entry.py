@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription
@@ -103,3 +103,16 @@ class ModelEntry:
     """Links whose contacts must stay awake, besides those with contact sensors."""
     attachments: list[str] = field(default_factory=list)
     """Names of initially inactive welds; see `AttachmentHandle`."""
+
+    def copy(self) -> ModelEntry:
+        """A copy that later requests do not change."""
+        return replace(
+            self,
+            motors=dict(self.motors),
+            mimics=dict(self.mimics),
+            drives=list(self.drives),
+            cameras=list(self.cameras),
+            slips=dict(self.slips),
+            felt=list(self.felt),
+            attachments=list(self.attachments),
+        )

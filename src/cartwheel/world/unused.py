@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from cartwheel.codes import tags
 from cartwheel.codes import world as world_codes
 from cartwheel.description.meshes import load_mesh, standing_parts
 from cartwheel.description.model import Joint, Mesh, RobotDescription
@@ -12,6 +13,7 @@ from cartwheel.description.paint import paint_of
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.world import contact
 from cartwheel.world.shapes import picture_error
+from cartwheel.world.visuals import invisible
 
 _SURFACE = {
     "slip1": "friction is Coulomb friction, without slip",
@@ -84,12 +86,24 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
 
 
 def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
-    """A warning for each image that cannot be shown, at the first visual that uses it."""
+    """A warning for each visual that cannot be shown, or not with its image.
+
+    Each image is reported at the first visual that uses it.
+    """
     seen: set[Path | bytes | None] = {None}
     for visual in (visual for link in description.links for visual in link.visuals):
         images: set[Path | bytes | None] = {visual.material.texture}
         if isinstance(visual.shape, Mesh):
-            images = {paint_of(visual.material, part).image for part in load_mesh(visual.shape)}
+            parts = load_mesh(visual.shape)
+            images = {paint_of(visual.material, part).image for part in parts}
+            if any(invisible(part) for part in parts):
+                yield tags.VALUE_IGNORED.diagnostic(
+                    f'a part of the mesh of visual "{visual.name}" has an area below 1 µm², so it '
+                    "is ignored",
+                    origin=visual.origin,
+                    hint="Check the scale of the mesh.",
+                    values={"visual": visual.name, "stated": visual.shape.scale},
+                )
         for image in images - seen:
             assert image is not None
             seen.add(image)

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from cartwheel.description import meshes
 from cartwheel.description.model import Material, Mesh, Rgba, Visual
@@ -19,10 +20,26 @@ HIDDEN_GROUP = 5
 _LIT = 0.65
 """Visible fraction of a colour without lamps, lit by the ambient light and the headlight."""
 _GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
+_LEAST_AREA = 1e-12
+"""m²; the engine rejects meshes with an area below 1e-15 m²."""
+_SMALL = 1e-4
+"""m; a larger part of a mesh has a visible area."""
+
+
+def invisible(part: meshes.Submesh) -> bool:
+    """Whether a part of a mesh is too small for the engine and for any camera."""
+    if len(part.vertices) and float(np.ptp(part.vertices, axis=0).max()) > _SMALL:
+        return False
+    corners = np.asarray(part.vertices, dtype=np.float64)[part.faces]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(np.linalg.norm(doubled, axis=1).sum()) / 2 < _LEAST_AREA
 
 
 def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> None:
-    """Adds a visual to its body as a geom without collision; the body may move."""
+    """Adds a visual to its body as geoms without collision; the body may move.
+
+    Parts of a mesh that are `invisible` are omitted.
+    """
     common: dict[str, Any] = {
         "group": VISUAL_GROUP,
         "contype": 0,
@@ -35,6 +52,8 @@ def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> Non
     scale = material.texture_scale
     if isinstance(shape, Mesh):
         for index, part in enumerate(meshes.load_mesh(shape)):
+            if invisible(part):
+                continue
             paint = paint_of(material, part)
             laid = paint.image is not None and part.uv is not None
             mesh = assets.mesh(

@@ -25,9 +25,7 @@ def way(request, monkeypatch):
 
 
 def handle(world, directions, *, maximum=50.0, minimum=0.0):
-    made = RayHandle(
-        "eye", "link", Pose(), directions, minimum=minimum, maximum=maximum, visuals=False
-    )
+    made = RayHandle("eye", "link", Pose(), directions, minimum=minimum, maximum=maximum)
     simulation = world.session.simulation
     made.bind(simulation.model, simulation.data)
     return made

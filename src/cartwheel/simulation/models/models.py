@@ -144,7 +144,7 @@ class Models(Run):
 
     def in_sight(self, name: str, eyes: Sequence[Vec3], target: Vec3) -> list[bool]:
         """For each viewpoint in the world, m, whether the model is visible at the target point."""
-        return in_sight(self.engine.model, self.engine.data, name, eyes, target)
+        return in_sight(*self.engine.visuals.current(), name, eyes, target)
 
     def occupied(self) -> Space:
         """The space currently occupied by collision shapes."""

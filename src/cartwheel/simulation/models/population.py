@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
@@ -19,7 +20,7 @@ from cartwheel.simulation.models.resident import Attach, Resident, world_residen
 from cartwheel.simulation.models.unique_names import free_name
 from cartwheel.simulation.observer import Observer
 from cartwheel.simulation.part import Part
-from cartwheel.world import build, reports, unreadable, unused
+from cartwheel.world import build, build_visuals, reports, unreadable, unused
 from cartwheel.world.additions import Added
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
@@ -158,9 +159,17 @@ class Population:
         engine = self._engine
         residents = self.residents if residents is None else residents
         entries = [resident.entry for resident in residents.values()]
-        built = build(engine.world, [self.house.entry, *entries], without=engine.without)
+        everything = [self.house.entry, *entries]
+        built = build(engine.world, everything, without=engine.without, shapes="collisions")
         self._added = built.added
-        engine.replace(built.model, built.alignments, built.bounces)
+        # Later requests of plugins must not change the visuals of this model.
+        visuals = partial(
+            build_visuals,
+            engine.world,
+            [each.copy() for each in everything],
+            without=engine.without,
+        )
+        engine.replace(built.model, built.alignments, built.bounces, visuals)
         step_ns = to_ns(step_of(engine.world))
         if step_ns != engine.step_ns:
             engine.set_step(step_ns)

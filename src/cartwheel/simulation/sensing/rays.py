@@ -18,6 +18,7 @@ import mujoco
 import numpy as np
 
 from cartwheel.geometry import Array, Pose, matrix_from_quat
+from cartwheel.simulation.sensing.visual_model import VisualModel
 from cartwheel.world.bodies import COLLISION_GROUP
 from cartwheel.world.entry import scoped
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
@@ -82,7 +83,7 @@ class RayHandle:
         directions: Unit vectors in the sensor's axes, shape (n, 3).
         minimum: Minimum measured distance, m.
         maximum: Maximum measured distance, m; may be inf.
-        visuals: Hit visuals, as a GPU sensor does, instead of collisions.
+        visuals: Visuals to hit, as a GPU sensor does, instead of collisions.
     """
 
     def __init__(
@@ -94,7 +95,7 @@ class RayHandle:
         *,
         minimum: float,
         maximum: float,
-        visuals: bool,
+        visuals: VisualModel | None = None,
     ) -> None:
         self.model_name = model
         self.link_name = link
@@ -103,7 +104,9 @@ class RayHandle:
         self._offset = np.array(pose.position)
         self._bundles = _Bundles(np.asarray(directions) @ matrix_from_quat(pose.orientation).T)
         self._groups = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
-        self._groups[VISUAL_GROUP if visuals else COLLISION_GROUP] = 1
+        self._groups[COLLISION_GROUP if visuals is None else VISUAL_GROUP] = 1
+        self._visuals = visuals
+        self._model: Any = None
         count = len(directions)
         self._geoms = np.full(count, -1, dtype=np.int32)
         self._distances = np.zeros(count)
@@ -111,6 +114,10 @@ class RayHandle:
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves names in a compiled model."""
+        if self._visuals is None:
+            self._resolve(model, data)
+
+    def _resolve(self, model: Any, data: Any) -> None:
         self._model, self._data = model, data
         body = mujoco.mj_name2id(
             model, mujoco.mjtObj.mjOBJ_BODY, scoped(self.model_name, self.link_name)
@@ -132,7 +139,14 @@ class RayHandle:
             Distances in m, shape (n,): -inf for hits nearer than `minimum`, inf without a hit
             within `maximum` (REP 117); and the laser_retro of each hit, shape (n,), 0 without a
             hit.
+
+        Raises:
+            WorldError: A visual cannot be built.
         """
+        if self._visuals is not None:
+            model, data = self._visuals.current()
+            if model is not self._model:
+                self._resolve(model, data)
         turn = self._data.xmat[self._body].reshape(3, 3)
         start = self._data.xpos[self._body] + turn @ self._offset
         rays = self._bundles.directions @ turn.T

@@ -17,6 +17,7 @@ import numpy as np
 
 from cartwheel.simulation.handles import CameraHandle
 from cartwheel.simulation.sensing.opengl import OffscreenContext
+from cartwheel.simulation.sensing.visual_model import VisualModel
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 
 _WALL = 0.99
@@ -34,9 +35,13 @@ class Renderer:
     """Renders camera images. OpenGL is opened at the first image.
 
     Any thread may render, one at a time: the context is current only while an image is rendered.
+
+    Args:
+        visuals: The model to render.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, visuals: VisualModel) -> None:
+        self._visuals = visuals
         self._model: Any = None
         self._background: Any = np.zeros(3, dtype=np.uint8)
         self._opaque: Any = None
@@ -51,12 +56,15 @@ class Renderer:
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._perturb = mujoco.MjvPerturb()
 
-    def bind(self, model: Any) -> None:
-        """Sets the model to render."""
-        self._model = model
-        self._background = _background(model)
-        self._opaque = _opaque(model)
-        self._drop_scene()
+    def _bound(self) -> Any:
+        """The current data of the model, after its scene is dropped if the model is a new one."""
+        model, data = self._visuals.current()
+        if model is not self._model:
+            self._drop_scene()
+            self._model = model
+            self._background = _background(model)
+            self._opaque = _opaque(model)
+        return data
 
     def close(self) -> None:
         """Frees all resources."""
@@ -66,26 +74,28 @@ class Renderer:
             self._gl.free()
             self._gl = None
 
-    def render(self, data: Any, camera: CameraHandle) -> Image:
-        """An image from a camera in the bound model, shape (height, width, 3), RGB.
+    def render(self, camera: CameraHandle) -> Image:
+        """An image from a camera in the model, shape (height, width, 3), RGB.
 
         Raises:
+            WorldError: A visual cannot be built.
             NoOpenGLError: OpenGL is missing; the hint says what to install.
             ForkedError: This process was forked from a process that had opened OpenGL.
         """
-        pixels, _ = self._draw(data, camera)
+        pixels, _ = self._draw(camera)
         return np.ascontiguousarray(pixels[::-1])
 
-    def render_with_depth(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+    def render_with_depth(self, camera: CameraHandle) -> tuple[Image, Depth]:
         """The image, and the depth of each pixel: m, shape (height, width).
 
         Depths are along the camera's axis, not along the pixel's ray; inf where nothing is visible.
 
         Raises:
+            WorldError: A visual cannot be built.
             NoOpenGLError: OpenGL is missing; the hint says what to install.
             ForkedError: This process was forked from a process that had opened OpenGL.
         """
-        pixels, buffer = self._draw(data, camera)
+        pixels, buffer = self._draw(camera)
         lens = camera.intrinsics
         # The buffer contains near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far
         # plane.
@@ -96,8 +106,9 @@ class Renderer:
         depths[buffer[::-1] == 0] = np.inf
         return np.ascontiguousarray(pixels[::-1]), depths
 
-    def _draw(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
+    def _draw(self, camera: CameraHandle) -> tuple[Image, Depth]:
         """Pixels and the depth buffer, both with the lowest row first."""
+        data = self._bound()
         with self._opened(camera.intrinsics.width, camera.intrinsics.height):
             return self._draw_in_context(data, camera)
 
