@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +83,7 @@ class Session:
             for path in plugins:
                 self.shared.get(PluginFiles).load(path)
         self.strict = strict
+        self._spawning = False
         # Without a reference to the session, because the simulation would keep it alive.
         types, shared = self.types, self.shared
 
@@ -142,19 +144,29 @@ class Session:
         Raises:
             PluginError: The model has no controller manager.
         """
-        before = len(self.simulation.diagnostics)
         if self._packages.add(description.origin.file, package_path):
             self.types.forget_missing()
+        with self.spawning():
+            return self._spawn(
+                description,
+                controllers,
+                name=name,
+                pose=pose,
+                namespace=namespace,
+                frame_prefix=frame_prefix,
+            )
+
+    def _spawn(
+        self, description: RobotDescription, controllers: Sequence[Path], **options: Any
+    ) -> str:
         files = self.shared.get(ControllerFiles)
         files.paths = tuple(controllers)
         try:
-            spawned = self.simulation.spawn(
-                description, name=name, pose=pose, namespace=namespace, frame_prefix=frame_prefix
-            )
+            spawned = self.simulation.spawn(description, **options)
         finally:
             left = files.take()
         if left:
-            self.simulation.delete(spawned)
+            self.simulation.withdraw(spawned)
             raise PluginError(
                 f'model "{spawned}" has no plugin that starts controllers',
                 code=CONTROLLER_NOT_STARTED,
@@ -163,12 +175,31 @@ class Session:
                 hint="Add the plugin libgazebo_ros_control.so, libgazebo_ros2_control.so or "
                 "gz_ros2_control-system in a <gazebo> tag.",
             )
+        return spawned
+
+    @contextlib.contextmanager
+    def spawning(self) -> Iterator[None]:
+        """Compiles all models that are spawned within the block together, when it ends.
+
+        In strict mode, a warning about one of them is an error, and none of them is spawned. Call
+        it on the owner's thread; see `Simulation.spawning`.
+        """
+        if self._spawning:
+            yield
+            return
+        simulation = self.simulation
+        before, known = len(simulation.diagnostics), simulation.models
+        self._spawning = True
+        try:
+            with simulation.spawning():
+                yield
+        finally:
+            self._spawning = False
         try:
             self._check(before)
         except CartwheelError:
-            self.simulation.delete(spawned)
+            simulation.delete(*(name for name in simulation.models if name not in known))
             raise
-        return spawned
 
     def report_unbridged(self) -> None:
         """Reports missing topics listed in ros_gz_bridge files. Call it on the owner's thread."""

@@ -6,6 +6,7 @@ import dataclasses
 import math
 import typing
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any, TypeVar, get_args, get_origin
 
 from cartwheel.codes import devices
@@ -155,7 +156,7 @@ def read(
     values: dict[str, Any] = {}
     diagnostics: list[Diagnostic] = []
     known = set(_COMMON) | set(ignore)
-    hints = typing.get_type_hints(cls)
+    hints = _hints(cls)  # type: ignore[arg-type]
     for item in dataclasses.fields(cls):  # type: ignore[arg-type]
         names: tuple[str, ...] = item.metadata["tags"]
         known |= {name.split("/")[0] for name in names}
@@ -176,6 +177,12 @@ def read(
             raise missing(element.tag, names[0], element.origin, hint=item.metadata["doc"])
     diagnostics += [_unknown(child, known) for child in element.children if child.tag not in known]
     return cls(**values), diagnostics
+
+
+@lru_cache(maxsize=256)
+def _hints(cls: type) -> dict[str, Any]:
+    """The types of a dataclass's fields, which take longer to resolve than to use."""
+    return typing.get_type_hints(cls)
 
 
 def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:

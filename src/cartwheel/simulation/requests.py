@@ -389,18 +389,10 @@ class Requests:
         maximum: float,
         visuals: bool = False,
     ) -> RayHandle:
-        """Rays from a link into the world; see `RayHandle`.
-
-        With `visuals`, they hit visuals instead of collisions.
-        """
+        """Rays from a link into the world, which hit visuals or collisions; see `RayHandle`."""
+        hit = self._engine.visuals if visuals else None
         handle = RayHandle(
-            self.name,
-            link,
-            pose,
-            directions,
-            minimum=minimum,
-            maximum=maximum,
-            visuals=self._engine.visuals if visuals else None,
+            self.name, link, pose, directions, minimum=minimum, maximum=maximum, visuals=hit
         )
         self.handles.append(handle)
         return handle

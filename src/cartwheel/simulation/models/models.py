@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
@@ -75,27 +76,40 @@ class Models(Run):
         name = name or description.name
         if pose is not None:
             check_pose(pose, f'model "{name}"')
-        resident = self._population.admit(description, name, pose, namespace, frame_prefix)
-        try:
-            self._population.compile({**self._population.residents, name: resident})
-        except BaseException:
-            resident.close()
-            raise
-        self._population.welcome(name)
+        with self.spawning():
+            self._population.enter(description, name, pose, namespace, frame_prefix)
         return name
 
-    def delete(self, name: str) -> None:
-        """Deletes a model; the rest of the state is unchanged.
+    @contextlib.contextmanager
+    def spawning(self) -> Iterator[None]:
+        """Compiles all models that are spawned within the block together, when it ends.
+
+        Until then, these models are not in the world. If the block raises an error, none of them
+        is. A block within another one ends with the outer block.
 
         Raises:
-            UnknownNameError: The model does not exist.
+            WorldError: A model cannot be built; nothing has changed.
         """
-        resident = self._population.resident(name)
-        self._population.compile(
-            {key: value for key, value in self._population.residents.items() if key != name}
-        )
-        self.forces.drop(name)
-        resident.close()
+        with self._population.entering():
+            yield
+
+    def withdraw(self, name: str) -> None:
+        """Removes a model again within the block of `spawning` in which it was spawned."""
+        self._population.withdraw(name)
+
+    def delete(self, *names: str) -> None:
+        """Deletes models; the rest of the state is unchanged.
+
+        Raises:
+            UnknownNameError: A model does not exist; nothing has changed.
+        """
+        population = self._population
+        removed = {name: population.resident(name) for name in names}
+        kept = {key: each for key, each in population.residents.items() if key not in removed}
+        population.compile(kept)
+        for name, resident in removed.items():
+            self.forces.drop(name)
+            resident.close()
 
     def pose(self, name: str) -> Pose:
         """Pose of a model's frame in the world; see `Engine.model_pose`."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import contextlib
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import partial
 
 from cartwheel.codes import world as world_codes
@@ -50,6 +51,8 @@ class Population:
         self.schedule = Schedule()
         self.subscribers_changed = False
         """Whether tasks may have to sleep or wake. Other threads may set it."""
+        self._entered: dict[str, Resident] | None = None
+        """Models to be compiled at the end of `entering`."""
         self._version = 0
         self._added: tuple[Added, ...] = ()
         """What was added to the descriptions of the compiled models."""
@@ -98,8 +101,52 @@ class Population:
             self.residents[description.name] = self.admit(description, description.name)
         self.compile()
         self.take_positions(self.residents.values())
-        for index, description in enumerate(descriptions):
-            self.welcome(description.name, before=descriptions[index + 1 :])
+        self._welcome_all([description.name for description in descriptions])
+
+    @contextlib.contextmanager
+    def entering(self) -> Iterator[None]:
+        """Compiles all models that `enter` within the block, when the outermost block ends.
+
+        Raises:
+            WorldError: A model cannot be built; nothing has changed.
+        """
+        if self._entered is not None:
+            yield
+            return
+        entered = self._entered = {}
+        try:
+            yield
+            if entered:
+                self.compile({**self.residents, **entered})
+        except BaseException:
+            for resident in entered.values():
+                resident.close()
+            raise
+        finally:
+            self._entered = None
+        self._welcome_all(list(entered))
+
+    def enter(
+        self,
+        description: RobotDescription,
+        name: str,
+        pose: Pose | None,
+        namespace: str,
+        frame_prefix: str,
+    ) -> None:
+        """Creates a model within `entering`; see `admit`."""
+        assert self._entered is not None
+        resident = self.admit(description, name, pose, namespace, frame_prefix)
+        self._entered[name] = resident
+
+    def withdraw(self, name: str) -> None:
+        """Removes a model again within the block in which it entered."""
+        assert self._entered is not None
+        self._entered.pop(name).close()
+
+    def _welcome_all(self, names: Sequence[str]) -> None:
+        for index, name in enumerate(names):
+            self.welcome(name, before=names[index + 1 :])
 
     def admit(
         self,
@@ -128,8 +175,9 @@ class Population:
                 code=world_codes.MODEL_NAME_INVALID,
                 values={"name": name},
             )
-        if name in self.residents:
-            free = free_name(name, self.residents)
+        taken = self.residents.keys() | (self._entered or {}).keys()
+        if name in taken:
+            free = free_name(name, taken)
             raise WorldError(
                 f'a model named "{name}" is already in the world',
                 code=world_codes.MODEL_NAME_TAKEN,
@@ -219,7 +267,7 @@ class Population:
         if moved:
             self.compile()
 
-    def welcome(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
+    def welcome(self, name: str, *, before: Collection[str] = ()) -> None:
         """Reports the diagnostics of a model that was just compiled; see `separate`."""
         resident = self.residents[name]
         resident.part.spawned = True
@@ -230,12 +278,12 @@ class Population:
             self._engine.report(diagnostic)
         self.separate(name, before=before)
 
-    def separate(self, name: str, *, before: Sequence[RobotDescription] = ()) -> None:
+    def separate(self, name: str, *, before: Collection[str] = ()) -> None:
         """Starts to separate a model from the models that it overlaps, and reports the overlaps.
 
         Args:
             name: Model name.
-            before: Models spawned later, for which overlaps with this model are reported.
+            before: Names of models spawned later, which report their overlaps with this model.
 
         Raises:
             UnknownNameError: The model does not exist.
@@ -249,8 +297,7 @@ class Population:
         }
         overlaps = list(self.separation.begin(engine.model, engine.data, roots))
         if overlaps:
-            later = {other.name for other in before}
-            overlaps = [each for each in overlaps if each[0].partition("::")[0] not in later]
+            overlaps = [each for each in overlaps if each[0].partition("::")[0] not in before]
         if overlaps:
             height = engine.model_pose(entry).z
             engine.report(overlap(name, height, overlaps, origin=description.origin))
