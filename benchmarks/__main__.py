@@ -12,7 +12,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, check, headless, process, sensors, unread, wires
+from benchmarks import camera, check, headless, making, process, sensors, unread, wires
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
@@ -22,6 +22,7 @@ _PARTS = {
     "camera": camera,
     "sensors": sensors,
     "process": process,
+    "making": making,
     "wires": wires,
     "check": check,
 }

@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Any
 from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:
-    from cartwheel.api import Model, World
+    from cartwheel.api import Built, Model, World, build
     from cartwheel.checks import check
     from cartwheel.geometry import Pose
 
-__all__ = ["CartwheelError", "Model", "Pose", "World", "check"]
+__all__ = ["Built", "CartwheelError", "Model", "Pose", "World", "build", "check"]
 __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
     # The import of numpy and the physics engine takes 0.1 s, but the command line must first parse
     # its arguments and handle Ctrl-C.
-    if name in ("Model", "World"):
+    if name in ("Built", "Model", "World", "build"):
         from cartwheel import api
 
         return getattr(api, name)

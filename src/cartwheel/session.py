@@ -26,6 +26,7 @@ from cartwheel.messages.store import finding_with
 from cartwheel.options import STRICT
 from cartwheel.simulation import Part, Simulation
 from cartwheel.simulation.clock import Task
+from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.resident import Behaviour
 from cartwheel.simulation.pacing import Pacer
 
@@ -47,6 +48,7 @@ class Session:
         allow_path: Folders with files that clients of the session's services may load.
         package_path: Folders to search for the packages of message types first.
         without: Physics that Cartwheel adds to descriptions, to be omitted; see `Simulation`.
+        compiler: Compiles the models; None for one of its own.
 
     Raises:
         CartwheelError: The world or a configuration file cannot be used.
@@ -64,6 +66,7 @@ class Session:
         allow_path: Sequence[Path] = (),
         package_path: Sequence[Path] = (),
         without: Sequence[str] = (),
+        compiler: Compiler | None = None,
     ) -> None:
         self.allow_path = tuple(allow_path)
         self._packages = SimulationPackages(package_path)
@@ -101,6 +104,7 @@ class Session:
             attach_world=attach_to_world,
             seed=seed,
             without=without,
+            compiler=compiler,
         )
         self.graph.post = self.simulation.post
         self.graph.post_read = self.simulation.post_read

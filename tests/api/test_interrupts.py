@@ -26,11 +26,11 @@ def test_ctrl_c_takes_effect_after_the_change(
 ) -> None:
     pressed = 0
 
-    def press(population: Population, *arguments: object) -> None:
+    def press(population: Population, *arguments: object, **options: object) -> None:
         nonlocal pressed
         pressed += 1
         signal.raise_signal(signal.SIGINT)
-        original(population, *arguments)
+        original(population, *arguments, **options)
 
     with cw.World("empty") as world:
         if connected:

@@ -9,21 +9,21 @@ from cartwheel.codes import devices
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.codes.world import MODEL_NAME_TAKEN, MODELS_OVERLAP
 from cartwheel.errors import CartwheelError, UnknownNameError
-from cartwheel.simulation.models import population
+from cartwheel.simulation.models import compilations
 
 
 @pytest.fixture
 def compiled(monkeypatch):
     """The number of models in each compilation."""
     sizes = []
-    original = population.build
+    original = compilations.build
 
     def counted(world, entries, **options):
         entries = list(entries)
         sizes.append(len(entries) - 1)  # without the world's own
         return original(world, entries, **options)
 
-    monkeypatch.setattr(population, "build", counted)
+    monkeypatch.setattr(compilations, "build", counted)
     return sizes
 
 

@@ -15,6 +15,7 @@ from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.models.compilations import Compiler
 
 
 class World(MessagingWorld):
@@ -76,6 +77,7 @@ class World(MessagingWorld):
         host: str = "127.0.0.1",
         allow_origin: str | Sequence[str] = (),
         without: str | Sequence[str] = (),
+        _compiler: Compiler | None = None,
     ) -> None:
         connections = plan = None
         files = several(record)
@@ -114,6 +116,7 @@ class World(MessagingWorld):
                 plugins=[Path(file) for file in several(plugins)],
                 package_path=[Path(folder) for folder in several(package_path)],
                 without=several(without),
+                compiler=_compiler,
             )
             super().__init__(
                 session,

@@ -13,6 +13,7 @@ from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
 from cartwheel.simulation.limits import check_steps
+from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.models import Models
 from cartwheel.simulation.models.resident import Attach
 from cartwheel.simulation.snapshot import RunState, Snapshot
@@ -36,6 +37,7 @@ class Simulation(Models):
         seed: Seed for all noise.
         without: Names of additions to the descriptions that are omitted; see
             `cartwheel.world.additions`.
+        compiler: Compiles the models; None for one of its own.
 
     Raises:
         WorldError: The world cannot be built.
@@ -51,8 +53,9 @@ class Simulation(Models):
         attach_world: Attach = lambda _: [],
         seed: int = 0,
         without: Iterable[str] = (),
+        compiler: Compiler | None = None,
     ) -> None:
-        super().__init__(Engine(world, seed, omitted(without)), attach)
+        super().__init__(Engine(world, seed, omitted(without)), attach, compiler or Compiler())
         self.faults = Faults(self.engine, self._population)
         self.engine.on_fault = self.faults.disable
         self._population.start(attach_world)

@@ -10,7 +10,7 @@ from tests.devices.cameras.sensors import pixels_of, sensor, take
 from cartwheel.description.model import Light
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
-from cartwheel.simulation.models import population
+from cartwheel.simulation.models import compilations
 from cartwheel.world import build
 
 PLACE = Origin(file="test.sdf", line=1)
@@ -37,13 +37,13 @@ BOX = """<model name="box"><static>1</static><pose>3 0 1 0 0 0</pose><link name=
 def compiled(monkeypatch):
     """The number of compilations of visuals so far, in a list."""
     calls = [0]
-    original = population.build_visuals
+    original = compilations.build_visuals
 
     def counted(*arguments, **options):
         calls[0] += 1
         return original(*arguments, **options)
 
-    monkeypatch.setattr(population, "build_visuals", counted)
+    monkeypatch.setattr(compilations, "build_visuals", counted)
     return calls
 
 

@@ -11,6 +11,7 @@ from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.limits import STRONGEST, check_pose, number, numbers
+from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.occupied_space import Space, occupied
 from cartwheel.simulation.models.placement import place_model, with_mimics
@@ -29,13 +30,14 @@ class Models(Run):
     Args:
         engine: The engine that simulates the models.
         attach: Creates a model's plugins.
+        compiler: Compiles the models.
     """
 
-    def __init__(self, engine: Engine, attach: Attach) -> None:
+    def __init__(self, engine: Engine, attach: Attach, compiler: Compiler) -> None:
         super().__init__()
         self.engine = engine
         self.forces = Forces(engine)
-        self._population = Population(engine, self.forces, attach)
+        self._population = Population(engine, self.forces, attach, compiler)
 
     @property
     def models(self) -> tuple[str, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from functools import partial
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
@@ -15,13 +14,14 @@ from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
 from cartwheel.simulation.dynamics.separation import Separation, overlap
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.placement import with_mimics
 from cartwheel.simulation.models.resident import Attach, Resident, world_resident
 from cartwheel.simulation.models.unique_names import free_name
 from cartwheel.simulation.observer import Observer
 from cartwheel.simulation.part import Part
-from cartwheel.world import build, build_visuals, reports, unreadable, unused
+from cartwheel.world import reports
 from cartwheel.world.additions import Added
 from cartwheel.world.build import step_of
 from cartwheel.world.entry import ModelEntry
@@ -34,10 +34,12 @@ class Population:
         engine: The engine that simulates the models.
         forces: Forces on links and joints; bound again after each compilation.
         attach: Creates a model's plugins.
+        compiler: Compiles the models.
     """
 
-    def __init__(self, engine: Engine, forces: Forces, attach: Attach) -> None:
+    def __init__(self, engine: Engine, forces: Forces, attach: Attach, compiler: Compiler) -> None:
         self._engine = engine
+        self._compiler = compiler
         self._forces = forces
         self.attach = attach
         self.watch = Watch(engine)
@@ -208,16 +210,10 @@ class Population:
         residents = self.residents if residents is None else residents
         entries = [resident.entry for resident in residents.values()]
         everything = [self.house.entry, *entries]
-        built = build(engine.world, everything, without=engine.without, shapes="collisions")
+        compiled = self._compiler.compile(engine.world, everything, engine.without)
+        built = compiled.build
         self._added = built.added
-        # Later requests of plugins must not change the visuals of this model.
-        visuals = partial(
-            build_visuals,
-            engine.world,
-            [each.copy() for each in everything],
-            without=engine.without,
-        )
-        engine.replace(built.model, built.alignments, built.bounces, visuals)
+        engine.replace(built.model, built.alignments, built.bounces, compiled.compile_visuals)
         step_ns = to_ns(step_of(engine.world))
         if step_ns != engine.step_ns:
             engine.set_step(step_ns)
@@ -272,9 +268,14 @@ class Population:
         resident = self.residents[name]
         resident.part.spawned = True
         description = resident.entry.description
-        notes = (*description.diagnostics, *resident.part.diagnostics)
-        added = reports(self._added, name)
-        for diagnostic in (*notes, *unused(description), *added, *unreadable(description)):
+        notes = self._compiler.notes(description)
+        for diagnostic in (
+            *description.diagnostics,
+            *resident.part.diagnostics,
+            *notes.unused,
+            *reports(self._added, name),
+            *notes.unreadable,
+        ):
             self._engine.report(diagnostic)
         self.separate(name, before=before)
 

@@ -1,0 +1,153 @@
+"""Worlds that are read and compiled once and made many times."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from cartwheel import description as descriptions
+from cartwheel.api.messaging import several
+from cartwheel.api.world import World
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.errors import Diagnostic
+from cartwheel.simulation.models.compilations import SharedCompiler
+
+Robot = str | Path | RobotDescription | Mapping[str, Any]
+"""A file, a description, or the arguments of `World.spawn`, of which ``robot`` is required."""
+
+
+class Built:
+    """A world with its robots, read and compiled once; `build` makes it.
+
+    It can be pickled, for example for the processes of `multiprocessing`. With the same seed and
+    commands, its worlds give identical results in each process.
+    """
+
+    def __init__(
+        self,
+        description: WorldDescription,
+        robots: Sequence[Mapping[str, Any]],
+        options: Mapping[str, Any],
+    ) -> None:
+        self._description = description
+        self._robots = tuple(robots)
+        self._options = dict(options)
+        self._compiler = SharedCompiler()
+        self._models: tuple[str, ...] = ()
+        self._diagnostics: tuple[Diagnostic, ...] = ()
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Names of the models in each world."""
+        return self._models
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Diagnostics that each world reports at its start."""
+        return self._diagnostics
+
+    def world(self, *, seed: int = 0, **options: Any) -> World:
+        """Makes a world with the robots.
+
+        Args:
+            seed: Seed for all noise.
+            options: Options of `World` for connections and recordings, such as ``viewer=True``.
+
+        Raises:
+            CartwheelError: A connection cannot be opened. Nothing remains open.
+            TypeError: An option is one of those of `build`, or `World` does not have it.
+        """
+        made = World(
+            self._description, seed=seed, _compiler=self._compiler, **self._options, **options
+        )
+        try:
+            with made.spawning():
+                for robot in self._robots:
+                    made.spawn(**robot)
+        except BaseException:
+            made.close()
+            raise
+        return made
+
+    def _compile(self, *, visuals: bool) -> None:
+        with self.world() as world:
+            self._models, self._diagnostics = world.models, world.diagnostics
+            if visuals:
+                world.session.simulation.engine.visuals.current()
+        self._compiler.complete = True
+
+
+def build(
+    world: str | Path | WorldDescription = "empty",
+    robots: Robot | Sequence[Robot] = (),
+    *,
+    visuals: bool = False,
+    strict: bool = False,
+    lenient: bool = False,
+    bridge: str | Path | Sequence[str | Path] = (),
+    plugins: str | Path | Sequence[str | Path] = (),
+    package_path: str | Path | Sequence[str | Path] = (),
+    without: str | Sequence[str] = (),
+) -> Built:
+    """Reads and compiles a world and its robots once, to make many worlds of them.
+
+    Each world of the result is as if made by `World` and `World.spawn`, but without reading and
+    compiling files. Later changes of the files have no effect.
+
+    Args:
+        world: As for `World`.
+        robots: Robots to spawn: each is a file, a description, or a mapping with the arguments of
+            `World.spawn`, such as ``{"robot": "rosbots.xacro", "x": 1.0}``.
+        visuals: Also compile the visuals. Otherwise, the first image of a camera compiles them, in
+            each process.
+        strict: As for `World`.
+        lenient: As for `World`.
+        bridge: As for `World`.
+        plugins: As for `World`.
+        package_path: As for `World`, and for all robots without a ``package_path`` of their own.
+        without: As for `World`.
+
+    Raises:
+        DescriptionError: A file cannot be used.
+        WorldError: A name is used twice, or a model cannot be built.
+        PluginError: A plugin cannot be used.
+        CartwheelError: A name in `without` is unknown.
+        TypeError: `World.spawn` does not have an argument of a robot.
+    """
+    if not isinstance(world, WorldDescription):
+        world = descriptions.load_world(world)
+    built = Built(
+        world,
+        [_read(robot, package_path) for robot in _listed(robots)],
+        {
+            "strict": strict,
+            "lenient": lenient,
+            "bridge": bridge,
+            "plugins": plugins,
+            "package_path": package_path,
+            "without": without,
+        },
+    )
+    built._compile(visuals=visuals)
+    return built
+
+
+def _listed(robots: Robot | Sequence[Robot]) -> Sequence[Robot]:
+    if isinstance(robots, str | Path | RobotDescription | Mapping):
+        return [robots]
+    return robots
+
+
+def _read(robot: Robot, package_path: str | Path | Sequence[str | Path]) -> dict[str, Any]:
+    """The arguments of `World.spawn` for a robot, with its description instead of its file."""
+    given: dict[str, Any] = dict(robot) if isinstance(robot, Mapping) else {"robot": robot}
+    given.setdefault("package_path", package_path)
+    file = given.get("robot")
+    if isinstance(file, str | Path):
+        given["robot"] = descriptions.load_robot(
+            file,
+            arguments=given.pop("arguments", None),
+            package_path=[Path(folder) for folder in several(given["package_path"])],
+        )
+    return given
