@@ -7,13 +7,13 @@ from pathlib import Path
 
 from cartwheel.codes import tags
 from cartwheel.codes import world as world_codes
-from cartwheel.description.meshes import load_mesh, standing_parts
+from cartwheel.description.meshes import known_size, load_mesh, standing_parts
 from cartwheel.description.model import Joint, Mesh, RobotDescription
 from cartwheel.description.paint import paint_of
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.world import contact
 from cartwheel.world.shapes import picture_error
-from cartwheel.world.visuals import invisible
+from cartwheel.world.visuals import SMALL, invisible
 
 _SURFACE = {
     "slip1": "friction is Coulomb friction, without slip",
@@ -94,6 +94,8 @@ def unreadable(description: RobotDescription) -> Iterator[Diagnostic]:
     for visual in (visual for link in description.links for visual in link.visuals):
         images: set[Path | bytes | None] = {visual.material.texture}
         if isinstance(visual.shape, Mesh):
+            if (known_size(visual.shape) or 0.0) > SMALL:
+                continue
             parts = load_mesh(visual.shape)
             images = {paint_of(visual.material, part).image for part in parts}
             if any(invisible(part) for part in parts):

@@ -22,13 +22,13 @@ _LIT = 0.65
 _GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 _LEAST_AREA = 1e-12
 """m²; the engine rejects meshes with an area below 1e-15 m²."""
-_SMALL = 1e-4
+SMALL = 1e-4
 """m; a larger part of a mesh has a visible area."""
 
 
 def invisible(part: meshes.Submesh) -> bool:
     """Whether a part of a mesh is too small for the engine and for any camera."""
-    if len(part.vertices) and float(np.ptp(part.vertices, axis=0).max()) > _SMALL:
+    if len(part.vertices) and float(np.ptp(part.vertices, axis=0).max()) > SMALL:
         return False
     corners = np.asarray(part.vertices, dtype=np.float64)[part.faces]
     doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

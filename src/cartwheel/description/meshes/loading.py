@@ -11,7 +11,7 @@ COLLADA's ``<unit>`` is applied, as in both programs.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -24,7 +24,7 @@ from cartwheel.description.meshes.dae import read_dae
 from cartwheel.description.meshes.generic import read_with_trimesh
 from cartwheel.description.meshes.obj import read_obj
 from cartwheel.description.meshes.standing import Standing, standing_pieces
-from cartwheel.description.meshes.stl import read_stl
+from cartwheel.description.meshes.stl import glance, read_stl
 from cartwheel.description.meshes.submesh import (
     MOST_BYTES,
     MOST_TRIANGLES,
@@ -38,15 +38,44 @@ from cartwheel.description.meshes.submesh import (
 from cartwheel.errors import Origin
 from cartwheel.similar_names import meant, suggestion
 
-__all__ = ["MeshError", "Submesh", "convex_hull_input", "load_mesh", "mesh_notes", "standing_parts"]
+__all__ = [
+    "MeshError",
+    "Submesh",
+    "check_mesh",
+    "convex_hull_input",
+    "known_size",
+    "load_mesh",
+    "mesh_notes",
+    "standing_parts",
+]
 
 _COARSER = "Reduce the mesh, for example with Blender's Decimate modifier."
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class _Loaded:
-    submeshes: tuple[Submesh, ...]
-    notes: tuple[str, ...]
+    """The contents of a file.
+
+    Args:
+        submeshes: The parts, or a function that reads them at the first access.
+        notes: See `mesh_notes`.
+        size: See `known_size`.
+    """
+
+    def __init__(
+        self,
+        submeshes: Callable[[], tuple[Submesh, ...]] | tuple[Submesh, ...],
+        notes: tuple[str, ...] = (),
+        size: float | None = None,
+    ) -> None:
+        self._submeshes = submeshes
+        self.notes = notes
+        self.size = size
+
+    @property
+    def submeshes(self) -> tuple[Submesh, ...]:
+        if callable(self._submeshes):
+            self._submeshes = self._submeshes()
+        return self._submeshes
 
 
 def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submesh, ...]:
@@ -61,6 +90,42 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
     Raises:
         MeshError: The file is missing, empty, damaged or in an unsupported format.
     """
+    _check_scale(mesh, origin)
+    submeshes = _loaded(mesh.path, origin).submeshes
+    if mesh.submesh is not None:
+        submeshes = _select(mesh, submeshes, origin)
+    return tuple(scale_submesh(submesh, mesh.scale) for submesh in submeshes)
+
+
+def check_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> None:
+    """Raises the errors of `load_mesh`, but reads the triangles only where they may cause one.
+
+    Args:
+        mesh: As for `load_mesh`.
+        origin: As for `load_mesh`.
+
+    Raises:
+        MeshError: As `load_mesh`.
+    """
+    _check_scale(mesh, origin)
+    loaded = _loaded(mesh.path, origin)
+    if mesh.submesh is not None:
+        _select(mesh, loaded.submeshes, origin)
+
+
+def known_size(mesh: model.Mesh) -> float | None:
+    """A lower bound of the mesh's size in m, known without reading its triangles.
+
+    A mesh with a known size has no images, colours and normals. None if nothing is known.
+
+    Raises:
+        MeshError: As `load_mesh`.
+    """
+    size = _loaded(mesh.path, None).size
+    return None if size is None else size * min(abs(factor) for factor in mesh.scale)
+
+
+def _check_scale(mesh: model.Mesh, origin: Origin | None) -> None:
     # Outside this range, single-precision coordinates under- or overflow.
     if not all(1e-30 < abs(factor) < 1e30 for factor in mesh.scale):
         raise MeshError(
@@ -69,10 +134,6 @@ def load_mesh(mesh: model.Mesh, *, origin: Origin | None = None) -> tuple[Submes
             origin=origin,
             values={"scale": mesh.scale},
         )
-    submeshes = _loaded(mesh.path, origin).submeshes
-    if mesh.submesh is not None:
-        submeshes = _select(mesh, submeshes, origin)
-    return tuple(scale_submesh(submesh, mesh.scale) for submesh in submeshes)
 
 
 def mesh_notes(mesh: model.Mesh) -> tuple[str, ...]:
@@ -186,7 +247,12 @@ def _read(path: Path, _mtime_ns: int, size: int) -> _Loaded:
         )
     notes: list[str] = []
     try:
-        submeshes = reader(path, read_regular(path, MOST_BYTES), notes)
+        data = read_regular(path, MOST_BYTES)
+        least = glance(data, MOST_TRIANGLES) if reader is _stl else None
+        if least is not None:
+            # Most visuals of a simulation without cameras are never looked at.
+            return _Loaded(lambda: tuple(read_stl(data)), size=least)
+        submeshes = reader(path, data, notes)
     except (OSError, MemoryError):
         raise
     except Exception as error:  # a damaged file may cause any error in its reader

@@ -6,10 +6,12 @@ import re
 
 import numpy as np
 
-from cartwheel.description.meshes.submesh import Submesh, build_submesh, unique_rows
+from cartwheel.description.meshes.submesh import Submesh, build_submesh, has_area, unique_rows
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_FIRST = 100
+"""Triangles at which `glance` looks for one with an area."""
 _VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
@@ -27,6 +29,35 @@ def read_stl(data: bytes) -> list[Submesh]:
     first, inverse = unique_rows(corners)
     submesh = build_submesh("", corners[first], inverse.reshape(-1, 3))
     return [submesh] if submesh else []
+
+
+def glance(data: bytes, most: int) -> float | None:
+    """The least size of a mesh, if a short look at its file shows that the file is valid.
+
+    A look takes a tenth of the time of `read_stl`.
+
+    Args:
+        data: The file.
+        most: Maximum number of triangles.
+
+    Returns:
+        The size of the largest of the first triangles along an axis, in the file's unit, if
+        `read_stl` surely returns triangles; otherwise None.
+    """
+    if len(data) < _HEADER or _is_ascii(data):
+        return None
+    count = int.from_bytes(data[80:84], "little")
+    if not 0 < count <= min((len(data) - _HEADER) // _RECORD.itemsize, most):
+        return None
+    corners = np.frombuffer(data, dtype=_RECORD, count=count, offset=_HEADER)["corners"]
+    if not np.isfinite(corners).all():
+        return None
+    first = np.ascontiguousarray(corners[:_FIRST]).reshape(-1, 3)
+    proper = has_area(first, np.arange(len(first)).reshape(-1, 3))
+    if not proper.any():
+        return None
+    sizes = np.ptp(first.reshape(-1, 3, 3)[proper], axis=1)
+    return float(sizes.max())
 
 
 def _is_ascii(data: bytes) -> bool:

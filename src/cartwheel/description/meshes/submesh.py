@@ -106,7 +106,7 @@ def build_submesh(
         raise ValueError("a vertex coordinate is not finite")
     if triangles.size and (triangles.min() < 0 or triangles.max() >= len(points)):
         raise ValueError("a face of the mesh contains an invalid vertex index")
-    proper = _has_area(points, triangles)
+    proper = has_area(points, triangles)
     directions = _per_vertex(normals, len(points), 3)
     coordinates = _per_vertex(uv, len(points), 2)
     if not proper.all():
@@ -179,7 +179,7 @@ def unique_rows(points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return first.astype(np.int64), inverse.reshape(-1).astype(np.int64)
 
 
-def _has_area(points: Floats, triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
+def has_area(points: Floats, triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Which triangles have three different corners that are not on a line."""
     a, b, c = (points[triangles[:, i]].astype(np.float64) for i in range(3))
     ab, ac = b - a, c - a

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from cartwheel.codes import tags
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
-from cartwheel.description.meshes import load_mesh
+from cartwheel.description.meshes import check_mesh
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -183,7 +183,7 @@ def _mesh(node: Node, kind: str, link: str, ctx: UrdfContext) -> Mesh | None:
             )
         path = ctx.packages.resolve(uri, node.origin, what="mesh")
         mesh = Mesh(uri=uri, path=path, scale=scale)
-        load_mesh(mesh, origin=node.origin)
+        check_mesh(mesh, origin=node.origin)
     except DescriptionError as error:
         # As in Gazebo, and as in a world, this only affects the one shape.
         ctx.report(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cartwheel.codes import files, tags
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
-from cartwheel.description.meshes import MeshError, load_mesh
+from cartwheel.description.meshes import MeshError, check_mesh
 from cartwheel.description.model import (
     Box,
     Capsule,
@@ -238,7 +238,7 @@ def _mesh(node: Node, ctx: Context) -> Mesh:
         convex_decomposition=optimization == "convex_decomposition",
     )
     try:
-        load_mesh(shape, origin=uri.origin)
+        check_mesh(shape, origin=uri.origin)
     except MeshError as error:
         raise _UnusableFileError.of(error, uri.origin) from error
     return shape
