@@ -164,6 +164,28 @@ def test_what_a_browser_may_do_with_the_page_is_said(local: Gated) -> None:
     assert "own=1" not in head
 
 
+def test_only_who_knows_the_key_may_show_the_page_in_a_frame(local: Gated) -> None:
+    def policy(target: str) -> str:
+        return local.get(target=target).partition(b"\r\n\r\n")[0].decode()
+
+    for guess in ("/", "/?frame=", "/?frame=None"):
+        assert "frame-ancestors 'self'" in policy(guess)
+    framed = local.access.framed(local.access.url("http", local.port))
+    assert framed is not None
+    target = framed.partition(str(local.port))[2]
+    assert "frame-ancestors" not in policy(target) and "connect-src 'self'" in policy(target)
+    assert "frame-ancestors 'self'" in policy(target[:-1])
+    # Nobody else needs to know it.
+    key = target.partition("=")[2].encode()
+    assert len(key) >= 32 and not any(key in heard for heard in local.behind.heard)
+    origin = "Origin: http://evil.example"
+    assert status(local.ask(local.handshake(origin, target=target))) == 403
+
+
+def test_a_page_that_needs_a_token_has_no_address_for_frames(opened: Gated) -> None:
+    assert opened.access.framed(opened.access.url("http", opened.port)) is None
+
+
 # -- tokens
 
 

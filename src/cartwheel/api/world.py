@@ -10,6 +10,7 @@ from typing import Literal
 from cartwheel import description as descriptions
 from cartwheel.api.messaging import MessagingWorld, several
 from cartwheel.api.model import Model
+from cartwheel.api.pictures import PicturedWorld
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
@@ -18,7 +19,7 @@ from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.models.compilations import Compiler
 
 
-class World(MessagingWorld):
+class World(PicturedWorld, MessagingWorld):
     """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.

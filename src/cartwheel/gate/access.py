@@ -21,6 +21,8 @@ _ORIGIN = re.compile(r"(?P<scheme>[a-z][a-z0-9+.-]*)://(?P<authority>[^/?#@\s]*)
 _PORTS = {"http": "80", "https": "443"}
 _ANY = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104
 """Wildcard addresses, and the loopback address that reaches each of them."""
+EMBED = "frame"
+"""Query parameter that contains the key with which other pages may show this one in a frame."""
 _TOKEN_BYTES = 24
 _NOBODY = ("null", "")
 """Origins that do not identify a site."""
@@ -50,6 +52,18 @@ class Refusal:
     """Origin of the web page, if the origin is the reason."""
 
 
+class _Key:
+    """A random key, generated when it is first used."""
+
+    def __init__(self) -> None:
+        self.value: str | None = None
+
+    def get(self) -> str:
+        if self.value is None:
+            self.value = _new_token()
+        return self.value
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Access:
     """Access rules of a run, which the web viewer and Foxglove share.
@@ -63,6 +77,7 @@ class Access:
     origins: tuple[str, ...] = ()
     """Origins of additional web pages that may connect."""
     token: str | None = field(default=None, repr=False)
+    _frame: _Key = field(default_factory=_Key, init=False, repr=False, compare=False)
 
     @classmethod
     def of(cls, host: str, origins: Sequence[str] = ()) -> Access:
@@ -137,11 +152,23 @@ class Access:
             )
         return None
 
+    def framed(self, url: str) -> str | None:
+        """The URL of a page, for a frame in any other page that knows the result.
+
+        None if a token is required, because browsers do not send its cookie from a frame.
+        """
+        return None if self.is_open else f"{url}/?{urlencode({EMBED: self._frame.get()})}"
+
+    def may_be_framed(self, target: str) -> bool:
+        """Whether the query of a request contains the key of `framed`."""
+        key = self._frame.value
+        return key is not None and any(_equal(value, key) for value in _values(target, EMBED))
+
     def has_token_in_query(self, target: str) -> bool:
         """Whether the query of a request contains the token."""
         if self.token is None:
             return False
-        return any(_equal(value, self.token) for value in _tokens(target))
+        return any(_equal(value, self.token) for value in _values(target, PARAMETER))
 
     def _knows(self, host: str) -> bool:
         """Whether the host name belongs to this server. Prevents DNS rebinding."""
@@ -183,16 +210,17 @@ def refused_page(title: str, origin: str) -> Diagnostic:
     return PAGE_REFUSED.diagnostic(message, hint=hint, values={"server": title, "origin": origin})
 
 
-def without_token(target: str) -> str:
-    """Path and query of a request without the token, for the server behind."""
+def without_secrets(target: str) -> str:
+    """Path and query of a request without token and key, for the server behind."""
     path, _, query = target.partition("?")
-    kept = [(name, value) for name, value in _pairs(query) if name != PARAMETER]
+    kept = [pair for pair in _pairs(query) if pair[0] not in (PARAMETER, EMBED)]
     return f"{path}?{urlencode(kept)}" if kept else path
 
 
-def _tokens(target: str) -> list[str]:
+def _values(target: str, parameter: str) -> list[str]:
+    """The values of a parameter in the query of a request."""
     query = target.partition("?")[2]
-    return [value for name, value in _pairs(query) if name == PARAMETER]
+    return [value for name, value in _pairs(query) if name == parameter]
 
 
 def _pairs(query: str) -> list[tuple[str, str]]:

@@ -235,7 +235,8 @@ class Gate:
                 del self._peers[port]
 
     async def _exchange(self, sock: socket.socket, server: socket.socket, request: Request) -> None:
-        begun = await _begin(sock, server, request)
+        framed = self._access.may_be_framed(request.asked.target)
+        begun = await _begin(sock, server, request, framed=framed)
         if begun is None:
             return
         if self._client is None:
@@ -261,8 +262,16 @@ def _canceller() -> Callable[[], object]:
     return asyncio.current_task().cancel  # type: ignore[union-attr]
 
 
-async def _begin(sock: socket.socket, server: socket.socket, request: Request) -> bytes | None:
+async def _begin(
+    sock: socket.socket, server: socket.socket, request: Request, *, framed: bool
+) -> bytes | None:
     """Forwards a request and its response.
+
+    Args:
+        sock: The client.
+        server: The server behind.
+        request: The client's request.
+        framed: Whether other pages may show the response in a frame.
 
     Returns:
         Bytes that the client sent after a websocket handshake; None after any other response.
@@ -282,7 +291,7 @@ async def _begin(sock: socket.socket, server: socket.socket, request: Request) -
     if not isinstance(answer, h11.Response):
         return None
     headers = [pair for pair in answer.headers if pair[0] in _CONTENT]
-    headers += _protected(request.asked.host)
+    headers += _protected(request.asked.host, framed=framed)
     kept = h11.Response(status_code=answer.status_code, headers=headers, reason=answer.reason)
     await _send(request, sock, kept)
     while isinstance(event := await next_event(inner, server), h11.Data):
@@ -297,15 +306,18 @@ async def _send(request: Request, sock: socket.socket, event: h11.Event, more: b
         await loop.sock_sendall(sock, (request.connection.send(event) or b"") + more)
 
 
-def _protected(host: str) -> list[tuple[bytes, bytes]]:
+def _protected(host: str, *, framed: bool = False) -> list[tuple[bytes, bytes]]:
     """Headers that keep out foreign web pages, and restrict the page to its own server.
 
     Otherwise viser's client connects to any server in the page's URL, and runs its scripts.
 
     Args:
         host: This server's host name in the browser.
+        framed: Whether other pages may show the page in a frame.
     """
-    policy = f"connect-src 'self' ws://{host} wss://{host} data: blob:; frame-ancestors 'self'"
+    policy = f"connect-src 'self' ws://{host} wss://{host} data: blob:"
+    if not framed:
+        policy += "; frame-ancestors 'self'"
     return [
         (b"Content-Security-Policy", f"{policy}; base-uri 'none'; form-action 'none'".encode()),
         (b"X-Content-Type-Options", b"nosniff"),

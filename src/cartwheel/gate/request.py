@@ -9,7 +9,7 @@ from http import HTTPStatus
 
 import h11
 
-from cartwheel.gate.access import Asked, without_token
+from cartwheel.gate.access import Asked, without_secrets
 
 HEAD_SIZE = 16_384
 """Maximum size in bytes of a request or response header."""
@@ -61,7 +61,7 @@ class Request:
             headers += [(b"connection", b"Upgrade"), (b"upgrade", b"websocket")]
         else:
             headers += [(b"connection", b"close")]
-        return h11.Request(method="GET", target=without_token(self.asked.target), headers=headers)
+        return h11.Request(method="GET", target=without_secrets(self.asked.target), headers=headers)
 
 
 async def read_request(sock: socket.socket) -> Request:

@@ -103,6 +103,20 @@ def test_a_foreign_site_reaches_nothing(browser, shown: Shown, site: str, tmp_pa
     page.close()
 
 
+def test_a_notebook_shows_the_page_in_a_frame(browser, shown: Shown, site: str) -> None:
+    """A notebook's server has a different port, and its page may have a different host name."""
+    framed = shown.viewer._access.framed(shown.url)
+    for notebook in (site, site.replace("127.0.0.1", "localhost")):
+        page = new_page(browser)
+        page.goto(notebook)
+        page.set_content(f"<iframe src='{framed}' width=900 height=600></iframe>")
+        eventually(lambda page=page: page.evaluate("1") and shown.clients(), what="the browser")
+        page.frames[1].get_by_text("Cartwheel").first.wait_for()
+        page.close()
+        eventually(lambda: not shown.clients(), what="the end")
+    assert shown.refused == []
+
+
 def test_a_link_cannot_lead_the_page_to_a_foreign_server(browser, shown: Shown) -> None:
     """viser's client runs the scripts of the server that the address names."""
     with socket.create_server(("127.0.0.1", 0)) as foreign:

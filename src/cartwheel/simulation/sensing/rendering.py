@@ -10,11 +10,14 @@ import contextlib
 import math
 import weakref
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from cartwheel.description.model import CameraIntrinsics
+from cartwheel.geometry import Vec3
 from cartwheel.simulation.handles import CameraHandle
 from cartwheel.simulation.sensing.opengl import OffscreenContext
 from cartwheel.simulation.sensing.visual_model import VisualModel
@@ -23,12 +26,27 @@ from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 _WALL = 0.99
 """Distance of the background wall, as a fraction of the far distance."""
 _FULL = 255
+_STEEP = 0.9999
+"""Vertical part of a unit vector that is taken as vertical."""
 
 _PIXEL = np.dtype((np.void, 3))
 """Three bytes as one value: numpy applies masks to such values many times faster."""
 
 Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
 Depth = np.ndarray[tuple[int, int], np.dtype[np.float32]]
+
+
+@dataclass(frozen=True, slots=True)
+class _View:
+    """The camera of one image."""
+
+    lens: CameraIntrinsics
+    position: Any
+    """In the world, m, shape (3,)."""
+    axes: Any
+    """Columns: the image's right, up, and back, shape (3, 3)."""
+    fixed: int
+    """ID of the camera in the model; -1 for a camera that is not in the model."""
 
 
 class Renderer:
@@ -53,7 +71,6 @@ class Renderer:
         self._option.geomgroup[:] = 0
         self._option.geomgroup[VISUAL_GROUP] = 1
         self._camera = mujoco.MjvCamera()
-        self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._perturb = mujoco.MjvPerturb()
 
     def _bound(self) -> Any:
@@ -82,7 +99,31 @@ class Renderer:
             NoOpenGLError: OpenGL is missing; the hint says what to install.
             ForkedError: This process was forked from a process that had opened OpenGL.
         """
-        pixels, _ = self._draw(camera)
+        data = self._bound()
+        pixels, _ = self._draw(data, _seen_by(camera, data))
+        return np.ascontiguousarray(pixels[::-1])
+
+    def render_from(self, eye: Vec3, target: Vec3, lens: CameraIntrinsics) -> Image:
+        """An image from a point that looks at another point; both in the world, m.
+
+        The image's vertical axis is the world's z axis; straight up or down, it is the y axis.
+
+        Args:
+            eye: Position of the camera; must differ from `target`.
+            target: The centre of the image.
+            lens: Size, field of view and clip distances.
+
+        Returns:
+            Shape (height, width, 3), RGB.
+
+        Raises:
+            WorldError: A visual cannot be built.
+            NoOpenGLError: OpenGL is missing; the hint says what to install.
+            ForkedError: This process was forked from a process that had opened OpenGL.
+        """
+        data = self._bound()
+        view = _View(lens, np.array(eye), _axes_towards(np.subtract(target, eye)), -1)
+        pixels, _ = self._draw(data, view)
         return np.ascontiguousarray(pixels[::-1])
 
     def render_with_depth(self, camera: CameraHandle) -> tuple[Image, Depth]:
@@ -95,7 +136,8 @@ class Renderer:
             NoOpenGLError: OpenGL is missing; the hint says what to install.
             ForkedError: This process was forked from a process that had opened OpenGL.
         """
-        pixels, buffer = self._draw(camera)
+        data = self._bound()
+        pixels, buffer = self._draw(data, _seen_by(camera, data))
         lens = camera.intrinsics
         # The buffer contains near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far
         # plane.
@@ -106,44 +148,45 @@ class Renderer:
         depths[buffer[::-1] == 0] = np.inf
         return np.ascontiguousarray(pixels[::-1]), depths
 
-    def _draw(self, camera: CameraHandle) -> tuple[Image, Depth]:
+    def _draw(self, data: Any, view: _View) -> tuple[Image, Depth]:
         """Pixels and the depth buffer, both with the lowest row first."""
-        data = self._bound()
-        with self._opened(camera.intrinsics.width, camera.intrinsics.height):
-            return self._draw_in_context(data, camera)
+        with self._opened(view.lens.width, view.lens.height):
+            return self._draw_in_context(data, view)
 
-    def _draw_in_context(self, data: Any, camera: CameraHandle) -> tuple[Image, Depth]:
-        lens = camera.intrinsics
+    def _draw_in_context(self, data: Any, view: _View) -> tuple[Image, Depth]:
+        lens = view.lens
         self._prepare(lens.width, lens.height)
-        self._camera.fixedcamid = camera.id
+        kinds = mujoco.mjtCamera
+        self._camera.type = kinds.mjCAMERA_FREE if view.fixed < 0 else kinds.mjCAMERA_FIXED
+        self._camera.fixedcamid = view.fixed
         pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
         buffer = np.empty((lens.height, lens.width), dtype=np.float32)
-        self._show(data, camera)
+        self._show(data, view)
         self._shoot(pixels, buffer)
         # The background, where nothing was drawn.
         empty = buffer == 0
         if self._opaque is None:
             pixels.reshape(-1).view(_PIXEL)[empty.ravel()] = self._background.view(_PIXEL)[0]
         else:
-            share = self._transmitted(data, camera)[empty].astype(np.uint16)
+            share = self._transmitted(data, view)[empty].astype(np.uint16)
             seen = pixels[empty] + share * self._background // _FULL
             pixels[empty] = np.minimum(seen, _FULL)
         return pixels, buffer
 
-    def _show(self, data: Any, camera: CameraHandle, hidden: Any = None) -> None:
+    def _show(self, data: Any, view: _View, hidden: Any = None) -> None:
         """Adds the visible geoms in front of the camera to the scene.
 
         The engine also draws geoms behind the camera, so they are omitted here.
 
         Args:
             data: Data of the bound model.
-            camera: The camera.
+            view: The camera.
             hidden: Mask of geoms to omit, shape (ngeom,).
         """
-        lens, groups = camera.intrinsics, self._model.geom_group
+        lens, groups = view.lens, self._model.geom_group
         saved = groups.copy()
         try:
-            groups[_out_of_view(self._model, data, camera)] = HIDDEN_GROUP
+            groups[_out_of_view(self._model, data, view)] = HIDDEN_GROUP
             if hidden is not None:
                 groups[hidden] = HIDDEN_GROUP
             mujoco.mjv_updateScene(
@@ -160,10 +203,13 @@ class Renderer:
         # Cameras have individual clip planes, but MuJoCo has one pair for all. The other frustum
         # values apply at the near plane.
         half = lens.near * math.tan(lens.horizontal_fov / 2) * lens.height / lens.width
-        for view in self._scene.camera:
-            view.frustum_near, view.frustum_far = lens.near, lens.far
-            view.frustum_bottom, view.frustum_top = -half, half
-            view.frustum_center = 0.0
+        for camera in self._scene.camera:
+            camera.frustum_near, camera.frustum_far = lens.near, lens.far
+            camera.frustum_bottom, camera.frustum_top = -half, half
+            camera.frustum_center = 0.0
+            if view.fixed < 0:
+                camera.pos[:] = view.position
+                camera.up[:], camera.forward[:] = view.axes[:, 1], -view.axes[:, 2]
 
     def _shoot(self, pixels: Image, buffer: Depth | None) -> None:
         """Draws the scene and reads the image, and the depth buffer if one is given."""
@@ -171,18 +217,17 @@ class Renderer:
         mujoco.mjr_render(viewport, self._scene, self._context)
         mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
 
-    def _transmitted(self, data: Any, camera: CameraHandle) -> Image:
+    def _transmitted(self, data: Any, view: _View) -> Image:
         """The fraction of the background visible through transparent geoms, from 0 to 255.
 
         Transparent geoms leave no depth, and the engine draws them in front of black. Here they are
         drawn alone in black, in front of a white wall.
         """
-        self._show(data, camera, hidden=self._opaque)
-        scene, lens = self._scene, camera.intrinsics
+        self._show(data, view, hidden=self._opaque)
+        scene, lens = self._scene, view.lens
         for index in range(scene.ngeom):
             scene.geoms[index].rgba[:3] = 0.0
             scene.geoms[index].emission = 0.0
-        axes = data.cam_xmat[camera.id]
         away = _WALL * lens.far
         wide = lens.far * math.tan(lens.horizontal_fov / 2)
         wall = scene.geoms[scene.ngeom]
@@ -190,8 +235,8 @@ class Renderer:
             wall,
             mujoco.mjtGeom.mjGEOM_BOX,
             np.array([wide, wide * lens.height / lens.width, (1 - _WALL) / 2 * away]),
-            data.cam_xpos[camera.id] - away * axes.reshape(3, 3)[:, 2],
-            axes,
+            view.position - away * view.axes[:, 2],
+            view.axes.ravel(),
             np.ones(4, dtype=np.float32),
         )
         wall.emission = 1.0
@@ -243,12 +288,26 @@ def _background(model: Any) -> Any:
     return np.zeros(3, dtype=np.uint8)
 
 
-def _out_of_view(model: Any, data: Any, camera: CameraHandle) -> Any:
-    """Mask of geoms whose bounding spheres are completely out of view, shape (ngeom,)."""
-    lens = camera.intrinsics
-    radius = model.geom_rbound
+def _seen_by(camera: CameraHandle, data: Any) -> _View:
+    """The view of a camera in the model."""
     axes = data.cam_xmat[camera.id].reshape(3, 3)
-    right, up, back = ((data.geom_xpos - data.cam_xpos[camera.id]) @ axes).T
+    return _View(camera.intrinsics, data.cam_xpos[camera.id], axes, camera.id)
+
+
+def _axes_towards(direction: Any) -> Any:
+    """The axes of a camera that looks in a direction; see `_View.axes`."""
+    back = -direction / np.linalg.norm(direction)
+    upright = np.array([0.0, 1.0, 0.0] if abs(back[2]) > _STEEP else [0.0, 0.0, 1.0])
+    right = np.cross(upright, back)
+    right /= np.linalg.norm(right)
+    return np.column_stack([right, np.cross(back, right), back])
+
+
+def _out_of_view(model: Any, data: Any, view: _View) -> Any:
+    """Mask of geoms whose bounding spheres are completely out of view, shape (ngeom,)."""
+    lens = view.lens
+    radius = model.geom_rbound
+    right, up, back = ((data.geom_xpos - view.position) @ view.axes).T
     wide = math.tan(lens.horizontal_fov / 2)
     high = wide * lens.height / lens.width
     out = (-back + radius < lens.near) | (-back - radius > lens.far)

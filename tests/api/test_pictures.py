@@ -1,0 +1,136 @@
+"""Pictures of a world, and its page in a notebook."""
+
+from __future__ import annotations
+
+import io
+import re
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.coded import raises
+
+import cartwheel as cw
+from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, SIMULATION_CLOSED
+
+BALL = """<sdf version="1.7"><model name="{name}"><static>{static}</static>
+<link name="base"><visual name="v"><geometry><sphere><radius>0.5</radius></sphere></geometry>
+<material><ambient>{color}</ambient><diffuse>{color}</diffuse></material></visual>
+<collision name="c"><geometry><sphere><radius>0.5</radius></sphere></geometry></collision>
+</link></model></sdf>"""
+
+
+def ball(folder: Path, name: str, color: str, *, static: bool = False) -> Path:
+    file = folder / f"{name}.sdf"
+    file.write_text(BALL.format(name=name, color=color, static=str(static).lower()))
+    return file
+
+
+def red(pixels: np.ndarray) -> np.ndarray:
+    values = pixels.astype(int)
+    return (values[..., 0] > 80) & (values[..., 1] < 40) & (values[..., 2] < 40)
+
+
+def test_a_picture_shows_what_lies_at_its_centre(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        world.spawn(ball(tmp_path, "red", "1 0 0 1"), x=3.0, y=1.0, z=0.5)
+        taken = world.picture(200, 100, eye=(3.0, -9.0, 0.5), target=(3.0, 1.0, 0.5))
+        rows, columns = np.nonzero(red(taken.pixels))
+    # A ball of radius 0.5 m at 10 m subtends 2 asin(0.05); the picture's width is 0.9 rad.
+    focal = 100 / np.tan(0.45)
+    radius = focal * np.tan(np.arcsin(0.05))
+    assert columns.mean() == pytest.approx(99.5, abs=1)
+    assert rows.mean() == pytest.approx(49.5, abs=1)
+    assert len(rows) == pytest.approx(np.pi * radius**2, rel=0.1)
+
+
+def test_up_is_up_and_left_is_left(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        world.spawn(ball(tmp_path, "red", "1 0 0 1"), x=10.0, y=2.0, z=2.5)
+        ahead = red(world.picture(200, 200, eye=(0, 0, 0.5), target=(10, 0, 0.5)).pixels)
+        below = red(world.picture(200, 200, eye=(10, 0, 20), target=(10, 0, 0)).pixels)
+    rows, columns = np.nonzero(ahead)
+    assert rows.mean() < 90 and columns.mean() < 90
+    # From straight above, the y axis points up.
+    rows, columns = np.nonzero(below)
+    assert rows.mean() < 90 and columns.mean() == pytest.approx(99.5, abs=1)
+
+
+@pytest.mark.parametrize("size", [(200, 100), (100, 200)])
+def test_all_that_can_move_is_visible(tmp_path: Path, size: tuple[int, int]) -> None:
+    with cw.World("empty") as world:
+        for index, place in enumerate([(-2.0, 0.0), (2.0, 1.0), (0.0, 4.0)]):
+            file = ball(tmp_path, f"ball_{index}", "1 0 0 1")
+            world.spawn(file, x=place[0], y=place[1], z=0.5)
+        world.spawn(ball(tmp_path, "far", "0 0 1 1", static=True), x=300.0)
+        whole = red(world.picture(*size).pixels)
+        assert not (whole[0].any() or whole[-1].any() or whole[:, 0].any() or whole[:, -1].any())
+        # Each ball is more than a few pixels.
+        assert whole.sum() > 60
+
+
+def test_a_picture_changes_nothing(tmp_path: Path) -> None:
+    def drive(*, pictures: bool) -> tuple[float, ...]:
+        with cw.World("empty") as world:
+            cart = world.spawn("rosbots.xacro")
+            images = world.mailbox("/rosbots/camera1/image_raw", size=1)
+            cart.publish("/part2_cmr/cmd_vel", linear_x=0.4, angular_z=0.3)
+            for _ in range(4):
+                world.run(0.25)
+                if pictures:
+                    world.picture(64, 48)
+            data = images.get().data
+            return (*cart.pose.position, *cart.pose.orientation, int(data.astype(int).sum()))
+
+    assert drive(pictures=True) == drive(pictures=False)
+
+
+def test_a_picture_is_displayed_and_saved(tmp_path: Path) -> None:
+    from PIL import Image
+
+    with cw.World("post") as world:
+        taken = world.picture(64, 48)
+    assert np.asarray(taken) is taken.pixels and taken.pixels.shape == (48, 64, 3)
+    shown = np.asarray(Image.open(io.BytesIO(taken._repr_png_())))
+    assert (shown == taken.pixels).all()
+    taken.save(tmp_path / "world.png")
+    assert (np.asarray(Image.open(tmp_path / "world.png")) == taken.pixels).all()
+
+
+def test_sizes_and_points_are_checked() -> None:
+    world = cw.World("empty")
+    for options in (
+        {"width": 0},
+        {"height": 8193},
+        {"width": 1.5},
+        {"width": float("nan")},
+        {"eye": (0, 0, float("inf"))},
+        {"eye": (1, 1, 1), "target": (1, 1, 1)},
+    ):
+        with raises(NUMBER_OUT_OF_RANGE):
+            world.picture(**options)
+    world.close()
+    for show in (world.picture, world.view):
+        with raises(SIMULATION_CLOSED):
+            show()
+
+
+def test_a_cell_shows_the_page_in_a_frame(tidy: None) -> None:
+    with cw.World("empty") as world:
+        page = world.view(port=0, width=800, height=300)
+        shown = page._repr_html_()
+        found = re.search(r'<iframe src="([^"]+)" width="800" height="300"', shown)
+        assert found is not None and page.url in shown and repr(page) == page.url
+        with urllib.request.urlopen(found[1], timeout=60) as response:
+            assert "frame-ancestors" not in response.headers["Content-Security-Policy"]
+        with urllib.request.urlopen(page.url, timeout=60) as response:
+            assert "frame-ancestors 'self'" in response.headers["Content-Security-Policy"]
+        # The same page again.
+        assert world.view().url == page.url
+
+
+def test_a_page_for_other_computers_is_only_linked(tidy: None) -> None:
+    with cw.World("empty", host="0.0.0.0") as world:
+        page = world.view(port=0)
+        assert page.frame is None and "iframe" not in page._repr_html_()
