@@ -13,7 +13,7 @@ imu = world.mailbox("/imu/data")
 cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
 
 # The ramp begins at x = 1.9; from 2.2 on the cart is on it with wheels and caster.
-slopes = []
+slopes: list[float] = []
 while cart.pose.x < 2.6:
     world.run(seconds=0.1)
     readings = imu.drain()
