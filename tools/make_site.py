@@ -68,6 +68,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "how-to/README.md",
             "check.md",
             "python.md",
+            "python/state.md",
             "ros1.md",
             "ros2.md",
             "foxglove.md",

@@ -14,18 +14,45 @@ from typing import TYPE_CHECKING, Any
 from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:
-    from cartwheel.api import Built, Model, World, build
+    from cartwheel.api import (
+        Acceleration,
+        Built,
+        Contact,
+        Joint,
+        Joints,
+        JointValues,
+        Link,
+        Model,
+        Twist,
+        World,
+        build,
+    )
     from cartwheel.checks import check
     from cartwheel.geometry import Pose
 
-__all__ = ["Built", "CartwheelError", "Model", "Pose", "World", "build", "check"]
+__all__ = [
+    "Acceleration",
+    "Built",
+    "CartwheelError",
+    "Contact",
+    "Joint",
+    "JointValues",
+    "Joints",
+    "Link",
+    "Model",
+    "Pose",
+    "Twist",
+    "World",
+    "build",
+    "check",
+]
 __version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:
     # The import of numpy and the physics engine takes 0.1 s, but the command line must first parse
     # its arguments and handle Ctrl-C.
-    if name in ("Built", "Model", "World", "build"):
+    if name in __all__ and name not in ("CartwheelError", "Pose", "check"):
         from cartwheel import api
 
         return getattr(api, name)

@@ -1,7 +1,23 @@
 """The Python API: worlds, models and simulation time."""
 
 from cartwheel.api.built import Built, build
+from cartwheel.api.contacts import Contact
+from cartwheel.api.joints import Joint, Joints, JointValues
+from cartwheel.api.links import Link
 from cartwheel.api.model import Model
+from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.world import World
 
-__all__ = ["Built", "Model", "World", "build"]
+__all__ = [
+    "Acceleration",
+    "Built",
+    "Contact",
+    "Joint",
+    "JointValues",
+    "Joints",
+    "Link",
+    "Model",
+    "Twist",
+    "World",
+    "build",
+]

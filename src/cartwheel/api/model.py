@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from cartwheel.api.joints import Joints
+from cartwheel.api.links import Link
+from cartwheel.api.motion import Twist
+from cartwheel.api.values import Vector, vector
 from cartwheel.geometry import Pose
 
 if TYPE_CHECKING:
     from cartwheel.api.world import World
+
+_NONE: Vector = (0.0, 0.0, 0.0)
 
 
 class Model:
@@ -17,26 +23,127 @@ class Model:
         self._world = world
         self.name = name
 
+    def __repr__(self) -> str:
+        return f"Model({self.name!r})"
+
+    @property
+    def scoped_name(self) -> str:
+        """The name, for `World.contacts`."""
+        return self.name
+
+    # -- motion
+
     @property
     def pose(self) -> Pose:
-        """Pose of the root link in the world frame."""
+        """Pose of the model's frame in the world: for a URDF, the frame of the root link.
+
+        Setting it moves the whole model and stops its motion; its joints keep their positions. A
+        model that is fixed to the world moves, too.
+
+        Raises:
+            UnknownNameError: The model does not exist any more.
+            CartwheelError: A number is not finite or too large.
+        """
         with self._world.lock:
-            self._world.session.simulation.refresh()
-            return self._world.session.simulation.pose(self.name)
+            simulation = self._world.session.simulation
+            simulation.truth.locate()
+            return simulation.pose(self.name)
 
     @pose.setter
     def pose(self, pose: Pose) -> None:
         with self._world.used(change=True) as simulation:
             simulation.set_pose(self.name, pose)
 
+    @property
+    def velocity(self) -> Twist:
+        """Velocity of the model's frame, in world axes.
+
+        Setting it gives the whole model this velocity, as a rigid body; its joints stop. To give
+        joints a velocity, set `joints.velocities` afterwards.
+
+        Raises:
+            UnknownNameError: The model does not exist any more.
+            SimulationError: The model is fixed to the world, or the world is closed.
+            CartwheelError: A number is not finite or too large.
+        """
+        with self._world.lock:
+            return Twist(*self._world.session.simulation.truth.velocity(self.name))
+
+    @velocity.setter
+    def velocity(self, velocity: Twist) -> None:
+        linear = vector(velocity.linear, "velocity.linear")
+        angular = vector(velocity.angular, "velocity.angular")
+        with self._world.used(change=True) as simulation:
+            simulation.truth.set_velocity(self.name, linear, angular)
+
+    def push(
+        self,
+        force: Vector = _NONE,
+        torque: Vector = _NONE,
+        *,
+        at: Vector | None = None,
+        seconds: float = 0.0,
+    ) -> None:
+        """Pushes the root link; see `Link.push`."""
+        with self._world.lock:
+            root = self._world.session.simulation.truth.description(self.name).canonical_link
+            self.link(root).push(force, torque, at=at, seconds=seconds)
+
+    # -- parts
+
+    @property
+    def mass(self) -> float:
+        """Total mass of all links, kg.
+
+        Raises:
+            UnknownNameError: The model does not exist any more.
+        """
+        with self._world.lock:
+            return self._world.session.simulation.truth.description(self.name).mass
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Names of the links, in the order of the description.
+
+        Raises:
+            UnknownNameError: The model does not exist any more.
+        """
+        with self._world.lock:
+            description = self._world.session.simulation.truth.description(self.name)
+            return tuple(link.name for link in description.links)
+
+    def link(self, name: str) -> Link:
+        """A handle to a link.
+
+        Args:
+            name: Name of the link in the model.
+
+        Raises:
+            UnknownNameError: The link does not exist, or the model does not exist any more.
+        """
+        with self._world.lock:
+            self._world.session.simulation.truth.link(self.name, name)
+        return Link(self._world, self.name, name)
+
+    @property
+    def joints(self) -> Joints:
+        """The joints with one degree of freedom.
+
+        ``model.joints.positions["elbow"]`` is a position, and
+        ``numpy.asarray(model.joints.positions)`` an array of all.
+        """
+        return Joints(self._world, self.name)
+
     def joint(self, name: str) -> float:
-        """Position of a joint, rad or m.
+        """Position of a joint, rad or m. For its other values, use ``joints[name]``.
 
         Raises:
             UnknownNameError: The joint does not exist.
         """
         with self._world.lock:
             return self._world.session.simulation.joint_position(self.name, name)
+
+    # -- messages and the end
 
     def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
         """`World.publish`."""

@@ -11,6 +11,7 @@ from cartwheel import description as descriptions
 from cartwheel.api.messaging import MessagingWorld, several
 from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
+from cartwheel.api.surroundings import SurroundingWorld
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import Pose
@@ -19,7 +20,7 @@ from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.models.compilations import Compiler
 
 
-class World(PicturedWorld, MessagingWorld):
+class World(SurroundingWorld, PicturedWorld, MessagingWorld):
     """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.

@@ -98,3 +98,12 @@ FRICTION_LIMITED = Code(
     "info",
     "the friction of a part that a base must slide on the ground is limited",
 )
+FIXED_TO_WORLD = Code(
+    "CW631",
+    "fixed-to-world",
+    "error",
+    "a model or link cannot be pushed or get a velocity, because it is fixed to the world",
+)
+VALUE_INVALID = Code(
+    "CW632", "value-invalid", "error", "a property of a model or link cannot have this value"
+)

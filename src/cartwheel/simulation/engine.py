@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
@@ -24,6 +25,7 @@ from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.pairs import Alignment
 
 _OBJ = mujoco.mjtObj
+_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 # Keyed by number: numpy integers equal the enum members, but hash differently.
 _STATE_SIZES = {mujoco.mjtJoint.mjJNT_FREE.value: (7, 6), mujoco.mjtJoint.mjJNT_BALL.value: (4, 3)}
@@ -67,6 +69,12 @@ class Engine:
         """Called after a task was replaced."""
         self.on_entries: list[Callable[[], None]] = []
         """Called after an addition to a model that is already compiled."""
+        self.serving = False
+        """Whether tasks run that read a forward pass, which the next step uses."""
+        self._changes = 0
+        """Number of changes of the model and of forces that are not part of the state."""
+        self._located = self._refreshed = b""
+        """The states of the last `locate` and `refresh`."""
         self.entries: Sequence[ModelEntry] = ()
         """The models in the world."""
         self._orders = itertools.count()
@@ -144,17 +152,60 @@ class Engine:
             self.report(error.diagnostic("warning"))
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
         self.visuals.bind(model, data, compile_visuals)
+        self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
+        self._located = self._refreshed = b""
 
-    def forward(self) -> None:
+    def note_change(self) -> None:
+        """Makes the next `refresh` compute a forward pass, after a change of the model.
+
+        While tasks read the forward pass of a step, it is computed at once.
+        """
+        self._changes += 1
+        if self.serving:
+            self.forward()
+
+    def refresh(self) -> None:
+        """As `forward`, but only if the state differs from that of the last call.
+
+        Neither the state nor any later state depends on it.
+
+        Raises:
+            SimulationError: There is not enough memory for the contacts.
+        """
+        if self.serving:
+            return
+        state = self.signature()
+        if state != self._refreshed:
+            self.forward()
+            self._located = self._refreshed = state
+
+    def signature(self) -> bytes:
+        """Differs for any two states with different poses, contacts or forces."""
+        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
+        return self._state.tobytes() + self._changes.to_bytes(8)
+
+    def forward(self, data: Any = None) -> None:
         """Computes poses, contacts and forces for the current state, which does not change.
+
+        Args:
+            data: A copy of the data with the state; None for the data itself.
 
         Raises:
             SimulationError: There is not enough memory for the contacts.
         """
         try:
-            mujoco.mj_forward(self.model, self.data)
+            mujoco.mj_forward(self.model, self.data if data is None else data)
         except mujoco.FatalError as error:
             raise self._exhausted(error) from None
+
+    def refresh_poses(self) -> None:
+        """As `locate`, but only if the state differs from that of the last call."""
+        if self.serving:
+            return
+        state = self.signature()
+        if state != self._located:
+            self.locate()
+            self._located = state
 
     def locate(self) -> None:
         """Computes only poses and velocities for the current state."""
@@ -243,14 +294,19 @@ class Engine:
             linear: m/s, in world axes.
             angular: rad/s, in world axes.
         """
-        position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
+        position = self.model.jnt_qposadr[joint]
         self.data.qpos[position : position + 3] = pose.position
         self.data.qpos[position + 3 : position + 7] = to_wxyz(pose.orientation)
+        self.set_velocity(joint, linear, angular)
+        self.forward()
+
+    def set_velocity(self, joint: int, linear: Vec3, angular: Vec3) -> None:
+        """Sets the velocity of a free joint's frame, in m/s and rad/s, in world axes."""
+        position, velocity = self.model.jnt_qposadr[joint], self.model.jnt_dofadr[joint]
         self.data.qvel[velocity : velocity + 3] = linear
         # MuJoCo uses body axes for a free body's angular velocity.
-        turning = rotate(quat_conjugate(pose.orientation), angular)
-        self.data.qvel[velocity + 3 : velocity + 6] = turning
-        self.forward()
+        turned = from_wxyz(self.data.qpos[position + 3 : position + 7].tolist())
+        self.data.qvel[velocity + 3 : velocity + 6] = rotate(quat_conjugate(turned), angular)
 
     def set_joint(self, joint: int, position: float) -> None:
         """Sets the position of a joint with one degree of freedom and stops the joint."""

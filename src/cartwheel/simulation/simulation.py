@@ -14,6 +14,7 @@ from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
 from cartwheel.simulation.limits import check_steps
 from cartwheel.simulation.models.compilations import Compiler
+from cartwheel.simulation.models.ground_truth import GroundTruth
 from cartwheel.simulation.models.models import Models
 from cartwheel.simulation.models.resident import Attach
 from cartwheel.simulation.snapshot import RunState, Snapshot
@@ -58,6 +59,8 @@ class Simulation(Models):
         super().__init__(Engine(world, seed, omitted(without)), attach, compiler or Compiler())
         self.faults = Faults(self.engine, self._population)
         self.engine.on_fault = self.faults.disable
+        self.truth = GroundTruth(self.engine, self._population, self.forces)
+        """The exact state of the models."""
         self._population.start(attach_world)
         try:
             self._population.add_all(world.models)
@@ -176,15 +179,20 @@ class Simulation(Models):
             last = sorted((*readers, *last), key=_order)
         if not last:
             return False
-        self.engine.forward()
-        for task in last:
-            after = task.after
-            try:
-                # None if the plugin was disabled in the meantime.
-                if after is not None:
-                    after()
-            except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
-                self.faults.task_failed(task, error)
+        engine = self.engine
+        engine.forward()
+        engine.serving = True
+        try:
+            for task in last:
+                after = task.after
+                try:
+                    # None if the plugin was disabled in the meantime.
+                    if after is not None:
+                        after()
+                except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
+                    self.faults.task_failed(task, error)
+        finally:
+            engine.serving = False
         return True
 
     def step(self, count: int = 1) -> None:
@@ -199,7 +207,7 @@ class Simulation(Models):
 
     def refresh(self) -> None:
         """Updates poses and contacts to the current state, for reading between steps."""
-        self.engine.forward()
+        self.engine.refresh()
 
     def reset(self, *, keep_time: bool = False) -> None:
         """Resets every model to its spawn pose, and time to zero.

@@ -106,6 +106,15 @@ class Forces:
         number(effort, f'the effort on joint "{joint}"', most=STRONGEST)
         self._add(model, joint, np.array([effort], dtype=float), start_ns, duration_ns)
 
+    def effort_on(self, model: str, joint: str) -> float:
+        """The effort of all pushes on a joint in the step that begins now, N m or N."""
+        time_ns, step_ns = self._engine.time_ns, self._engine.step_ns
+        return sum(
+            push.weight(time_ns, step_ns) * float(push.value[0])
+            for push in self._pushes
+            if push.turns and (push.model, push.part) == (model, joint)
+        )
+
     def clear_wrenches(self, model: str, link: str) -> None:
         """Removes all pushes on a link."""
         self._keep(lambda push: push.turns or (push.model, push.part) != (model, link))

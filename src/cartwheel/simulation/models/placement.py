@@ -33,19 +33,52 @@ def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, ang
     }
     _stop(engine, entry)
     for link, place in places.items():
-        arm = np.subtract(place.position, pose.position)
-        vx, vy, vz = (np.asarray(linear) + np.cross(angular, arm)).tolist()
-        engine.place(engine.free_joint(entry.name, link), place, (vx, vy, vz), angular)
+        carried = _carried(place, pose, linear, angular)
+        engine.place(engine.free_joint(entry.name, link), place, carried, angular)
 
 
-def with_mimics(description: RobotDescription, positions: Mapping[str, float]) -> dict[str, float]:
-    """The positions, extended by joints that mimic them directly or indirectly."""
+def push_off(engine: Engine, entry: ModelEntry, linear: Vec3, angular: Vec3) -> None:
+    """Sets the velocity of a free model as a rigid body, where it is.
+
+    Args:
+        engine: The engine with the model, whose poses are computed.
+        entry: The model.
+        linear: Velocity of its frame's origin, m/s, in world axes.
+        angular: rad/s, in world axes.
+    """
+    pose = engine.model_pose(entry)
+    _stop(engine, entry)
+    for link in entry.description.links:
+        joint = engine.free_joint(entry.name, link.name)
+        if joint >= 0:
+            place = engine.link_pose(entry.name, link.name)
+            engine.set_velocity(joint, _carried(place, pose, linear, angular), angular)
+
+
+def _carried(place: Pose, pose: Pose, linear: Vec3, angular: Vec3) -> Vec3:
+    """The velocity of a link's origin that moves with a frame as a rigid body, m/s."""
+    arm = np.subtract(place.position, pose.position)
+    vx, vy, vz = (np.asarray(linear) + np.cross(angular, arm)).tolist()
+    return vx, vy, vz
+
+
+def with_mimics(
+    description: RobotDescription, positions: Mapping[str, float], *, offsets: bool = True
+) -> dict[str, float]:
+    """The positions, extended by joints that mimic them directly or indirectly.
+
+    Args:
+        description: The model.
+        positions: By joint, rad or m; or velocities without `offsets`, rad/s or m/s.
+        offsets: Whether to add the offsets of the positions.
+    """
     found = dict(positions)
     mimics = {joint.name: joint.mimic for joint in description.joints if joint.mimic is not None}
     for _ in mimics:
         for name, mimic in mimics.items():
             if name not in positions and mimic.joint in found:
-                found[name] = mimic.offset + mimic.multiplier * found[mimic.joint]
+                offset = mimic.offset if offsets else 0.0
+                found[name] = offset + mimic.multiplier * found[mimic.joint]
     return found
 
 

@@ -1,0 +1,96 @@
+"""Contacts between the links of a world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from cartwheel.geometry import Vec3
+from cartwheel.simulation import Simulation
+
+if TYPE_CHECKING:
+    from cartwheel.api.links import Link
+    from cartwheel.api.model import Model
+    from cartwheel.simulation.sensing.touches import Touch
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Contact:
+    """Two links that touch at one point."""
+
+    models: tuple[str, str]
+    """Names of the two models."""
+    links: tuple[str, str]
+    """Names of the two links in their models."""
+    collisions: tuple[str, str]
+    """Names of the two collisions in their links."""
+    point: Vec3
+    """m, in the world."""
+    normal: Vec3
+    """Unit vector in the world, from the second link into the first."""
+    force: Vec3
+    """Force on the first link, N, in world axes: the normal force and friction."""
+    depth: float
+    """Penetration depth, m; the physics needs a small depth for a force."""
+
+
+def contacts_between(
+    simulation: Simulation, between: str | Model | Link | Sequence[str | Model | Link] | None
+) -> tuple[Contact, ...]:
+    """The contacts in the current state; see `World.contacts`."""
+    sides = [_side(simulation, each) for each in _listed(between)]
+    found = []
+    for touch in simulation.truth.contacts():
+        if not sides or _fits(touch, sides):
+            found.append(_contact(touch))
+        elif _fits(touch.turned(), sides):
+            found.append(_contact(touch.turned()))
+    return tuple(found)
+
+
+Side = tuple[str, str | None]
+"""A model, and one of its links or None for all."""
+
+
+def _listed(
+    between: str | Model | Link | Sequence[str | Model | Link] | None,
+) -> Sequence[str | Model | Link]:
+    if between is None:
+        return ()
+    if isinstance(between, str) or not isinstance(between, Sequence):
+        return (between,)
+    if len(between) not in (1, 2):
+        raise TypeError(f"contacts are between one or two models or links (got {len(between)})")
+    return between
+
+
+def _side(simulation: Simulation, named: str | Model | Link) -> Side:
+    if not isinstance(named, str):
+        named = named.scoped_name
+    model, separator, link = named.partition("::")
+    if not separator:
+        simulation.truth.description(model)
+        return model, None
+    simulation.truth.link(model, link)
+    return model, link
+
+
+def _fits(touch: Touch, sides: Sequence[Side]) -> bool:
+    return all(
+        model == names[0] and link in (None, names[1])
+        for (model, link), names in zip(sides, (touch.first, touch.second), strict=False)
+    )
+
+
+def _contact(touch: Touch) -> Contact:
+    one, two = touch.first, touch.second
+    return Contact(
+        models=(one[0], two[0]),
+        links=(one[1], two[1]),
+        collisions=(one[2], two[2]),
+        point=touch.point,
+        normal=touch.normal,
+        force=touch.force,
+        depth=touch.depth,
+    )

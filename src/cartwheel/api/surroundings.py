@@ -1,0 +1,38 @@
+"""Contacts and surroundings of the models in a world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from cartwheel.api.contacts import Contact, contacts_between
+from cartwheel.api.running import RunningWorld
+
+if TYPE_CHECKING:
+    from cartwheel.api.links import Link
+    from cartwheel.api.model import Model
+
+
+class SurroundingWorld(RunningWorld):
+    """The part of `World` with the exact state of all models together."""
+
+    def contacts(
+        self, between: str | Model | Link | Sequence[str | Model | Link] | None = None
+    ) -> tuple[Contact, ...]:
+        """The contacts in the current state.
+
+        A model that rests on another one usually has several contacts with it. Links that are
+        connected by a joint have none, and neither have links of one model without self-collision.
+
+        Args:
+            between: A model or a link: its contacts with everything, with its links as the first
+                ones. Two of them: the contacts between both, in this order. Each is a `Model`, a
+                `Link`, a model's name, or a link's name such as ``cart::wheel``. None: all contacts
+                in the world.
+
+        Raises:
+            UnknownNameError: A model or link does not exist.
+            TypeError: `between` contains more than two models or links.
+        """
+        with self.lock:
+            return contacts_between(self.session.simulation, between)

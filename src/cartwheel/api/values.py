@@ -1,0 +1,79 @@
+"""Vectors from the callers of the Python API."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import SupportsFloat
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.codes.world import VALUE_INVALID
+from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Array, Vec3
+
+Vector = Sequence[float] | NDArray[np.float64]
+"""Three numbers."""
+
+
+def vector(values: Vector, name: str) -> Vec3:
+    """Three finite numbers.
+
+    Raises:
+        CartwheelError: There are not three numbers, or one is not finite.
+    """
+    x, y, z = array(values, (3,), name).tolist()
+    return x, y, z
+
+
+def array(values: object, shape: tuple[int, ...], name: str) -> Array:
+    """An array of finite numbers.
+
+    Raises:
+        CartwheelError: The shape is different, or a value is not a finite number.
+    """
+    try:
+        made = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        made = np.empty(0)
+    if made.shape != shape or not np.isfinite(made).all():
+        size = " x ".join(map(str, shape))
+        raise invalid(name, f"must be {size} finite numbers", values)
+    return made
+
+
+def scalar(
+    value: SupportsFloat, name: str, *, least: float = -math.inf, above: float = -math.inf
+) -> float:
+    """A finite number.
+
+    Args:
+        value: The number.
+        name: Its name, for the error.
+        least: The smallest number that is allowed.
+        above: The number must be larger than this.
+
+    Raises:
+        CartwheelError: The value is not a finite number, or is too small.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise invalid(name, "must be a number", value) from None
+    if not math.isfinite(number):
+        raise invalid(name, "must be finite", value)
+    if number <= above:
+        raise invalid(name, f"must be above {above:g}", value)
+    if number < least:
+        raise invalid(name, f"must be at least {least:g}", value)
+    return number
+
+
+def invalid(name: str, rule: str, value: object) -> CartwheelError:
+    """The error for a value that a property cannot have."""
+    shown = repr(value)
+    shown = shown if len(shown) <= 80 else f"{shown[:80]}…"
+    return CartwheelError(
+        f"{name} {rule} (got {shown})", code=VALUE_INVALID, values={"name": name, "value": shown}
+    )
