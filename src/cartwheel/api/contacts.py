@@ -12,7 +12,7 @@ from cartwheel.simulation import Simulation
 if TYPE_CHECKING:
     from cartwheel.api.links import Link
     from cartwheel.api.model import Model
-    from cartwheel.simulation.sensing.touches import Touch
+    from cartwheel.simulation.models.touches import Touch
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

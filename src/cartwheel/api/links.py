@@ -8,7 +8,6 @@ from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.values import Vector, vector
 from cartwheel.geometry import Pose
 from cartwheel.simulation.limits import duration_ns
-from cartwheel.world.entry import scoped
 
 if TYPE_CHECKING:
     from cartwheel.api.contacts import Contact
@@ -36,7 +35,7 @@ class Link:
     @property
     def scoped_name(self) -> str:
         """Gazebo's name: ``model::link``."""
-        return scoped(self.model, self.name)
+        return f"{self.model}::{self.name}"
 
     # -- motion
 

@@ -17,7 +17,7 @@ from cartwheel.simulation.limits import STRONGEST, number, numbers
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.placement import push_off, with_mimics
 from cartwheel.simulation.models.population import Population
-from cartwheel.simulation.sensing.touches import Touch, Touches
+from cartwheel.simulation.models.touches import Touch, Touches
 
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
