@@ -27,7 +27,7 @@ from tests.processes import bridges_of
 
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder, writing
-from cartwheel.bridges.recording.backlog import Backlog, Item
+from cartwheel.bridges.recording.backlog import ROOM, Backlog
 from cartwheel.bridges.recording.formats import encoding_for
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.patterns import Patterns
@@ -48,7 +48,7 @@ from cartwheel.codes.recording import (
 from cartwheel.codes.wires import BRIDGE_ENDED
 from cartwheel.errors import Code, Diagnostic, RecordingError
 from cartwheel.graph import Graph
-from cartwheel.messages import encode_cdr, from_dict, message_class
+from cartwheel.messages import encode_cdr, message_class
 from cartwheel.messages.ros1 import encode_ros1, ros1_type
 from cartwheel.messages.ros1 import writing as ros1_writing
 from cartwheel.messages.ros2 import definitions as ros2
@@ -417,13 +417,12 @@ def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
 ) -> None:
     real = Backlog.get
 
-    def slow(self: Backlog, timeout: float) -> list[Item]:
+    def slow(self: Backlog[Any], timeout: float) -> list[Any]:
         time.sleep(0.02)
         return real(self, timeout)
 
     monkeypatch.setattr(Backlog, "get", slow)
-    monkeypatch.setattr("cartwheel.bridges.recording.backlog.COUNT", 5)
-    monkeypatch.setattr("cartwheel.bridges.recording.recorder.Backlog", lambda: Backlog(count=5))
+    monkeypatch.setattr(Backlog.__init__, "__kwdefaults__", {"room": ROOM, "count": 5})
     path = tmp_path / "slow.mcap"
     with cw.World("empty") as world:
         with world.record(path, topics=["/clock"]) as recorder:
@@ -436,25 +435,25 @@ def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
 
 
 def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
-    image = from_dict("sensor_msgs/msg/Image", {"data": bytes(1000)})
-    backlog = Backlog(room=3000)
+    backlog = Backlog[int](room=3000)
     put = [0]
 
     def fill() -> None:
-        for _ in range(10):
-            backlog.put(Item("/a", "t", False, 0, image, False))
+        for number in range(10):
+            backlog.put(number, 1000)
             put[0] += 1
 
     thread = threading.Thread(target=fill)
     thread.start()
-    taken = 0
-    while taken < 10:
+    taken: list[int] = []
+    while len(taken) < 10:
         items = backlog.get(10.0)
         assert 0 < len(items) <= 3
-        taken += len(items)
-        backlog.done(items)
+        taken += [number for number, _ in items]
+        backlog.done(sum(size for _, size in items))
     thread.join(120)
     assert put == [10]
+    assert taken == list(range(10))
 
 
 def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> None:
@@ -469,6 +468,23 @@ def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> 
     assert recorder.close().messages == 2
     assert read_with_rosbags(tmp_path / "a.bag") == {"/a": [(5, b"\1"), (5, b"\2")]}
     assert len(reports) == 1 and coded(reports, MESSAGE_NOT_RECORDED, topic="/a")
+
+
+def test_a_message_that_is_changed_and_published_again(tmp_path: Path) -> None:
+    """Its bytes are those of each time it was published, by either way."""
+    with cw.World("empty") as world:
+        publisher = world.advertise("/a", "std_msgs/msg/UInt8")
+        message = world.message_class("std_msgs/msg/UInt8")(0)
+        with world.record(tmp_path / "a.mcap", topics="/a"):
+            for number in range(1, 6):
+                message.data = number
+                publisher.publish(message)
+            for number in range(6, 11):
+                message.data = number
+                world.publish("/a", message)
+                world.run(0.01)
+    found = read_with_mcap(tmp_path / "a.mcap")["/a"]
+    assert [data[-1] for _, data in found] == list(range(1, 11))
 
 
 _RUN = ["run", "--headless", "--speed", "max", "--for", "100000", "--record"]
@@ -706,7 +722,7 @@ def test_room_for_the_end_is_made_where_the_disk_has_none(
     monkeypatch.setattr(Sink, "write", limited)
     path = tmp_path / name
     wanted = encoding_for(path, None)
-    writer = open_writer(path, wanted, overwrite=False, notes={}, pack=encode_cdr)
+    writer = open_writer(path, wanted, overwrite=False, notes={})
     channels = [writer.add(f"/t{i}", "std_msgs/msg/String", latched=False) for i in range(20)]
     noise = random.Random(limit)
     step = 0
@@ -715,7 +731,8 @@ def test_room_for_the_end_is_made_where_the_disk_has_none(
             step += 1
             text = noise.randbytes(40).hex()
             message = message_class("std_msgs/msg/String")(data=text)
-            writer.write(channels[step % 20], step * 10**6, message)
+            data = encode_ros1(message) if wanted == "ros1" else encode_cdr(message)
+            writer.write(channels[step % 20], step * 10**6, data)
             if step % 25 == 0:
                 writer.flush()
     writer.abandon()

@@ -198,7 +198,13 @@ class Graph:
         """Publishes one message from any thread, by passing it to the owner's thread."""
         with self._lock:
             topic = self._topic(name, type_name)
-        self.post(lambda: topic.deliver(message))
+
+        def deliver() -> None:
+            # The caller may have changed the fields of a message that was published before.
+            self.cdr.forget()
+            topic.deliver(message)
+
+        self.post(deliver)
 
     def serve(
         self,

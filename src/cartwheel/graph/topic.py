@@ -166,6 +166,8 @@ class CheckedPublisher(Publisher):
             GraphError: The value is not a message of the topic's type.
         """
         check_message(self.topic, self.type, message)
+        # The user may have changed the fields of a message that was published before.
+        self._graph.cdr.forget()
         super().publish(message)
 
 

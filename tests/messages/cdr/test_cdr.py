@@ -63,6 +63,33 @@ def test_every_type_has_the_bytes_that_rosbags_writes(name: str) -> None:
         assert encode_cdr(message) == bytes(store().serialize_cdr(message, name))
 
 
+def test_lengths_that_are_not_cached_between_those_that_are() -> None:
+    """Long strings and large arrays have a writer of their own, also within a list."""
+    chance = random.Random(1)
+    joints = "sensor_msgs/msg/JointState"
+    for count in (0, 3, 2, 3, 600, 3, 70, 3):
+        message = grown(joints, chance)
+        message.name = [chance.choice("ab€") * chance.randrange(4) for _ in range(count)]
+        message.header.frame_id = "f" * chance.choice([1, 5, 100])
+        for field in ("position", "velocity", "effort"):
+            setattr(message, field, np.arange(float(chance.choice([0, 1, count, 700]))))
+        assert encode_cdr(message) == bytes(store().serialize_cdr(message, joints))
+    markers = "visualization_msgs/msg/MarkerArray"
+    for long in (0, 100, 1, 0, 100):
+        message = zero(markers)
+        message.markers = [grown("visualization_msgs/msg/Marker", chance) for _ in range(4)]
+        message.markers[1].text = "t" * long
+        message.markers[2].ns = "n" * long
+        assert encode_cdr(message) == bytes(store().serialize_cdr(message, markers))
+
+
+def test_more_layouts_than_are_kept() -> None:
+    text = "std_msgs/msg/String"
+    for number in range(1000):
+        message = message_class(text)(f"{number:b}")
+        assert encode_cdr(message) == bytes(store().serialize_cdr(message, text))
+
+
 def test_numbers_lie_at_multiples_of_their_size() -> None:
     message = zero("geometry_msgs/TransformStamped")
     message.header = header(3_000_000_004, "ab")

@@ -5,10 +5,9 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from dataclasses import dataclass
-from typing import Any
+from typing import Generic, TypeVar
 
-from cartwheel.bridges.packed import Packed
+T = TypeVar("T")
 
 ROOM = 64 << 20
 """Approximate maximum size of queued messages in bytes."""
@@ -19,52 +18,61 @@ _BATCH = 1000
 _LINGER = 0.02
 """Interval in s at which the reader takes the queued messages."""
 _SMALL = 256
-"""Approximate size of a message in bytes, without its large arrays."""
+"""Approximate size of a queued message in bytes, without its data."""
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
-    """A message with its topic."""
+class Backlog(Generic[T]):
+    """A queue whose writer waits while it is full. It has one writer and one reader.
 
-    topic: str
-    type: str
-    latched: bool
-    time_ns: int
-    message: Any
-    begins: bool
-    """Whether time jumped back before this message, so that a new file begins."""
+    The two do not share a lock while the queue is neither full nor awaited. A count of bytes is
+    changed by only one of them.
 
-
-class Backlog:
-    """A queue whose writer waits while it is full."""
+    Args:
+        room: Approximate maximum size of the queued items in bytes.
+        count: Maximum number of queued items.
+    """
 
     def __init__(self, *, room: int = ROOM, count: int = COUNT) -> None:
         self._room = room
         self._count = count
         self._batch = max(1, min(_BATCH, count // 2))
-        self._items: deque[tuple[Item, int]] = deque()
-        self._size = 0
+        self._items: deque[tuple[T, int]] = deque()
+        self._put = 0
+        """Bytes that were put so far."""
+        self._written = 0
+        """Bytes of the items that were written."""
+        self._called = False
+        """Whether the reader was woken for the items in the queue."""
         self._changed = threading.Condition()
         self._open = True
         self.waited = 0.0
         """Wall time in s for which `put` has waited."""
 
-    def put(self, item: Item) -> None:
-        """Adds an item as soon as there is space. Does nothing after `close`."""
-        size = size_of(item.message)
-        with self._changed:
-            if self._is_full and self._open:
-                begin = time.perf_counter()
-                self._changed.wait_for(lambda: not self._is_full or not self._open)
-                self.waited += time.perf_counter() - begin
-            if self._open:
-                self._items.append((item, size))
-                self._size += size
-                if len(self._items) == self._batch or self._size > self._room // 4:
-                    self._changed.notify_all()
+    def put(self, item: T, size: int) -> None:
+        """Adds an item as soon as there is space. Does nothing after `close`.
 
-    def get(self, timeout: float) -> list[Item]:
-        """Returns the queued items, at most `_LINGER` s after the first was added.
+        Args:
+            item: The item.
+            size: Size of its data in bytes.
+        """
+        items = self._items
+        if self._put - self._written >= self._room or len(items) >= self._count:
+            self._wait()
+        if not self._open:
+            return
+        size += _SMALL
+        self._put += size
+        items.append((item, size))
+        # This is `_is_due` inlined, which saves a call per message.
+        if (
+            len(items) >= self._batch or self._put - self._written > self._room // 4
+        ) and not self._called:
+            with self._changed:
+                self._called = True
+                self._changed.notify_all()
+
+    def get(self, timeout: float) -> list[tuple[T, int]]:
+        """Returns the queued items with their sizes, at most `_LINGER` s after the first was added.
 
         Returns an empty list after `timeout` s or once closed.
 
@@ -80,14 +88,14 @@ class Backlog:
                 waited = not self._changed.wait(left)
                 if waited and self._items:
                     break
-            items = [item for item, _ in self._items]
-            self._items.clear()
-            return items
+            self._called = False
+            # The writer may append meanwhile.
+            return [self._items.popleft() for _ in range(len(self._items))]
 
-    def done(self, items: list[Item]) -> None:
-        """Releases the space of items that were written."""
+    def done(self, size: int) -> None:
+        """Releases the space of items that were written: the sum of their sizes from `get`."""
         with self._changed:
-            self._size -= sum(size_of(item.message) for item in items)
+            self._written += size
             self._changed.notify_all()
 
     @property
@@ -100,20 +108,18 @@ class Backlog:
             self._open = False
             self._changed.notify_all()
 
+    def _wait(self) -> None:
+        begin = time.perf_counter()
+        with self._changed:
+            self._called = True
+            self._changed.notify_all()
+            self._changed.wait_for(lambda: not self._is_full or not self._open)
+        self.waited += time.perf_counter() - begin
+
     @property
     def _is_due(self) -> bool:
-        return len(self._items) >= self._batch or self._size > self._room // 4
+        return len(self._items) >= self._batch or self._put - self._written > self._room // 4
 
     @property
     def _is_full(self) -> bool:
-        return self._size >= self._room or len(self._items) >= self._count
-
-
-def size_of(message: Any) -> int:
-    """Approximate size of a message in bytes: the sum of its large arrays."""
-    if isinstance(message, Packed):
-        return _SMALL + len(message.cdr)
-    size = _SMALL
-    for name in ("data", "ranges", "intensities"):
-        size += getattr(getattr(message, name, None), "nbytes", 0)
-    return size
+        return self._put - self._written >= self._room or len(self._items) >= self._count

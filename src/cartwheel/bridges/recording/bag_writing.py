@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from cartwheel.bridges.recording.encoding import Schema, codec
 from cartwheel.bridges.recording.sink import Sink
@@ -78,9 +77,8 @@ class BagWriter:
         self._connections.append(_Connection(number, topic, latched, schema))
         return number
 
-    def write(self, channel: int, time_ns: int, message: Any) -> int:
+    def write(self, channel: int, time_ns: int, data: bytes) -> None:
         into = self._connections[channel]
-        data = self._codec.encode(message, into.count + 1)
         if self._chunk and len(self._chunk) + len(data) > CHUNK:
             self.flush()
         if into.number not in self._stated:
@@ -94,7 +92,6 @@ class BagWriter:
         self._chunk += record(head, data)
         first, last = self._span or (time_ns, time_ns)
         self._span = (min(first, time_ns), max(last, time_ns))
-        return len(data)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         """Does nothing, because bags cannot contain attachments."""

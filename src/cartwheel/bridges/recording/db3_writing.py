@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from cartwheel.bridges.recording.encoding import Pack, codec
+from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.qos import qos_text
 from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, metadata
 
@@ -39,17 +39,16 @@ class Db3Writer:
     Args:
         path: File to create. It must not exist.
         notes: Stored in the metadata.
-        pack: Serialises a message.
 
     Raises:
         OSError: The file cannot be written.
     """
 
-    def __init__(self, path: Path, *, notes: Mapping[str, str], pack: Pack) -> None:
+    def __init__(self, path: Path, *, notes: Mapping[str, str]) -> None:
         self.path = path
         self.kept_ns = 0
         self._notes = notes
-        self._codec = codec("ros2", pack)
+        self._codec = codec("ros2")
         self._topics: list[TopicCount] = []
         self._types: set[str] = set()
         self._span: tuple[int, int] | None = None
@@ -85,8 +84,7 @@ class Db3Writer:
         self._topics.append(TopicCount(topic, schema.name, schema.hash, latched))
         return number - 1
 
-    def write(self, channel: int, time_ns: int, message: Any) -> int:
-        data = self._codec.encode(message, 0)
+    def write(self, channel: int, time_ns: int, data: bytes) -> None:
         self._run(
             "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
             (channel + 1, time_ns, data),
@@ -97,7 +95,6 @@ class Db3Writer:
             self.flush()
         first, last = self._span or (time_ns, time_ns)
         self._span = (min(first, time_ns), max(last, time_ns))
-        return len(data)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         """Does nothing, because rosbag2 does not support attachments."""

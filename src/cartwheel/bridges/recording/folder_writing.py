@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
-from cartwheel.bridges.recording.encoding import Pack, codec
+from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.mcap_writing import McapWriter
 from cartwheel.bridges.recording.rosbag2_metadata import TopicCount, as_yaml, metadata
 
@@ -18,18 +17,17 @@ class FolderWriter:
     Args:
         path: Folder to create.
         notes: Stored in the metadata.
-        pack: Serialises a message.
 
     Raises:
         OSError: The folder cannot be written.
     """
 
-    def __init__(self, path: Path, *, notes: Mapping[str, str], pack: Pack) -> None:
+    def __init__(self, path: Path, *, notes: Mapping[str, str]) -> None:
         self.path = path
         path.mkdir()
         self._notes = notes
         self._file = path / f"{path.name}_0.mcap"
-        self._mcap = McapWriter(self._file, "ros2", notes=notes, pack=pack)
+        self._mcap = McapWriter(self._file, "ros2", notes=notes)
         self._topics: list[TopicCount] = []
         self._write_metadata()
 
@@ -43,8 +41,8 @@ class FolderWriter:
         self._topics.append(TopicCount(topic, schema.name, schema.hash, latched))
         return self._mcap.add(topic, type_name, latched=latched)
 
-    def write(self, channel: int, time_ns: int, message: Any) -> int:
-        return self._mcap.write(channel, time_ns, message)
+    def write(self, channel: int, time_ns: int, data: bytes) -> None:
+        self._mcap.write(channel, time_ns, data)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         self._mcap.attach(name, media_type, data, time_ns)

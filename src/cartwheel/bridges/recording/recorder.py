@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -12,7 +13,7 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
 from cartwheel.bridges.mirror import offered_by_others
-from cartwheel.bridges.recording.backlog import Backlog, Item
+from cartwheel.bridges.recording.backlog import Backlog
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.formats import (
     Encoding,
@@ -32,7 +33,6 @@ from cartwheel.codes.recording import (
 from cartwheel.errors import (
     CartwheelError,
     Diagnostic,
-    GraphError,
     RecordingError,
     UnknownNameError,
     one_line,
@@ -47,6 +47,11 @@ FLUSH = 0.5
 may lose at most 1 s. The remaining half is a reserve for busy machines."""
 _LONG_WAIT = 1.0
 """Total waiting time of the simulation in s from which it is reported."""
+
+
+_AT_ONCE = 100
+"""Number of messages that are written without looking at the clock."""
+_STRING = "std_msgs/msg/String"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,20 +74,24 @@ class _Tap:
         self.type = info.type
         self.latched = info.qos == "latched"
         self.topic = info.name
+        self.key = f"{self.topic} {self.type}"
+        """Identifies the channel in the file."""
+        self.describes = self.type == _STRING and self.topic.endswith("robot_description")
+        """Whether the messages are also stored as attachments."""
         self.last: Any = None
-        self._recorder = recorder
+        """The last message of a latched topic."""
         self._subscription: BridgedSubscription = graph.subscribe(
-            info.name, self._take, type_name=info.type, node=READER
+            info.name, functools.partial(recorder.take, self), type_name=info.type, node=READER
         )
-
-    def _take(self, message: Any) -> None:
-        if self.latched:
-            self.last = message
-        self._recorder.take(self, message)
 
     def close(self) -> None:
         """Unsubscribes."""
         self._subscription.close()
+
+
+_Item = tuple[_Tap | None, int, bytes | str]
+"""Topic, time in ns, and an encoded message, or a text to be attached. Without a topic, a new file
+begins, because time jumped back."""
 
 
 class Recorder:
@@ -130,7 +139,12 @@ class Recorder:
         self._notes = dict(notes or {})
         self._report = report
         self._on_failure = on_failure
-        self._backlog = Backlog()
+        self._codec = codec(self._encoding, graph.cdr.encode)
+        self._is_ros1 = self._encoding == "ros1"
+        self._pack = graph.cdr.encode
+        self._counts: dict[str, int] = {}
+        """Number of messages of each channel that were encoded for the current file, for ROS 1."""
+        self._backlog = Backlog[_Item]()
         self._taps: dict[str, _Tap] = {}
         self._survey_due = False
         self._surveyor: int | None = None
@@ -203,19 +217,41 @@ class Recorder:
     # -- on the owner's thread
 
     def take(self, tap: _Tap, message: Any) -> None:
-        """Queues a message. Waits if too many messages are queued."""
-        time_ns = self._time_ns()
-        begins = time_ns < self._time
-        self._time = time_ns
-        if begins:
-            for other in self._taps.values():
-                if other.last is not None and other is not tap:
-                    self._put(other, time_ns, other.last, begins=begins)
-                    begins = False
-        self._put(tap, time_ns, message, begins=begins)
+        """Encodes and queues a message. Waits if too many messages are queued.
 
-    def _put(self, tap: _Tap, time_ns: int, message: Any, *, begins: bool) -> None:
-        self._backlog.put(Item(tap.topic, tap.type, tap.latched, time_ns, message, begins))
+        Messages are encoded here, because keeping their many objects until the recorder's thread
+        encodes them takes several times as long, in Python's garbage collector.
+        """
+        time_ns = self._time_ns()
+        if time_ns < self._time:
+            self._restart(tap, time_ns)
+        self._time = time_ns
+        if tap.latched:
+            tap.last = message
+        self._put(tap, time_ns, message)
+
+    def _restart(self, tap: _Tap, time_ns: int) -> None:
+        """Begins a new file with the latched messages, except that of a tap, which follows."""
+        self._counts.clear()
+        self._backlog.put((None, time_ns, b""), 0)
+        for other in self._taps.values():
+            if other.last is not None and other is not tap:
+                self._put(other, time_ns, other.last)
+
+    def _put(self, tap: _Tap, time_ns: int, message: Any) -> None:
+        try:
+            if self._is_ros1:
+                count = self._counts.get(tap.key, 0) + 1
+                data = self._codec.encode(message, count)
+                self._counts[tap.key] = count
+            else:
+                data = self._pack(message)
+        except CartwheelError as error:
+            self._refuse(tap, error)
+            return
+        self._backlog.put((tap, time_ns, data), len(data))
+        if tap.describes:
+            self._backlog.put((tap, time_ns, message.data), len(data))
         if self._backlog.waited > _LONG_WAIT and not self._has_warned:
             self._has_warned = True
             self._warn(
@@ -224,6 +260,22 @@ class Recorder:
                     "are lost"
                 )
             )
+
+    def _refuse(self, tap: _Tap, error: CartwheelError) -> None:
+        """Reports the first message of a topic that cannot be encoded."""
+        if tap.topic in self._refused:
+            return
+        self._refused.add(tap.topic)
+        if isinstance(error, UnknownNameError):
+            diagnostic = MESSAGE_NOT_RECORDED.diagnostic(
+                f"{tap.topic} is not recorded because ROS 1 has no type {tap.type}",
+                values={"topic": tap.topic, "type": tap.type},
+            )
+        else:
+            diagnostic = MESSAGE_NOT_RECORDED.because(
+                f"messages on {tap.topic} are not recorded", error, values={"topic": tap.topic}
+            )
+        self._warn(diagnostic)
 
     def _changed(self) -> None:
         """Called on any thread, with the graph locked."""
@@ -260,12 +312,13 @@ class Recorder:
 
         For ROS 1, this generates the code that reads and writes the messages.
         """
-        made = codec(self._encoding)
         for tap in self._taps.values():
             with suppress(CartwheelError):
-                made.schema(tap.type)
-                if self._encoding == "ros1":
-                    made.encode(decode_cdr(encode_cdr(zero(tap.type)), tap.type), 0)
+                self._codec.schema(tap.type)
+                message = zero(tap.type)
+                if self._is_ros1:
+                    message = decode_cdr(encode_cdr(message), tap.type)
+                self._codec.encode(message, 0)
 
     # -- on the recorder's thread
 
@@ -275,10 +328,12 @@ class Recorder:
             while True:
                 was_open = self._backlog.is_open
                 items = self._backlog.get(max(0.0, self._flush_due - time.monotonic()))
-                for item in items:
-                    self._write(item)
+                for begin in range(0, len(items), _AT_ONCE):
+                    some = items[begin : begin + _AT_ONCE]
+                    for (tap, time_ns, data), _ in some:
+                        self._write(tap, time_ns, data)
+                    self._backlog.done(sum(size for _, size in some))
                     self._flush_if_due()
-                self._backlog.done(items)
                 self._flush_if_due()
                 if not was_open and not items:
                     break
@@ -313,55 +368,26 @@ class Recorder:
                 self._writer.flush()
             self._flush_due = time.monotonic() + FLUSH
 
-    def _write(self, item: Item) -> None:
-        if item.begins:
-            self._begin_next()
+    def _write(self, tap: _Tap | None, time_ns: int, data: bytes | str) -> None:
+        if tap is None:
+            self._begin_next(time_ns)
+            return
         writer = self._writer
         assert writer is not None
-        channel = self._channel(writer, item)
+        if isinstance(data, str):
+            name = f"{tap.topic.strip('/').replace('/', '.')}.xml"
+            writer.attach(name, "application/xml", data.encode(), time_ns)
+            return
+        channel = self._channels.get(tap.key)
         if channel is None:
-            return
-        try:
-            size = writer.write(channel, item.time_ns, item.message)
-        except GraphError as error:
-            if item.topic not in self._refused:
-                self._refused.add(item.topic)
-                self._warn(
-                    MESSAGE_NOT_RECORDED.because(
-                        f"messages on {item.topic} are not recorded",
-                        error,
-                        values={"topic": item.topic},
-                    )
-                )
-            return
+            channel = writer.add(tap.topic, tap.type, latched=tap.latched)
+            self._channels[tap.key] = channel
+            self._topics.add(tap.topic)
+        writer.write(channel, time_ns, data)
         self._messages += 1
-        self._size += size
-        self._topics.add(item.topic)
-        if item.topic.endswith("robot_description") and item.type == "std_msgs/msg/String":
-            name = f"{item.topic.strip('/').replace('/', '.')}.xml"
-            writer.attach(name, "application/xml", item.message.data.encode(), item.time_ns)
+        self._size += len(data)
 
-    def _channel(self, writer: Writer, item: Item) -> int | None:
-        key = f"{item.topic} {item.type}"
-        if key in self._channels:
-            return self._channels[key]
-        if key in self._refused:
-            return None
-        try:
-            made = writer.add(item.topic, item.type, latched=item.latched)
-        except UnknownNameError:
-            self._refused.add(key)
-            self._warn(
-                MESSAGE_NOT_RECORDED.diagnostic(
-                    f"{item.topic} is not recorded because ROS 1 has no type {item.type}",
-                    values={"topic": item.topic, "type": item.type},
-                )
-            )
-            return None
-        self._channels[key] = made
-        return made
-
-    def _begin_next(self) -> None:
+    def _begin_next(self, time_ns: int) -> None:
         """Begins a new file, because time jumped back and messages would no longer be in order."""
         if self._writer is not None:
             self._writer.close()
@@ -375,9 +401,9 @@ class Recorder:
         self._begin(path)
         self._warn(
             RECORDING_SPLIT.diagnostic(
-                f"time jumped back to {self._time / 1e9:.3f} s, so the recording "
+                f"time jumped back to {time_ns / 1e9:.3f} s, so the recording "
                 f'continues in "{path}"',
-                values={"path": str(path), "time": self._time / 1e9},
+                values={"path": str(path), "time": time_ns / 1e9},
             )
         )
 
@@ -388,7 +414,6 @@ class Recorder:
             self._encoding,
             overwrite=self._overwrite,
             notes=self._notes,
-            pack=self._graph.cdr.encode,
         )
         self._files.append(path)
 

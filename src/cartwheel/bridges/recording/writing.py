@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from cartwheel.bridges.recording.formats import (
     Encoding,
@@ -35,11 +35,10 @@ class Writer(Protocol):
             UnknownNameError: The encoding does not support the type.
         """
 
-    def write(self, channel: int, time_ns: int, message: Any) -> int:
-        """Writes a message of the graph. Returns its size in bytes.
+    def write(self, channel: int, time_ns: int, data: bytes) -> None:
+        """Writes an encoded message.
 
         Raises:
-            GraphError: The message cannot be encoded. Nothing was written.
             OSError: The file cannot be written.
         """
 
@@ -70,7 +69,6 @@ def open_writer(
     *,
     overwrite: bool,
     notes: Mapping[str, str],
-    pack: Callable[[Any], bytes],
 ) -> Writer:
     """Creates a recording.
 
@@ -79,7 +77,6 @@ def open_writer(
         encoding: Encoding of the messages.
         overwrite: Whether to replace an existing recording.
         notes: Text to store with the recording, if the format supports it.
-        pack: Serialises a message for ROS 2.
 
     Raises:
         RecordingError: The recording cannot be written at this path.
@@ -88,7 +85,7 @@ def open_writer(
     try:
         if overwrite:
             _remove(path)
-        return _opened(path, encoding, notes, pack)
+        return _opened(path, encoding, notes)
     except FileExistsError as error:
         # A different process created the file just now.
         raise exists(path) from error
@@ -117,14 +114,12 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
-def _opened(
-    path: Path, encoding: Encoding, notes: Mapping[str, str], pack: Callable[[Any], bytes]
-) -> Writer:
+def _opened(path: Path, encoding: Encoding, notes: Mapping[str, str]) -> Writer:
     form = form_of(path)
     if form == "mcap":
         from cartwheel.bridges.recording.mcap_writing import McapWriter
 
-        return McapWriter(path, encoding, notes=notes, pack=pack)
+        return McapWriter(path, encoding, notes=notes)
     if form == "bag":
         from cartwheel.bridges.recording.bag_writing import BagWriter
 
@@ -132,7 +127,7 @@ def _opened(
     if form == "db3":
         from cartwheel.bridges.recording.db3_writing import Db3Writer
 
-        return Db3Writer(path, notes=notes, pack=pack)
+        return Db3Writer(path, notes=notes)
     from cartwheel.bridges.recording.folder_writing import FolderWriter
 
-    return FolderWriter(path, notes=notes, pack=pack)
+    return FolderWriter(path, notes=notes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from typing import Any
 
 from cartwheel.codes.graph import MESSAGE_NOT_DECODABLE
@@ -49,34 +48,24 @@ def _size(data: bytes | memoryview, full: str) -> int:
 
 
 class CdrCache:
-    """Cache of the bytes of recent messages. Thread-safe.
+    """Cache of the bytes of the last message. Thread-safe.
 
-    All subscribers receive the same message object. Its identity is the key of its bytes, on all
-    wires.
-
-    Args:
-        count: Maximum number of messages; more than 1, because subscribers lag behind each other.
-        room: Maximum size in bytes.
+    All subscribers of a topic receive the same message object, one after the other. Its identity is
+    the key of its bytes, on all wires.
     """
 
-    def __init__(self, *, count: int = 64, room: int = 32 << 20) -> None:
-        self._count = count
-        self._room = room
-        self._lock = threading.Lock()
-        self._kept: dict[int, tuple[Any, bytes]] = {}
-        self._size = 0
+    def __init__(self) -> None:
+        self._last: tuple[Any, bytes] = (None, b"")
 
     def encode(self, message: Any) -> bytes:
         """CDR bytes of a message; see `encode_cdr`."""
-        with self._lock:
-            known = self._kept.get(id(message))
-            if known is not None:
-                return known[1]
+        known, data = self._last
+        if known is not message:
             data = encode_cdr(message)
-            # A reference to the message prevents reuse of its identity.
-            self._kept[id(message)] = (message, data)
-            self._size += len(data)
-            while len(self._kept) > self._count or (self._size > self._room and self._kept):
-                _, oldest = self._kept.pop(next(iter(self._kept)))
-                self._size -= len(oldest)
-            return data
+            # The reference to the message prevents reuse of its identity.
+            self._last = (message, data)
+        return data
+
+    def forget(self) -> None:
+        """Forgets the last message, which may be published again with other values."""
+        self._last = (None, b"")

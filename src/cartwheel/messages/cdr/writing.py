@@ -18,6 +18,7 @@ import numpy as np
 
 from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
+from cartwheel.messages.cdr.compiled import check_count, compiled
 from cartwheel.messages.fields import CODES, FILLER, Field, field_of
 from cartwheel.messages.store import loaded, message_class
 
@@ -77,8 +78,9 @@ class _Plan:
 
 
 @functools.cache
-def _plan(name: str) -> _Plan:
-    return _Plan(name)
+def _plan(name: str) -> _Writer:
+    plan = _Plan(name)
+    return compiled(list(_flat(name, "")), plan, _plan) or plan
 
 
 def _flat(name: str, prefix: str) -> Iterator[tuple[str, Field, str]]:
@@ -213,12 +215,9 @@ def _array_writer(field: Field, get: Callable[[Any], Any]) -> _Writer:
 
 
 def _write_count(field: Field, count: int, parts: _Parts, at: int) -> int:
+    check_count(field, count)
     if field.length is None:
-        if field.most and count > field.most:
-            raise ValueError(f"{field.name} has at most {field.most} values (got {count})")
         way = _COUNTS[at & 3]
         parts.append(way.pack(count))
         return at + way.size
-    if count != field.length:
-        raise ValueError(f"{field.name} must have {field.length} values (got {count})")
     return at
