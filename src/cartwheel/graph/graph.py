@@ -38,6 +38,7 @@ from cartwheel.graph.topic import (
     Subscription,
     Topic,
     TopicInfo,
+    deliver_changed,
 )
 from cartwheel.graph.transforms import StaticTransforms
 from cartwheel.messages import CdrCache
@@ -198,13 +199,7 @@ class Graph:
         """Publishes one message from any thread, by passing it to the owner's thread."""
         with self._lock:
             topic = self._topic(name, type_name)
-
-        def deliver() -> None:
-            # The caller may have changed the fields of a message that was published before.
-            self.cdr.forget()
-            topic.deliver(message)
-
-        self.post(deliver)
+        self.post(lambda: deliver_changed(topic, message, self.cdr))
 
     def serve(
         self,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
-from cartwheel.messages import type_name
+from cartwheel.messages import CdrCache, type_name
 
 if TYPE_CHECKING:
     from cartwheel.graph.graph import Graph
@@ -107,6 +107,12 @@ class Topic:
             callback(message)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - the callback is foreign code
             self.failed(self, callback, error)
+
+
+def deliver_changed(topic: Topic, message: Any, cdr: CdrCache) -> None:
+    """Delivers a message whose fields may have changed since it was last published."""
+    cdr.forget()
+    topic.deliver(message)
 
 
 class Publisher:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -11,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
+from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.backlog import Backlog
 from cartwheel.bridges.recording.encoding import codec
@@ -22,6 +21,7 @@ from cartwheel.bridges.recording.formats import (
     reason_of,
 )
 from cartwheel.bridges.recording.patterns import Patterns
+from cartwheel.bridges.recording.tap import READER, Tap
 from cartwheel.bridges.recording.writing import Writer, open_writer
 from cartwheel.codes.recording import (
     DISK_SLOW,
@@ -37,11 +37,8 @@ from cartwheel.errors import (
     UnknownNameError,
     one_line,
 )
-from cartwheel.graph import TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 
-READER = "recorder"
-"""Node name of the recorder in the graph."""
 FLUSH = 0.5
 """Wall time in s after which recorded data is passed to the operating system. A killed recorder
 may lose at most 1 s. The remaining half is a reserve for busy machines."""
@@ -51,7 +48,6 @@ _LONG_WAIT = 1.0
 
 _AT_ONCE = 100
 """Number of messages that are written without looking at the clock."""
-_STRING = "std_msgs/msg/String"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,29 +63,7 @@ class Summary:
     """Wall time in s for which the simulation has waited for the disk."""
 
 
-class _Tap:
-    """Subscription of one topic."""
-
-    def __init__(self, recorder: Recorder, graph: BridgedGraph, info: TopicInfo) -> None:
-        self.type = info.type
-        self.latched = info.qos == "latched"
-        self.topic = info.name
-        self.key = f"{self.topic} {self.type}"
-        """Identifies the channel in the file."""
-        self.describes = self.type == _STRING and self.topic.endswith("robot_description")
-        """Whether the messages are also stored as attachments."""
-        self.last: Any = None
-        """The last message of a latched topic."""
-        self._subscription: BridgedSubscription = graph.subscribe(
-            info.name, functools.partial(recorder.take, self), type_name=info.type, node=READER
-        )
-
-    def close(self) -> None:
-        """Unsubscribes."""
-        self._subscription.close()
-
-
-_Item = tuple[_Tap | None, int, bytes | str]
+_Item = tuple[Tap | None, int, bytes | str]
 """Topic, time in ns, and an encoded message, or a text to be attached. Without a topic, a new file
 begins, because time jumped back."""
 
@@ -145,7 +119,7 @@ class Recorder:
         self._counts: dict[str, int] = {}
         """Number of messages of each channel that were encoded for the current file, for ROS 1."""
         self._backlog = Backlog[_Item]()
-        self._taps: dict[str, _Tap] = {}
+        self._taps: dict[str, Tap] = {}
         self._survey_due = False
         self._surveyor: int | None = None
         self._time = -1
@@ -216,7 +190,7 @@ class Recorder:
 
     # -- on the owner's thread
 
-    def take(self, tap: _Tap, message: Any) -> None:
+    def take(self, tap: Tap, message: Any) -> None:
         """Encodes and queues a message. Waits if too many messages are queued.
 
         Messages are encoded here, because keeping their many objects until the recorder's thread
@@ -230,7 +204,7 @@ class Recorder:
             tap.last = message
         self._put(tap, time_ns, message)
 
-    def _restart(self, tap: _Tap, time_ns: int) -> None:
+    def _restart(self, tap: Tap, time_ns: int) -> None:
         """Begins a new file with the latched messages, except that of a tap, which follows."""
         self._counts.clear()
         self._backlog.put((None, time_ns, b""), 0)
@@ -238,7 +212,7 @@ class Recorder:
             if other.last is not None and other is not tap:
                 self._put(other, time_ns, other.last)
 
-    def _put(self, tap: _Tap, time_ns: int, message: Any) -> None:
+    def _put(self, tap: Tap, time_ns: int, message: Any) -> None:
         try:
             if self._is_ros1:
                 count = self._counts.get(tap.key, 0) + 1
@@ -261,7 +235,7 @@ class Recorder:
                 )
             )
 
-    def _refuse(self, tap: _Tap, error: CartwheelError) -> None:
+    def _refuse(self, tap: Tap, error: CartwheelError) -> None:
         """Reports the first message of a topic that cannot be encoded."""
         if tap.topic in self._refused:
             return
@@ -305,7 +279,7 @@ class Recorder:
                 tap.latched = topics[name].qos == "latched"
         for name, info in topics.items():
             if name not in self._taps and self._patterns.match(name):
-                self._taps[name] = _Tap(self, self._graph, info)
+                self._taps[name] = Tap(self._graph, info, self.take)
 
     def _prepare(self) -> None:
         """Prepares the encoding of each type, which would otherwise delay its first message.
@@ -368,7 +342,7 @@ class Recorder:
                 self._writer.flush()
             self._flush_due = time.monotonic() + FLUSH
 
-    def _write(self, tap: _Tap | None, time_ns: int, data: bytes | str) -> None:
+    def _write(self, tap: Tap | None, time_ns: int, data: bytes | str) -> None:
         if tap is None:
             self._begin_next(time_ns)
             return
