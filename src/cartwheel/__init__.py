@@ -11,40 +11,58 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, TimedOutError
 
 if TYPE_CHECKING:
     from cartwheel.api import (
         Acceleration,
         Built,
         Contact,
+        Goal,
+        Hold,
         Joint,
         Joints,
         JointValues,
         Link,
         Model,
+        Timer,
+        Topic,
         Twist,
         World,
         build,
     )
+    from cartwheel.arrays import Scan, camera_matrix, cloud, depth, image, scan
     from cartwheel.checks import check
     from cartwheel.geometry import Pose
+
+_ARRAYS = frozenset({"Scan", "camera_matrix", "cloud", "depth", "image", "scan"})
 
 __all__ = [
     "Acceleration",
     "Built",
     "CartwheelError",
     "Contact",
+    "Goal",
+    "Hold",
     "Joint",
     "JointValues",
     "Joints",
     "Link",
     "Model",
     "Pose",
+    "Scan",
+    "TimedOutError",
+    "Timer",
+    "Topic",
     "Twist",
     "World",
     "build",
+    "camera_matrix",
     "check",
+    "cloud",
+    "depth",
+    "image",
+    "scan",
 ]
 __version__ = "0.1.0"
 
@@ -52,7 +70,11 @@ __version__ = "0.1.0"
 def __getattr__(name: str) -> Any:
     # The import of numpy and the physics engine takes 0.1 s, but the command line must first parse
     # its arguments and handle Ctrl-C.
-    if name in __all__ and name not in ("CartwheelError", "Pose", "check"):
+    if name in _ARRAYS:
+        from cartwheel import arrays
+
+        return getattr(arrays, name)
+    if name in __all__ and name not in ("CartwheelError", "Pose", "TimedOutError", "check"):
         from cartwheel import api
 
         return getattr(api, name)

@@ -1,4 +1,7 @@
-"""Errors and diagnostics: what is wrong, where, and what to write instead."""
+"""Errors and diagnostics: what is wrong, where, and what to write instead.
+
+The file is long because all packages share these classes.
+"""
 
 from __future__ import annotations
 
@@ -308,6 +311,10 @@ class SimulationError(CartwheelError):
 
 class DivergedError(SimulationError):
     """A simulation whose state is no longer finite."""
+
+
+class TimedOutError(SimulationError, TimeoutError):
+    """Something that was awaited did not happen within the simulation time allowed."""
 
 
 class PluginError(CartwheelError):

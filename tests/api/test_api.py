@@ -120,7 +120,7 @@ def test_mailbox_and_reset(make, rosbots):
     odometry = world.mailbox("/odom")
     cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
     world.run(1.0)
-    assert len(odometry.drain()) == 100
+    assert len(odometry.drain()) == 101
     world.reset()
     assert world.time == 0
     assert cart.pose.position == pytest.approx((0, 0, 0.05))

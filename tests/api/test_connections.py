@@ -335,7 +335,7 @@ def test_two_worlds_have_their_own_servers_and_recordings(tmp_path: Path, folder
         one.close()
         two.run(0.5)
     found = list(map(counts, files))
-    assert found[0]["/clock"] == 50
+    assert found[0]["/clock"] == 51
     assert found[0]["/odom"] == 50
     assert found[1]["/clock"] == 150
     assert "/odom" not in found[1]
@@ -389,7 +389,7 @@ def test_a_recording_has_every_message_from_the_first(tmp_path: Path) -> None:
         world.run(1.0)
         world.run(1.0)
     for path in files:
-        assert counts(path) == {"/odom": 200, "/imu/data": 60, "/clock": 250}
+        assert counts(path) == {"/odom": 201, "/imu/data": 61, "/clock": 251}
 
 
 def test_the_same_file_twice_and_a_file_that_exists(tmp_path: Path) -> None:
@@ -401,7 +401,7 @@ def test_the_same_file_twice_and_a_file_that_exists(tmp_path: Path) -> None:
         cw.World("empty", record=file)
     with cw.World("empty", record=file, overwrite=True) as world:
         world.run(0.1)
-    assert counts(file)["/clock"] == 10
+    assert counts(file)["/clock"] == 11
 
 
 def test_a_recorder_that_dies_ends_the_run(tmp_path: Path) -> None:
@@ -425,7 +425,7 @@ def test_a_block_within_the_block(tmp_path: Path) -> None:
     part = counts(tmp_path / "part.mcap")
     assert part["/odom"] == 50
     assert part["/robot_description"] == 1
-    assert counts(tmp_path / "all.mcap")["/odom"] == 100
+    assert counts(tmp_path / "all.mcap")["/odom"] == 101
 
 
 # -- exceptions
@@ -442,7 +442,7 @@ def test_an_exception_in_the_block_completes_the_recording(tmp_path: Path) -> No
     with pytest.raises(ValueError, match="mine"), cw.World("empty", record=file) as world:
         world.run(0.5)
         raise ValueError("mine")
-    assert counts(file)["/clock"] == 50
+    assert counts(file)["/clock"] == 51
 
 
 def test_a_failed_recording_does_not_hide_the_exception(tmp_path: Path) -> None:
@@ -490,4 +490,4 @@ def test_a_world_that_is_deleted_ends_its_processes(tmp_path: Path) -> None:
     world.run(0.5)
     del world
     wait_for(lambda: not bridges(), "the end of the recorder")
-    assert counts(file)["/clock"] == 50
+    assert counts(file)["/clock"] == 51

@@ -111,7 +111,7 @@ def test_a_closed_world_refuses_everything_but_its_results(make, rosbots):
     world.stop()
     world.close()
     assert (cart.pose, world.models, world.time) == (pose, models, 0.1)
-    assert len(clock.drain()) == 10
+    assert len(clock.drain()) == 11
 
 
 def test_options_of_ros2_and_mailboxes_are_checked(make):

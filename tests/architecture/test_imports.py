@@ -34,6 +34,7 @@ MAY_IMPORT = {
     "yaml_text": set(),
     "forks": set(),
     "options": set(),
+    "arrays": set(),
     "gate": set(),
     "messages": set(),
     "graph": {"messages"},
@@ -47,6 +48,7 @@ MAY_IMPORT = {
     "interfaces": {"description", "simulation", "graph"},
     "session": {"component", "description", "simulation", "messages", "graph", "dialects"},
     "api": {
+        "arrays",
         "gazebo",
         "description",
         "simulation",

@@ -54,7 +54,7 @@ def test_the_plugin_is_left_out_and_the_robot_loads(tag, tmp_path: Path):
         assert found.values["plugin"] == "libgazebo_ros_p3d.so"
         assert found.values["cause"] == PLUGIN_PARAMETER_INVALID.number
         assert str(found.origin).endswith("cart.urdf:5")
-        assert _published(world, "/other", 1.0) == 20
+        assert _published(world, "/other", 1.0) == 21
         assert "/truth" not in {topic.name for topic in world.graph.topics()}
     with cw.World("empty") as world, raises(PLUGIN_PARAMETER_INVALID, PluginError):
         world.spawn(file)
@@ -83,7 +83,7 @@ def test_text_after_a_number_is_ignored_as_in_gazebo(text, code, used, tmp_path:
         assert found.code is code
         assert used in (found.values.get("used"), found.values.get("value"))
         assert str(found.origin).endswith("cart.urdf:5")
-        assert _published(world, "/truth", 1.0) == 30
+        assert _published(world, "/truth", 1.0) == 31
     (found,) = check(file).findings
     assert (found.code, found.severity) == (code, "warning")
     assert str(found.origin).endswith("cart.urdf:5")

@@ -49,7 +49,7 @@ def test_a_file_provides_the_plugin_that_a_robot_names() -> None:
         world.spawn(EXAMPLE / "robot.urdf", z=0.1)
         alarms = world.mailbox("/tilt_alarm")
         world.run(seconds=0.1)
-        assert [alarm.data for alarm in alarms.drain()] == [False]
+        assert [alarm.data for alarm in alarms.drain()] == [False, False]
 
 
 def test_each_world_has_its_own_files(tmp_path: Path, robot: Path) -> None:

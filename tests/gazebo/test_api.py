@@ -50,7 +50,7 @@ def test_close_takes_everything_off_the_graph(make, gazebo):
     assert not box.drain()
     api.api.start()
     world.run(0.1)
-    assert len(box.drain()) == 20
+    assert len(box.drain()) == 21
 
 
 def test_a_second_one_on_a_session_is_refused_and_harms_nothing(make, gazebo):

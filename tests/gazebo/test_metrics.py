@@ -62,9 +62,9 @@ def test_a_reset_begins_anew(make, gazebo):
     gazebo(world)
     box = world.mailbox(TOPIC)
     world.run(1.0)
-    assert len(box.drain()) == 4
+    assert len(box.drain()) == 5
     world.reset()
     world.run(1.0)
     told = box.drain()
-    assert len(told) == 4
+    assert len(told) == 5
     assert all(message.real_time_factor > 0 for message in told)

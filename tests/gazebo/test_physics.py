@@ -131,10 +131,10 @@ def test_clock_and_rates_go_on_over_a_change(make, gazebo, rosbots):
     world.run(0.335)
     change(api, time_step=0.002)
     world.run(0.665)
-    steps = [*range(0, 335_000_000, 5_000_000), *range(335_000_000, 1_000_000_000, 2_000_000)]
+    steps = [*range(0, 335_000_000, 5_000_000), *range(335_000_000, 1_002_000_000, 2_000_000)]
 
     def expected(rate):
-        due = [math.ceil(k * 1e9 / rate) for k in range(rate)]
+        due = [math.ceil(k * 1e9 / rate) for k in range(rate + 1)]
         return [next(step for step in steps if step >= time) for time in due]
 
     def stamps(messages):

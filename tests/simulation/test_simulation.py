@@ -202,7 +202,7 @@ def test_reset_takes_all_back_to_where_it_was_spawned(driving):
     assert abs(driving.model("rosbots").pose.x) < 1e-3
     told = stamps.drain()
     assert [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in told] == [
-        i * 10_000_000 for i in range(200)
+        i * 10_000_000 for i in range(201)
     ]
 
 

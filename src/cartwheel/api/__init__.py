@@ -1,22 +1,29 @@
 """The Python API: worlds, models and simulation time."""
 
 from cartwheel.api.built import Built, build
+from cartwheel.api.calling import Goal
 from cartwheel.api.contacts import Contact
 from cartwheel.api.joints import Joint, Joints, JointValues
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
+from cartwheel.api.timing import Timer
+from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
 
 __all__ = [
     "Acceleration",
     "Built",
     "Contact",
+    "Goal",
+    "Hold",
     "Joint",
     "JointValues",
     "Joints",
     "Link",
     "Model",
+    "Timer",
+    "Topic",
     "Twist",
     "World",
     "build",

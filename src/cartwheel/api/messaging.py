@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
+from weakref import WeakValueDictionary
 
-from cartwheel.api.running import RunningWorld
-from cartwheel.graph import Graph, Mailbox, Publisher, check_message
-from cartwheel.messages import from_dict, from_flat
+from cartwheel.api.timing import TimedWorld
+from cartwheel.api.topics import Topic, made_message
+from cartwheel.graph import Graph, Mailbox, Publisher
 from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound=str | Path)
 
 
-class MessagingWorld(RunningWorld):
+class MessagingWorld(TimedWorld):
     """The part of `World` that publishes, receives and records messages."""
 
     @property
@@ -44,13 +46,56 @@ class MessagingWorld(RunningWorld):
         """
         self.check_open()
         kind = self.graph.topic(topic).type
-        if fields:
-            message = from_flat(kind, fields)
-        elif message is None or isinstance(message, Mapping):
-            message = from_dict(kind, message or {})
-        else:
-            check_message(topic, kind, message)
-        self.graph.publish(topic, kind, message)
+        self.graph.publish(topic, kind, made_message(topic, kind, message, fields))
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Names of the topics with a publisher or a subscriber, sorted."""
+        return tuple(info.name for info in self.graph.topics())
+
+    def topic(self, name: str, *, type: str | None = None, keep: int | None = None) -> Topic:
+        """Subscribes to a topic, and returns an object with its messages.
+
+        A sensor without subscribers produces no data, so call the method before the run whose
+        messages you need. Further calls with the same name return the same object.
+
+        Args:
+            name: Topic name.
+            type: As in `advertise`. Required if the topic does not exist yet.
+            keep: Number of messages that `Topic.history` keeps; None for 1000, or 10 for images and
+                point clouds.
+
+        Raises:
+            UnknownNameError: The topic does not exist and no type is given, or the type does not
+                exist.
+            SimulationError: The world is closed.
+            GraphError: The topic has a different type, or the definition of the type is invalid.
+            CartwheelError: `keep` is out of range.
+        """
+        self.check_open()
+        full = None if type is None else self.message_class(type).__msgtype__
+        if keep is not None:
+            check_size(keep)
+        with self.used():
+            found = self._known_topics.get(name)
+            if found is None:
+                found = Topic(self, name, full, keep)
+                self._known_topics[name] = self._known_topics[found.name] = found
+            elif full is not None and full != found.type:
+                # The graph refuses it, and names both types.
+                self.graph.advertise(name, full).close()
+        if keep is not None:
+            found.keep(keep)
+        return found
+
+    @functools.cached_property
+    def _known_topics(self) -> WeakValueDictionary[str, Topic]:
+        # The graph holds the topics until it is closed, so that the world can be freed then.
+        return WeakValueDictionary()
+
+    def _forget_topic(self, topic: Topic) -> None:
+        for name in [name for name, each in self._known_topics.items() if each is topic]:
+            del self._known_topics[name]
 
     def subscribe(
         self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
@@ -117,8 +162,9 @@ class MessagingWorld(RunningWorld):
     def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
         """Buffers the topic's messages, to be read after `run`.
 
-        `get` waits only if a different thread runs the world. In the thread that runs it, no
-        message can arrive while `get` waits, so an empty mailbox returns None at once.
+        `get` waits only if a different thread runs the world, by default for at most 30 s. In the
+        thread that runs it, no message can arrive while `get` waits, so an empty mailbox returns
+        None at once.
 
         Args:
             topic: Name of an existing topic.

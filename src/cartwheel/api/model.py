@@ -134,6 +134,19 @@ class Model:
         """
         return Joints(self._world, self.name)
 
+    @property
+    def namespace(self) -> str:
+        """Namespace of the model's topics and services, with a leading ``/``."""
+        with self._world.lock:
+            return "/" + self._world.session.simulation.namespace(self.name).strip("/")
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Names of the topics of the model's devices and plugins, sorted."""
+        with self._world.lock:
+            own = self._world.session.simulation.topics(self.name)
+            return tuple(name for name in self._world.topics if name in own)
+
     def joint(self, name: str) -> float:
         """Position of a joint, rad or m. For its other values, use ``joints[name]``.
 

@@ -96,10 +96,13 @@ class RunningWorld:
         """
         with self.lock:
             self.check_open()
+            simulation = self.session.simulation
             with uninterrupted() if change else contextlib.nullcontext():
                 try:
-                    yield self.session.simulation
+                    yield simulation
                 finally:
+                    if change:
+                        simulation.engine.note_change()
                     if self._connections is not None and not self._running:
                         self._connections.update()
                         self._driver.pacer.show()
@@ -108,6 +111,10 @@ class RunningWorld:
 
     def run(self, seconds: float, *, speed: float | None = None) -> None:
         """Advances the simulation. Without connections, nothing else can change it meanwhile.
+
+        When the method returns, everything that is due at the new time has been published, and
+        drives have executed the commands that they had received. Two runs of 0.5 s give the same
+        results and messages as one run of 1 s.
 
         Ctrl-C completes the current step, so that a later call can continue.
 
@@ -125,12 +132,19 @@ class RunningWorld:
         """
         duration = duration_ns(seconds)
         with self._run() as simulation, self._driver.interruptible() as pressed:
-            if self._connections is None and speed is None:
-                simulation.advance(simulation.time_ns + duration)
-            else:
-                self._driver.run(duration, speed, shared=False)
+            self._advance(simulation, duration, speed)
         if pressed.is_set():
             raise KeyboardInterrupt
+
+    def _advance(self, simulation: Simulation, duration_ns: int, speed: float | None) -> None:
+        """Runs for a simulation time within `_run`, or until the run is stopped."""
+        if self._connections is None and speed is None:
+            target = simulation.time_ns + duration_ns
+            simulation.advance(target)
+            if simulation.time_ns >= target:
+                simulation.complete()
+        else:
+            self._driver.run(duration_ns, speed, shared=False)
 
     def spin(self, seconds: float | None = None, *, speed: float | None = 1.0) -> None:
         """Runs the simulation in real time until `stop`, Ctrl-C or a time limit.

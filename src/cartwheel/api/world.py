@@ -8,19 +8,23 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel import description as descriptions
-from cartwheel.api.messaging import MessagingWorld, several
+from cartwheel.api.calling import CallingWorld
+from cartwheel.api.messaging import several
 from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.surroundings import SurroundingWorld
+from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose
+from cartwheel.graph import resolve_name
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import number
 from cartwheel.simulation.models.compilations import Compiler
 
 
-class World(SurroundingWorld, PicturedWorld, MessagingWorld):
+class World(SurroundingWorld, PicturedWorld, CallingWorld):
     """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.
@@ -154,12 +158,15 @@ class World(SurroundingWorld, PicturedWorld, MessagingWorld):
         robot: str | Path | RobotDescription,
         *,
         name: str | None = None,
-        x: float = 0.0,
-        y: float = 0.0,
-        z: float = 0.0,
-        roll: float = 0.0,
-        pitch: float = 0.0,
-        yaw: float = 0.0,
+        pose: Pose | None = None,
+        x: float | None = None,
+        y: float | None = None,
+        z: float | None = None,
+        roll: float | None = None,
+        pitch: float | None = None,
+        yaw: float | None = None,
+        namespace: str = "/",
+        frame_prefix: str = "",
         arguments: Mapping[str, str] | None = None,
         package_path: str | Path | Sequence[str | Path] = (),
         controllers: str | Path | Sequence[str | Path] = (),
@@ -169,12 +176,17 @@ class World(SurroundingWorld, PicturedWorld, MessagingWorld):
         Args:
             robot: A xacro, URDF or SDF file, or a description.
             name: Name in this world; None for the description's name.
-            x: x coordinate of the root link, m. The file's pose is used if all values are zero.
+            pose: Pose of the root link in the world. The file's pose is used if neither `pose` nor
+                any of the following six values is given.
+            x: x coordinate, m. Values that are not given are 0 if another one is given.
             y: y coordinate, m.
             z: z coordinate, m.
             roll: Rotation about the world's x axis, rad.
             pitch: Rotation about the world's y axis, rad.
             yaw: Rotation about the world's z axis, rad.
+            namespace: Namespace of the robot's topics, services and actions, such as ``left``.
+                Names that begin with ``/`` in the file, and namespaces in the file, are unchanged.
+            frame_prefix: Prefix of the robot's frames, such as ``left``, as ROS 1's tf_prefix.
             arguments: Arguments of the xacro file.
             package_path: Folders to search for packages first.
             controllers: YAML files for ros_control or ros2_control, whose controllers are started.
@@ -184,7 +196,12 @@ class World(SurroundingWorld, PicturedWorld, MessagingWorld):
             WorldError: The name is in use, or the model cannot be built.
             PluginError: A plugin cannot be used, the model has no controller manager, or a
                 controller file is invalid.
+            GraphError: The namespace is invalid.
+            CartwheelError: The pose is given twice, is not finite, or is too far away.
         """
+        place = _place(pose, (x, y, z), (roll, pitch, yaw))
+        if namespace.strip("/"):
+            resolve_name(namespace)
         folders = [Path(folder) for folder in several(package_path)]
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(
@@ -192,12 +209,16 @@ class World(SurroundingWorld, PicturedWorld, MessagingWorld):
                 arguments=arguments,
                 package_path=folders,
             )
-        given = any((x, y, z, roll, pitch, yaw))
-        pose = Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)) if given else None
         files = [Path(file) for file in several(controllers)]
         with self.used(change=True):
             spawned = self.session.spawn(
-                robot, name=name, pose=pose, controllers=files, package_path=folders
+                robot,
+                name=name,
+                pose=place,
+                namespace=namespace,
+                frame_prefix=frame_prefix,
+                controllers=files,
+                package_path=folders,
             )
             return Model(self, spawned)
 
@@ -230,3 +251,22 @@ class World(SurroundingWorld, PicturedWorld, MessagingWorld):
         """Resets simulation time and all models to their initial state."""
         with self.used(change=True) as simulation:
             simulation.reset()
+
+
+def _place(
+    pose: Pose | None, position: tuple[float | None, ...], angles: tuple[float | None, ...]
+) -> Pose | None:
+    """The pose that a program gives, as a pose or as numbers; None if it gives none."""
+    if all(each is None for each in (*position, *angles)):
+        return pose
+    if pose is not None:
+        raise CartwheelError(
+            "a pose and single coordinates are given",
+            code=OPTIONS_CONFLICT,
+            hint="Pass either pose or x, y, z, roll, pitch and yaw.",
+        )
+    names = ("x", "y", "z", "roll", "pitch", "yaw")
+    values = [
+        number(each or 0.0, name) for each, name in zip((*position, *angles), names, strict=True)
+    ]
+    return Pose.from_xyz_rpy(values[:3], values[3:])

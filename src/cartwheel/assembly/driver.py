@@ -55,6 +55,8 @@ class Driver:
     def run(self, duration_ns: int | None, speed: float | None, *, shared: bool) -> None:
         """Runs until the time has passed or the simulation is stopped.
 
+        When the time has passed, everything that is due has been published.
+
         Args:
             duration_ns: Simulation time; a reset starts it again. None has no limit.
             speed: Target real-time factor; None is as fast as possible.
@@ -78,6 +80,8 @@ class Driver:
             simulation.drain_queued()
             with sharing:
                 pacer.run()
+            if pacer.until_ns is not None and simulation.time_ns >= pacer.until_ns:
+                simulation.complete()
         finally:
             self._depth -= 1
             pacer.until_ns, speed_before, simulation.command_time = outer

@@ -108,3 +108,11 @@ MESSAGE_TYPE_IN_USE = Code(
     "error",
     "the process already uses a message type with the same name and other fields",
 )
+NO_MESSAGE = Code("CW732", "no-message", "error", "a topic has no message yet")
+ARRAY_INVALID = Code(
+    "CW733",
+    "array-invalid",
+    "error",
+    "the data of a message cannot be converted to an array",
+)
+ACTION_UNKNOWN = Code("CW734", "action-unknown", "error", "an action does not exist")

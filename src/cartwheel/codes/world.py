@@ -107,3 +107,12 @@ FIXED_TO_WORLD = Code(
 VALUE_INVALID = Code(
     "CW632", "value-invalid", "error", "a property of a model or link cannot have this value"
 )
+WAIT_TIMED_OUT = Code(
+    "CW633",
+    "wait-timed-out",
+    "error",
+    "a condition, message or result did not come within the simulation time allowed",
+)
+CONDITION_INVALID = Code(
+    "CW634", "condition-invalid", "error", "the condition of a run is not a function"
+)

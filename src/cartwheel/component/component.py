@@ -135,6 +135,7 @@ class Component:
             name, type_name, node=self.node, rate=rate, qos=qos, checked=self._foreign
         )
         self.publishers.append(publisher)
+        self.part.topics.add(publisher.topic)
         return self.keep(publisher)
 
     def subscribe(
@@ -154,6 +155,7 @@ class Component:
         checked = self.checked(callback, unset=unset)
         name, kind, receiver = self.scope.subscribed(topic, type_name, checked)
         subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
+        self.part.topics.add(subscription.topic)
         owner = self.scope.owner
         if owner is not None:
             subscription.on_error = lambda _, error: self.part.fail(owner, error)

@@ -1,7 +1,8 @@
 """Topics, services and actions within the process, under the naming rules of ROS.
 
 The owner's thread (that of the simulation) publishes and delivers. Other threads subscribe
-with a `Mailbox`, and pass messages to the owner with `Graph.post`.
+with a `Mailbox`, and pass messages to the owner with `Graph.post`. The file is long because
+one lock protects all tables.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 
 from cartwheel.calls import Post, answered
 from cartwheel.codes.graph import (
+    ACTION_UNKNOWN,
     GRAPH_CLOSED,
     SERVICE_TAKEN,
     SERVICE_TIMED_OUT,
@@ -327,6 +329,23 @@ class Graph:
             if name not in live:
                 raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
             return live[name].info()
+
+    def latched(self, name: str) -> Any:
+        """The message that a latched topic delivers to new subscribers; None if there is none."""
+        with self._lock:
+            topic = self._topics.get(resolve_name(name))
+            return None if topic is None else topic.latched
+
+    def action(self, name: str) -> Action:
+        """Action with this name.
+
+        Raises:
+            UnknownNameError: The action does not exist.
+        """
+        with self._lock:
+            if name not in self._actions:
+                raise UnknownNameError("action", name, self._actions, code=ACTION_UNKNOWN)
+            return self._actions[name]
 
     def _live(self) -> Iterator[Topic]:
         """The topics with a publisher or a subscriber, sorted by name."""

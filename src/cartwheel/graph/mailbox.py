@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+TIMEOUT = 30.0
+"""Default time for which `Mailbox.get` waits, s."""
 _LOOK = 1.0
 """Interval in s at which `can_come` is checked."""
 
@@ -37,25 +39,25 @@ class Mailbox:
             self._messages.append(message)
             self._condition.notify()
 
-    def get(self, timeout: float | None = None) -> Any | None:
+    def get(self, timeout: float = TIMEOUT) -> Any | None:
         """Returns the oldest unread message as soon as one is available.
 
         Args:
-            timeout: Maximum time to wait in s. None means no limit.
+            timeout: Maximum time to wait in s of wall time.
 
         Returns:
             None after the timeout, when the mailbox is closed, or when no message can arrive.
         """
-        end = None if timeout is None else time.monotonic() + timeout
+        end = time.monotonic() + timeout
         with self._condition:
             while not self._messages and not self._closed:
-                left = None if end is None else end - time.monotonic()
-                if left is not None and left <= 0:
+                left = end - time.monotonic()
+                if left <= 0:
                     break
                 if self._can_come is not None:
                     if not self._can_come():
                         break
-                    left = _LOOK if left is None else min(left, _LOOK)
+                    left = min(left, _LOOK)
                 self._condition.wait(left)
             return self._messages.popleft() if self._messages else None
 

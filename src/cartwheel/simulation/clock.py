@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Protocol
 
 NANOSECONDS = 1_000_000_000
-_NEVER = 1 << 40
+NEVER = 1 << 40
 """Steps."""
 _FINEST = 1_000_000
 """Maximum denominator of rates."""
@@ -175,7 +175,7 @@ class Schedule:
         return first, last, step + gap
 
     def _look(self, step: int) -> Due:
-        due, bit, upcoming = 0, 1, step + _NEVER
+        due, bit, upcoming = 0, 1, step + NEVER
         for ticks in self._ticks:
             if ticks.due(step) == step:
                 due |= bit

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
@@ -57,6 +56,13 @@ class Engine:
         """Number of external actions: moves, pushes and drive commands."""
         self.rewinds = 0
         """Number of time resets."""
+        self.served_ns = -1
+        """The last time at which the due tasks ran before the step that starts there; see
+        `Simulation.complete`."""
+        self.served_tasks = 0
+        """Number of tasks that had been created then."""
+        self.tasks_created = 0
+        """Number of tasks created so far, which is the order of the next one."""
         self.model: Any = None
         self.data: Any = None
         self.visuals = VisualModel()
@@ -77,7 +83,6 @@ class Engine:
         """The states of the last `locate` and `refresh`."""
         self.entries: Sequence[ModelEntry] = ()
         """The models in the world."""
-        self._orders = itertools.count()
 
     def close(self) -> None:
         """Frees rendering resources and removes all callbacks."""
@@ -105,13 +110,14 @@ class Engine:
         topics: Collection[Topic] | None,
     ) -> Task:
         """Creates a task that runs after all earlier tasks; see `Task`."""
+        self.tasks_created += 1
         return Task(
             rate=rate,
             before=before,
             after=after,
             active=active,
             topics=topics,
-            order=next(self._orders),
+            order=self.tasks_created - 1,
         )
 
     def wake(self, task: Task) -> None:
@@ -207,6 +213,16 @@ class Engine:
             self.locate()
             self._located = state
 
+    def keep(self) -> None:
+        """Lets the next step and `refresh` use the forward pass that was just made, unless the
+        state changes before.
+        """
+        self._located = self._refreshed = self.signature()
+
+    def is_refreshed(self) -> bool:
+        """Whether the results of the last forward pass are those of the current state."""
+        return bool(self._refreshed) and self._refreshed == self.signature()
+
     def locate(self) -> None:
         """Computes only poses and velocities for the current state."""
         mujoco.mj_kinematics(self.model, self.data)
@@ -223,6 +239,7 @@ class Engine:
         """
         self.step += count
         self.time_ns += count * self.step_ns
+        self._refreshed = b""
         if self._bounces is not None:
             for each in range(count):
                 if each or not forwarded:
@@ -252,11 +269,13 @@ class Engine:
     def rewind(self, *, keep_time: bool = False) -> None:
         """Resets all joints to their initial state, and time to zero unless `keep_time` is set."""
         time = self.data.time
+        self._changes += 1
         mujoco.mj_resetData(self.model, self.data)
         if keep_time:
             self.data.time = time
         else:
             self.time_ns = self.step = self.origin_ns = 0
+            self.served_ns = -1
             self.rewinds += 1
         self.forward()
 

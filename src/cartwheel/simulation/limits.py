@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
+from numbers import Real
+
+import numpy as np
 
 from cartwheel.codes import world as world_codes
 from cartwheel.errors import CartwheelError
@@ -18,6 +22,8 @@ LONGEST = 1e9
 """Maximum duration of a run, s."""
 SLOWEST, FASTEST = 1e-6, 1e6
 """Real-time factors."""
+LEAST_RATE, MOST_RATE = 1e-6, 1e6
+"""Hz."""
 MOST_STEPS = 1_000_000_000
 """Maximum number of single steps in one request."""
 
@@ -36,23 +42,42 @@ def number(value: float, name: str, *, most: float = FARTHEST) -> float:
     return value
 
 
-def _out_of_range(name: str, wanted: str, value: float) -> CartwheelError:
+def _out_of_range(name: str, wanted: str, value: object) -> CartwheelError:
+    number = float(value) if _is_real(value) else None  # type: ignore[arg-type]
+    shown = f"{number:g}" if number is not None else repr(value)[:60]
     return CartwheelError(
-        f"{name} must be {wanted} (got {value:g})",
+        f"{name} must be {wanted} (got {shown})",
         code=world_codes.NUMBER_OUT_OF_RANGE,
-        values={"name": name, "value": value},
+        values={"name": name, "value": shown if number is None else number},
     )
 
 
-def duration_ns(seconds: float) -> int:
-    """Converts the duration of a run to nanoseconds.
+def duration_ns(seconds: float, name: str = "the duration in s") -> int:
+    """Converts the duration of a run, or a time, to nanoseconds.
 
     Raises:
-        CartwheelError: The duration is not between 0 and `LONGEST`.
+        CartwheelError: The value is not a number between 0 and `LONGEST`.
     """
-    if not -0.5 / NANOSECONDS < seconds <= LONGEST:
-        raise _out_of_range("the duration in s", f"between 0 and {LONGEST:g}", seconds)
+    if not _is_real(seconds) or not -0.5 / NANOSECONDS < seconds <= LONGEST:
+        raise _out_of_range(name, f"a number between 0 and {LONGEST:g}", seconds)
     return to_ns(seconds)
+
+
+def rate_period_ns(rate: float) -> Fraction:
+    """Converts a rate in Hz to its period in nanoseconds.
+
+    Raises:
+        CartwheelError: The rate is not a number between `LEAST_RATE` and `MOST_RATE`.
+    """
+    if not _is_real(rate) or not LEAST_RATE <= rate <= MOST_RATE:
+        wanted = f"a number between {LEAST_RATE:g} and {MOST_RATE:g}"
+        raise _out_of_range("the rate in Hz", wanted, rate)
+    return NANOSECONDS / Fraction(rate).limit_denominator(1_000_000)
+
+
+def _is_real(value: object) -> bool:
+    """Whether a value is a number, of Python or of numpy, but not a boolean."""
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
 def numbers(values: Sequence[float], name: str, *, most: float = FARTHEST) -> None:
@@ -108,7 +133,7 @@ def check_size(size: int) -> None:
     Raises:
         CartwheelError: The size is less than 1.
     """
-    if size < 1:
+    if not isinstance(size, int) or isinstance(size, bool) or size < 1:
         raise _out_of_range("the size of a queue", "at least 1", size)
 
 
@@ -118,9 +143,9 @@ def check_steps(count: int) -> None:
     Raises:
         CartwheelError: The number is not between 1 and `MOST_STEPS`.
     """
-    if not 1 <= count <= MOST_STEPS:
+    if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_STEPS:
         raise CartwheelError(
-            f"the number of steps must be between 1 and {MOST_STEPS} (got {count})",
+            f"the number of steps must be between 1 and {MOST_STEPS} (got {count!r:.60})",
             code=world_codes.STEP_COUNT_INVALID,
-            values={"value": count},
+            values={"value": count if isinstance(count, int) else repr(count)[:60]},
         )

@@ -50,6 +50,8 @@ class Part(Requests):
         """Prefix of all frames, as ROS 1's tf_prefix."""
         self.owned: list[tuple[object, list[Handle | RayHandle]]] = []
         """Plugins and their handles."""
+        self.topics: set[str] = set()
+        """Names of the topics that plugins of the model have advertised or subscribed to."""
         self.read_sensors: set[str] = set()
         """Sensors that a plugin of the model publishes, so that no default plugin is needed."""
 
@@ -74,6 +76,13 @@ class Part(Requests):
     def seconds(self) -> float:
         """Simulation time of the current state, s."""
         return self._engine.time_ns / NANOSECONDS
+
+    @property
+    def served(self) -> bool:
+        """Whether the due tasks have run, and the step that starts now has not: a run has ended
+        here, and commands of the program between two runs arrive.
+        """
+        return self._engine.served_ns == self._engine.time_ns
 
     def models(self) -> dict[str, Pose]:
         """Poses of all models in the world by name, including this one."""

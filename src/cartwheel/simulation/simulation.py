@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Iterable, Sequence
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, DivergedError
+from cartwheel.simulation.alarms import Alarms
 from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
@@ -61,6 +63,7 @@ class Simulation(Models):
         self.engine.on_fault = self.faults.disable
         self.truth = GroundTruth(self.engine, self._population, self.forces)
         """The exact state of the models."""
+        self.alarms = Alarms(self.engine, partial(self.faults.fail, "an action"))
         self._population.start(attach_world)
         try:
             self._population.add_all(world.models)
@@ -106,7 +109,7 @@ class Simulation(Models):
         """Advances to a time: alternates between posted commands, due tasks and physics.
 
         Returns early when a command pauses, stops or resets the run. Tasks due at the target itself
-        run in the next call, after any earlier commands.
+        run in `complete`, or else in the next call, after any earlier commands.
 
         Raises:
             SimulationError: The state is no longer finite.
@@ -114,7 +117,7 @@ class Simulation(Models):
         engine, forces, faults = self.engine, self.forces, self.faults
         population = self._population
         separation, watch = population.separation, population.watch
-        commands, running = self.commands, RunState.RUNNING
+        commands, running, alarms = self.commands, RunState.RUNNING, self.alarms
         self.owner = threading.get_ident()
         left = engine.steps_until(target_ns)
         while left > 0:
@@ -125,13 +128,22 @@ class Simulation(Models):
                     return
             if self.run_state is not running and not self.steps_allowed:
                 return
+            alarm = None
+            if alarms.active:
+                alarm = self._ring()
+                if alarm is None or (self.run_state is not running and not self.steps_allowed):
+                    return
+                left = engine.steps_until(target_ns)
             change = forces.serve() if forces.active else None
             if population.subscribers_changed:
                 population.gather_tasks()
             schedule = population.schedule
             first, last, due = schedule.at(engine.step)
-            forwarded = False
-            if first or last:
+            if engine.served_ns == engine.time_ns:
+                first, last = self._unserved(first), self._unserved(last)
+            if not first and not last:
+                forwarded = engine.is_refreshed()
+            else:
                 forwarded = self._serve(first, last)
                 if population.schedule is not schedule:
                     # A task changed a task, the step length or the time.
@@ -139,6 +151,8 @@ class Simulation(Models):
                     due = population.schedule.at(engine.step)[2]
             if change is not None and change < due:
                 due = change
+            if alarm is not None and alarm < due:
+                due = alarm
             # Without tasks, commands still do not wait longer than until the next check.
             due = min(due, watch.due)
             count = due - engine.step
@@ -156,6 +170,51 @@ class Simulation(Models):
                 watch.check(population.origin_of)
             if faults.pending is not None:
                 faults.raise_pending()
+
+    def complete(self) -> None:
+        """Runs the commands and tasks that are due at the current time, unless they have run.
+
+        Everything that is due at this time is then published. The next `advance` begins with the
+        step, and runs only tasks that were created in the meantime.
+
+        Does nothing if the run is paused or stopped.
+        """
+        engine, population = self.engine, self._population
+        self.owner = threading.get_ident()
+        rewinds = engine.rewinds
+        self.drain()
+        if engine.rewinds != rewinds or self.run_state is not RunState.RUNNING:
+            return
+        if self.alarms.active and (self._ring() is None or self.run_state is not RunState.RUNNING):
+            return
+        if self.forces.active:
+            self.forces.serve()
+        if population.subscribers_changed:
+            population.gather_tasks()
+        first, last, _ = population.schedule.at(engine.step)
+        if engine.served_ns == engine.time_ns:
+            first, last = self._unserved(first), self._unserved(last)
+        created = engine.tasks_created
+        if (first or last) and self._serve(first, last):
+            engine.keep()
+        engine.served_ns, engine.served_tasks = engine.time_ns, created
+        self.faults.raise_pending()
+
+    def _ring(self) -> int | None:
+        """Runs the actions that are due, and the commands that they post.
+
+        Returns:
+            The step of the next action; None after a reset.
+        """
+        rewinds = self.engine.rewinds
+        due = self.alarms.serve()
+        if not self.commands.empty():
+            self.drain_queued()
+        return due if self.engine.rewinds == rewinds else None
+
+    def _unserved(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        served = self.engine.served_tasks
+        return tuple(task for task in tasks if task.order >= served) if tasks else tasks
 
     def _serve(self, first: Sequence[Task], last: Sequence[Task]) -> bool:
         """Runs due tasks; see `Schedule`.
@@ -223,6 +282,7 @@ class Simulation(Models):
         population.separation.forget()
         if not keep_time:
             self.forces.forget()
+            self.alarms.restart()
         self.forces.bind()
         for resident in population.everyone():
             for behaviour in tuple(resident.behaviours):
@@ -296,6 +356,10 @@ class Simulation(Models):
         self._population.world_tasks.remove(task)
         self._population.gather_tasks()
 
+    def _obey(self, command: Callable[[], None]) -> None:
+        self.engine.note_change()
+        super()._obey(command)
+
     def command_failed(self, error: Exception) -> None:
         """Handles an error in a posted function; see `Faults.fail`."""
         self.faults.fail("a command", error)
@@ -322,5 +386,6 @@ class Simulation(Models):
         self.run_state = RunState.STOPPED
         # Complete the pending calls of other threads.
         self.drain()
+        self.alarms.close()
         self._population.close()
         self.end()

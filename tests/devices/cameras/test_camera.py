@@ -162,7 +162,7 @@ def test_nothing_is_drawn_for_nobody(make):
     drawn = count_renders(world)
     info = world.mailbox("/cam/camera_info")
     world.run(1.0)
-    assert len(info.drain()) == 30
+    assert len(info.drain()) == 31
     assert not drawn
     raw, small = world.mailbox("/cam/image_raw"), world.mailbox("/cam/image_raw/compressed")
     world.run(1.0)

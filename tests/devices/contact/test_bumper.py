@@ -54,7 +54,7 @@ def test_nothing_touches_and_it_says_so_fifty_times_a_second(make, rosbots):
     world = make.world()
     world.session.spawn(rosbots, pose=Pose((0, 0, 0.05)))
     messages = read(world, 2.0)
-    assert len(messages) == 100
+    assert len(messages) == 101
     assert all(len(message.states) == 0 for message in messages)
     # As Gazebo: the frame's name is the tag's, the values are the world's.
     assert messages[0].header.frame_id == "base_link"

@@ -26,7 +26,7 @@ def test_a_joint_bears_weight_times_arm(make, read, joint, mass, reach):
     """What hangs behind the joint pulls down with its weight, and turns about y with its arm."""
     world = make.world(make.sdf(arm(ft(f"<jointName>{joint}</jointName>"))), ground=None)
     messages = read(world, "/ft", 1.0)
-    assert len(messages) == 50
+    assert len(messages) == 51
     wrench = messages[-1].wrench
     assert vector(wrench.force) == pytest.approx([0, 0, -mass * G], abs=1e-6)
     assert vector(wrench.torque) == pytest.approx([0, mass * G * reach, 0], abs=1e-6)

@@ -230,7 +230,7 @@ def test_the_slower_of_the_two_rates_counts(make, asked, sensors, counted):
       <sensor name="s" type="imu"><update_rate>{sensors}</update_rate>
         <plugin name="imu" filename="libgazebo_ros_imu_sensor.so"><topicName>/imu</topicName>
         <updateRateHZ>{asked}</updateRateHZ></plugin></sensor></link></model>"""
-    assert len(read(make.world(make.sdf(model)), 1.0)) == counted
+    assert len(read(make.world(make.sdf(model)), 1.0)) == counted + 1
 
 
 @pytest.mark.parametrize("how", ["spawned", "of the world"])

@@ -19,7 +19,7 @@ def test_hector_gps_tells_latitude_longitude_and_velocity(make, read):
     world.session.simulation.data.joint("unit::link").qvel[:3] = [1.0, 2.0, 0.5]
     box = world.mailbox("/fix_velocity")
     fixes = read(world, "/fix", 1.0)
-    assert len(fixes) == 10
+    assert len(fixes) == 11
     expected = Datum(latitude=math.radians(52), longitude=math.radians(13), height=30).locate(
         (-500.0, 1000.0, 5.0)
     )
@@ -110,7 +110,7 @@ def test_ros2_gps_sensor_tells_the_worlds_place(make, read):
         spherical_coordinates=spherical(47.0, 8.0, 500.0),
     )
     fixes = read(world, "/demo/fix", 1.0)
-    assert len(fixes) == 10
+    assert len(fixes) == 11
     expected = Datum(latitude=math.radians(47), longitude=math.radians(8), height=500.0).locate(
         (300, 400, 1)
     )

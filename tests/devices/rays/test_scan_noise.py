@@ -22,7 +22,7 @@ def noisy(make, *, seed=0, mean=0.0, stddev=0.02, most=10.0, seconds=2.0):
 def test_noise_has_the_mean_and_the_spread_that_are_asked_for(make):
     readings = noisy(make, mean=0.05, stddev=0.02)
     count = readings.size
-    assert count == 20_000
+    assert count == 21_000
     # Five standard errors of the mean and of the standard deviation.
     assert readings.mean() == pytest.approx(2.05, abs=5 * 0.02 / math.sqrt(count))
     assert readings.std() == pytest.approx(0.02, abs=5 * 0.02 / math.sqrt(2 * count))

@@ -51,8 +51,8 @@ def test_the_current_is_smoothed_by_its_time_constant(make, read):
     tags = "<start_draining>1</start_draining><smooth_current_tau>2</smooth_current_tau>"
     world = cart(make, tags)
     told = read(world, STATE, 2.0)[-1]
-    assert told.header.stamp.sec == 1
-    seconds = 1 + told.header.stamp.nanosec * 1e-9
+    assert told.header.stamp.sec == 2
+    seconds = 2 + told.header.stamp.nanosec * 1e-9
     assert told.current == pytest.approx(0.5 * (1 - math.exp(-seconds / 2)), rel=1e-6)
 
 

@@ -18,7 +18,7 @@ def test_it_tells_its_height_and_the_pressure_at_its_altitude(make, read):
     world = make.world(drone(make, "<elevation>400</elevation><qnh>1000</qnh>"))
     heights = world.mailbox("/pressure_height")
     told = read(world, "/altimeter", 1.0)
-    assert len(told) == 10
+    assert len(told) == 11
     assert [message.point.z for message in heights.drain()] == [120.0] * 10
     assert told[-1].altitude == 520
     assert told[-1].qnh == 1000

@@ -143,7 +143,7 @@ def test_the_gyroscope_is_told_with_its_covariances(world, read):
     told = read(world, f"{BASE}/sensors/imu_data", 0.1)[-1]
     assert told.linear_acceleration.z == pytest.approx(9.8, abs=0.2)
     drive(world, 1.0, 0.0, 0.5)
-    told = read(world, f"{BASE}/sensors/imu_data", 0.1)[-1]
+    told = read(world, f"{BASE}/sensors/imu_data", 0.08)[-1]
     assert told.angular_velocity.z == pytest.approx(0.5, rel=0.05)
     assert told.angular_velocity_covariance[8] == 0.05
 
@@ -163,11 +163,12 @@ def test_each_bumper_is_pressed_by_what_stands_there(make, angle, bumper, bit):
     events = world.mailbox(f"{BASE}/events/bumper")
     core = world.mailbox(f"{BASE}/sensors/core")
     drive(world, 2.0, 0.2)
-    first = events.drain()[0]
+    first, *later = events.drain()
     assert (first.bumper, first.state) == (bumper, first.PRESSED)
     assert any(message.bumper == bit for message in core.drain())
     drive(world, 1.0, -0.2)
-    last = events.drain()[-1]
+    # It may bounce off just before it drives away.
+    last = [*later, *events.drain()][-1]
     assert (last.bumper, last.state) == (bumper, last.RELEASED)
 
 

@@ -93,7 +93,7 @@ def test_points_have_bounds_of_their_own(make):
 
 def test_the_rate_is_the_lesser_of_both(make, read):
     world = make.world(device(make), wall(make, 2.0), ground=None)
-    assert len(read(world, "/camera/depth/camera_info", 1.0)) == 10
+    assert len(read(world, "/camera/depth/camera_info", 1.0)) == 11
     assert len(read(world, "/camera/color/camera_info", 1.0)) == 30
 
 

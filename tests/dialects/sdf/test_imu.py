@@ -29,7 +29,7 @@ def test_an_imu_sensors_noise_is_its_own_by_axis(make, read, plugin, topic):
     world = floating(make, unit(sensor=sensor))
     messages = read(world, topic, 20.0)
     count = len(messages)
-    assert count == 2000
+    assert count == 2001
     rates = np.array([vector(m.angular_velocity) for m in messages])
     accelerations = np.array([vector(m.linear_acceleration) for m in messages])
     tolerance = 4 / math.sqrt(2 * count)

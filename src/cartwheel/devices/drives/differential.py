@@ -139,6 +139,10 @@ class DifferentialDrive(Drive):
         if self._config.odometry != "ground truth":
             self.measure(seconds)
 
+    def respond(self) -> None:
+        if not self._is_limited:
+            self.actuate(0.0)
+
     def actuate(self, seconds: float) -> None:
         """Commands the wheels, `seconds` after the last call."""
         config = self._config

@@ -101,6 +101,12 @@ class Drive(Component):
         """Executes the command; `seconds` is the time since the last call, or 0."""
         raise NotImplementedError
 
+    def respond(self) -> None:
+        """Executes a new command between two updates, if the drive does so without a ramp.
+
+        Called if the command arrives between two runs, after the update that is due at this time.
+        """
+
     def motion(self) -> Motion:
         """Returns pose and velocity for the odometry: by default, those in the world."""
         return planar_motion(self._base)
@@ -116,6 +122,8 @@ class Drive(Component):
         self._received_ns = self.part.time_ns
         linear, angular = message.linear, message.angular
         self.command(float(linear.x), float(linear.y), float(angular.z))
+        if self.enabled and self._updated_ns == self._received_ns and self.part.served:
+            self.respond()
 
     def _watch(self) -> None:
         late = (self.part.time_ns - self._received_ns) * 1e-9 > self._timeout

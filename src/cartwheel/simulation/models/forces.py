@@ -8,11 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cartwheel.geometry import Array, Vec3
+from cartwheel.simulation.clock import NEVER
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.limits import STRONGEST, number, numbers
-
-_NEVER = 1 << 40
-"""Steps."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,7 +39,7 @@ class Push:
         if self.start_ns > time_ns:
             return max(1, (self.start_ns - time_ns) // step_ns)
         if self.end_ns is None:
-            return _NEVER
+            return NEVER
         return max(1, (self.end_ns - time_ns) // step_ns)
 
 
@@ -149,7 +147,7 @@ class Forces:
         self._pushes = [p for p in self._pushes if p.end_ns is None or p.end_ns > time_ns]
         wrenches: dict[int, Array] = {}
         efforts: dict[int, Array] = {}
-        steady = _NEVER
+        steady = NEVER
         for push in self._pushes:
             steady = min(steady, push.steady(time_ns, step_ns))
             weight = push.weight(time_ns, step_ns)

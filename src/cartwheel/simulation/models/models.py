@@ -134,6 +134,14 @@ class Models(Run):
         """
         return self._population.resident(name).part.namespace
 
+    def topics(self, name: str) -> frozenset[str]:
+        """Names of the topics that a model's plugins have advertised or subscribed to.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        return frozenset(self._population.resident(name).part.topics)
+
     def frame_prefix(self, name: str) -> str:
         """The prefix of a model's frames, as set at spawn.
 

@@ -229,7 +229,7 @@ def test_rates_are_exact_and_stamps_rise(make, rosbots):
     step = round(DEFAULT_STEP * 1e9)
     start = 1_000_000_000
     for topic, rate in (("/odom", 100), ("/bumpers", 50), ("/imu/data", 30)):
-        for index, message in enumerate(told[topic]):
+        for index, message in enumerate(told[topic], 1):
             due = start + index * 1e9 / rate
             # At its due time or at the step after it, never a whole step late.
             assert 0 <= stamp(message) - due < step

@@ -173,7 +173,7 @@ def test_two_of_one_name_are_told_once_each(make):
     assert told.code is running.SERVICE_TAKEN
     box = world.mailbox("/eye/image_raw", size=100)
     world.run(1.0)
-    assert len(box.drain()) == 60
+    assert len(box.drain()) == 62
 
 
 @pytest.mark.parametrize("kind", ["wideanglecamera", "camera"])

@@ -176,7 +176,7 @@ def test_one_picture_serves_all(make):
     renderer._draw = lambda *a: drawn.append(1) or draw(*a)
     boxes = [world.mailbox("/k/depth/camera_info", size=100)]
     world.run(1.0)
-    assert len(boxes[0].drain()) == 30
+    assert len(boxes[0].drain()) == 31
     assert not drawn
     boxes += [world.mailbox(f"/k/{name}", size=100) for name in ("ir/image_raw", "points")]
     world.run(1.0)

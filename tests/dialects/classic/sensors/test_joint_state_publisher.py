@@ -18,7 +18,7 @@ def test_classic_joint_states_are_published_in_the_models_namespace(make, read):
     world = make.world(make.sdf(arm(plugin, "revolute")), ground=None)
     world.session.simulation.data.joint("arm::turn").qvel[0] = 1.0
     messages = read(world, "/arm/joint_states", 1.0)
-    assert len(messages) == 50
+    assert len(messages) == 51
     assert messages[0].name == ["wrist", "turn"]
     data = world.session.simulation.data
     # One period ago, and the joint turns steadily.
@@ -33,7 +33,7 @@ def test_ros2_joint_states_of_all_movable_joints(make, read):
     plugin = joint_states("<ros><namespace>/r</namespace></ros>")
     world = make.world(make.sdf(arm(plugin)), ground=None)
     messages = read(world, "/r/joint_states", 1.0)
-    assert len(messages) == 100
+    assert len(messages) == 101
     assert messages[0].name == ["turn"]
 
 

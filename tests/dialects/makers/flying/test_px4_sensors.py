@@ -40,7 +40,7 @@ GPS = """<sensor name="gps" type="gps"><plugin name="gps" filename="libgazebo_gp
 
 def test_the_receiver_is_in_zurich_by_default(make):
     fixes = run(make, body(make, "", GPS.format("")), "/iris/link/iris")
-    assert len(fixes) == 5
+    assert len(fixes) == 6
     assert (fixes[0].latitude, fixes[0].longitude) == (47.397742, 8.545594)
     assert fixes[0].altitude == pytest.approx(488.0)
 
@@ -49,7 +49,7 @@ def test_the_place_and_the_topic_are_stated(make):
     tags = """<topic>gps7</topic><homeLatitude>-30</homeLatitude><homeLongitude>150</homeLongitude>
       <homeAltitude>9</homeAltitude><update_rate>10</update_rate>"""
     fixes = run(make, body(make, "", GPS.format(tags)), "/iris/link/gps7")
-    assert len(fixes) == 10
+    assert len(fixes) == 11
     assert (fixes[0].latitude, fixes[0].longitude) == pytest.approx((-30.0, 150.0))
     assert fixes[0].altitude == pytest.approx(9.0)
 
@@ -63,7 +63,7 @@ def test_the_world_states_the_place(make):
         0.1,
         spherical_coordinates=spherical(10, 20, 30),
     )
-    assert len(fixes) == 25
+    assert len(fixes) == 26
     found = (fixes[0].latitude, fixes[0].longitude, fixes[0].altitude)
     assert found == pytest.approx((10.0, 20.0, 30.0))
 
@@ -82,7 +82,7 @@ def test_the_magnetometer_measures_in_axes_forward_left_up(make):
     plugin = """<plugin name="m" filename="libgazebo_magnetometer_plugin.so">
       <noiseDensity>0</noiseDensity><randomWalk>0</randomWalk></plugin>"""
     messages = run(make, body(make, plugin), "/iris/mag")
-    assert len(messages) == 100
+    assert len(messages) == 101
     field = messages[0].magnetic_field
     # The body's x axis points east and its y axis north.
     assert field.y == pytest.approx(21.5e-6, abs=0.5e-6)
@@ -101,4 +101,4 @@ def test_the_barometer_drifts(make):
 def test_the_imu_has_the_topic_of_its_model(make):
     plugin = """<plugin name="i" filename="libgazebo_imu_plugin.so"><linkName>base</linkName>
       <imuTopic>/imu2</imuTopic></plugin>"""
-    assert len(run(make, body(make, plugin), "/iris/imu2", 0.1)) == 25
+    assert len(run(make, body(make, plugin), "/iris/imu2", 0.1)) == 26

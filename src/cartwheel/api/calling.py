@@ -1,0 +1,252 @@
+"""Services and actions of a world."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import Future
+from typing import Any, Literal
+
+from cartwheel.api.messaging import MessagingWorld
+from cartwheel.api.timing import TIMEOUT, timed_out
+from cartwheel.api.topics import made_message
+from cartwheel.codes.graph import SERVICE_TIMED_OUT
+from cartwheel.codes.world import RUN_NESTED
+from cartwheel.errors import GraphError, SimulationError
+from cartwheel.graph import Action, Service
+from cartwheel.graph import Goal as GraphGoal
+from cartwheel.messages import service_classes
+from cartwheel.messages.store import finding_with
+from cartwheel.simulation import Simulation
+from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import duration_ns
+
+_LOOK = 0.02
+"""Wall time between two checks whether a service has responded, s."""
+
+Status = Literal["pending", "active", "succeeded", "cancelled", "aborted", "rejected"]
+
+
+class CallingWorld(MessagingWorld):
+    """The part of `World` that calls services and sends goals to actions."""
+
+    @property
+    def services(self) -> tuple[str, ...]:
+        """Names of the services, sorted."""
+        return tuple(service.name for service in self.graph.services())
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Names of the actions, sorted."""
+        return tuple(action.name for action in self.graph.actions())
+
+    def call(
+        self, service: str, request: Any = None, *, timeout: float = TIMEOUT, **fields: Any
+    ) -> Any:
+        """Calls a service, and returns its response.
+
+        Services respond at once, so no simulation time passes.
+
+        Args:
+            service: Service name.
+            request: A request, or a mapping of its fields. By default, all fields are zero.
+            timeout: Maximum wall time for a service that does slow work, such as reading a file, s.
+            fields: The fields instead of `request`; see `publish`.
+
+        Raises:
+            UnknownNameError: The service does not exist.
+            TimedOutError: The service does not respond in time.
+            CartwheelError: The service refuses the request, or `timeout` is out of range.
+            GraphError: The request type does not have a given field.
+            SimulationError: The world is closed.
+        """
+        self.check_open()
+        limit = duration_ns(timeout, "the timeout in s") / NANOSECONDS
+        offered = self.graph.service(service)
+        kind = service_classes(offered.type)[0].__msgtype__
+        made = made_message(service, kind, request, fields)
+        with self.used(change=True) as simulation, finding_with(self.session.types):
+            inside = self._running and self._runner == threading.get_ident()
+            if not inside:
+                simulation.drain_queued()
+            if not offered.threaded:
+                return _checked(offered, offered.handler(made))
+            if inside:
+                raise SimulationError(
+                    f'a callback calls the service "{service}", which requires the world to wait',
+                    code=RUN_NESTED,
+                    hint="Call the service outside of callbacks.",
+                    values={"service": service},
+                )
+            return self._await(simulation, offered, made, limit)
+
+    def _await(self, simulation: Simulation, service: Service, request: Any, seconds: float) -> Any:
+        """Calls a service on a thread, and meanwhile runs the functions that it posts."""
+        future: Future[Any] = Future()
+
+        def work() -> None:
+            try:
+                future.set_result(service.handler(request))
+            except BaseException as error:  # noqa: BLE001 - raised by `call`
+                future.set_exception(error)
+
+        threading.Thread(target=work, name=f"call {service.name}", daemon=True).start()
+        end = time.monotonic() + seconds
+        while not future.done():
+            simulation.wait(_LOOK)
+            if time.monotonic() > end and not future.done():
+                raise timed_out(
+                    f'the service "{service.name}" did not respond within {seconds:g} s',
+                    {"service": service.name, "timeout": seconds},
+                )
+        simulation.drain_queued()
+        return _checked(service, future.result())
+
+    def send_goal(self, action: str, goal: Any = None, **fields: Any) -> Goal:
+        """Sends a goal to an action, such as a trajectory of a controller.
+
+        Args:
+            action: Action name.
+            goal: A goal message, or a mapping of its fields. By default, all fields are zero.
+            fields: The fields instead of `goal`; see `publish`. A duration can be given in s.
+
+        Returns:
+            The goal, whose `Goal.result` runs the world until it is reached.
+
+        Raises:
+            UnknownNameError: The action does not exist.
+            GraphError: The goal type does not have a given field.
+            SimulationError: The world is closed.
+        """
+        self.check_open()
+        offered = self.graph.action(action)
+        made = made_message(action, f"{offered.type}_Goal", goal, fields)
+        with self.used(change=True) as simulation, finding_with(self.session.types):
+            if not self._running or self._runner != threading.get_ident():
+                simulation.drain_queued()
+            return Goal(self, offered, made)
+
+
+class Goal:
+    """A goal of an action, sent by `World.send_goal`."""
+
+    def __init__(self, world: CallingWorld, action: Action, goal: Any) -> None:
+        self._world = world
+        self._action = action
+        self._feedback: list[Any] = []
+        self._early: list[tuple[GraphGoal, Any]] = []
+        self._goal: GraphGoal | None = None
+        action.listen(self)
+        submitted = action.submit(goal)
+        assert submitted is not None  # the identifier is new
+        self._goal = submitted
+        self._feedback += [each for owner, each in self._early if owner is submitted]
+        self._early.clear()
+        if submitted.done:
+            action.leave(self)
+
+    def __repr__(self) -> str:
+        return f"<Goal of {self._action.name}, {self.status}>"
+
+    @property
+    def wants_feedback(self) -> bool:
+        """Whether feedback is received, which the action asks."""
+        return True
+
+    def goal_changed(self, goal: GraphGoal) -> None:
+        """Called by the action when the state of one of its goals changes."""
+        if goal is self._goal and goal.done:
+            self._action.leave(self)
+
+    def goal_goes_on(self, goal: GraphGoal, feedback: Any) -> None:
+        """Called by the action with feedback on one of its goals."""
+        if self._goal is None:
+            self._early.append((goal, feedback))
+        elif goal is self._goal:
+            self._feedback.append(feedback)
+
+    @property
+    def _sent(self) -> GraphGoal:
+        assert self._goal is not None
+        return self._goal
+
+    @property
+    def status(self) -> Status:
+        """``pending``, ``active``, ``succeeded``, ``cancelled``, ``aborted`` or ``rejected``."""
+        names: dict[str, Status] = {
+            "PENDING": "pending",
+            "ACTIVE": "active",
+            "SUCCEEDED": "succeeded",
+            "CANCELLED": "cancelled",
+            "ABORTED": "aborted",
+            "REJECTED": "rejected",
+        }
+        return names[self._sent.state.name]
+
+    @property
+    def done(self) -> bool:
+        """Whether the goal has ended, in any state."""
+        return self._sent.done
+
+    @property
+    def text(self) -> str:
+        """Explanation of the final state; may be empty."""
+        return self._sent.text
+
+    @property
+    def feedback(self) -> Any:
+        """The newest feedback message; None if there is none."""
+        return self._feedback[-1] if self._feedback else None
+
+    @property
+    def feedbacks(self) -> list[Any]:
+        """All feedback messages, oldest first."""
+        return list(self._feedback)
+
+    def result(self, timeout: float = TIMEOUT) -> Any:
+        """Runs the world until the goal has ended, and returns the result message.
+
+        The result does not say whether the goal succeeded; see `status`.
+
+        Args:
+            timeout: Maximum simulation time, s.
+
+        Raises:
+            TimedOutError: The goal has not ended within the time, or `World.stop` was called.
+            CartwheelError: `timeout` is out of range.
+            SimulationError: See `World.run`.
+        """
+        if not self.done:
+            self._world._until(lambda: self.done, timeout=timeout)
+        if not self.done:
+            raise timed_out(
+                f'the goal of "{self._action.name}" has not ended within {timeout:g} s; it is '
+                f"{self.status}, with {len(self._feedback)} feedback messages",
+                {
+                    "action": self._action.name,
+                    "timeout": timeout,
+                    "status": self.status,
+                    "feedbacks": len(self._feedback),
+                },
+            )
+        return self._sent.result
+
+    def cancel(self) -> None:
+        """Requests the cancellation of the goal. Does nothing if it has ended.
+
+        Raises:
+            SimulationError: The world is closed.
+        """
+        with self._world.used(change=True):
+            if not self.done:
+                self._action.cancel(identity=self._sent.id)
+
+
+def _checked(service: Service, response: Any) -> Any:
+    if response is None:
+        raise GraphError(
+            f'service "{service.name}" returned no response',
+            code=SERVICE_TIMED_OUT,
+            values={"service": service.name},
+        )
+    return response

@@ -1,0 +1,177 @@
+"""Steps, conditions and timed actions of a world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cartwheel.api.conditions import Condition
+from cartwheel.api.running import RunningWorld
+from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, WAIT_TIMED_OUT
+from cartwheel.errors import CartwheelError, TimedOutError, Value
+from cartwheel.simulation import RunState, Simulation
+from cartwheel.simulation.alarms import Alarm
+from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import check_steps, duration_ns
+
+TIMEOUT = 60.0
+"""Default simulation time for which a program waits, s."""
+
+
+class Timer:
+    """A pending action of `World.on`."""
+
+    def __init__(self, alarm: Alarm) -> None:
+        self._alarm = alarm
+
+    @property
+    def time(self) -> float:
+        """Simulation time of the action, s."""
+        return self._alarm.time_ns / NANOSECONDS
+
+    @property
+    def pending(self) -> bool:
+        """Whether the action will run: it has not run, and was not cancelled."""
+        return self._alarm.pending
+
+    def cancel(self) -> None:
+        """Cancels the action. Does nothing if it has run."""
+        self._alarm.cancel()
+
+
+class TimedWorld(RunningWorld):
+    """The part of `World` that advances by steps and until conditions, and schedules actions."""
+
+    def step(self, n: int = 1) -> None:
+        """Advances the simulation by time steps; otherwise like `run`.
+
+        Args:
+            n: Number of steps, at least 1.
+
+        Raises:
+            CartwheelError: `n` is out of range.
+            SimulationError: See `run`.
+        """
+        check_steps(n)
+        with self._run() as simulation, self._driver.interruptible() as pressed:
+            self._advance(simulation, n * simulation.step_ns, None)
+        if pressed.is_set():
+            raise KeyboardInterrupt
+
+    def run_until(
+        self,
+        condition: Callable[..., Any],
+        *,
+        timeout: float = TIMEOUT,
+        period: float | None = None,
+        speed: float | None = None,
+    ) -> None:
+        """Advances the simulation until a condition holds.
+
+        The condition is evaluated at the current time, and then after each step. If it holds at
+        once, no time passes. `stop` ends the method without an error.
+
+        Args:
+            condition: Returns a true value when it holds. Takes no arguments, or the world. Its
+                errors are raised after the step.
+            timeout: Maximum simulation time, s.
+            period: Simulation time between two evaluations, s; None for one step.
+            speed: Target real-time factor; None is as fast as possible.
+
+        Raises:
+            TimedOutError: The condition does not hold within the time. The error contains the
+                condition and, for a lambda, the values that it compares.
+            CartwheelError: An argument is out of range.
+            SimulationError: See `run`.
+        """
+        tested = Condition(condition, self)
+        if self._until(tested.holds, timeout=timeout, period=period, speed=speed):
+            return
+        time = self.session.simulation.time_ns / NANOSECONDS
+        values = tested.values()
+        shown = "; ".join(f"{name} is {value}" for name, value in values.items())
+        raise timed_out(
+            f"the condition `{tested.text}` did not hold within {timeout:g} s "
+            f"(at {time:.9g} s{f': {shown}' if shown else ''})",
+            {"condition": tested.text, "timeout": timeout, "time": time, **values},
+        )
+
+    def _until(
+        self,
+        holds: Callable[[], bool],
+        *,
+        timeout: float,
+        period: float | None = None,
+        speed: float | None = None,
+    ) -> bool:
+        """Runs until a condition holds, or `stop`. Returns False after the timeout."""
+        limit = duration_ns(timeout, "the timeout in s")
+        pause = None if period is None else duration_ns(period, "the period in s")
+        with self._run() as simulation, self._driver.interruptible() as pressed:
+            held = self._run_until(simulation, holds, limit, pause, speed)
+        if pressed.is_set():
+            raise KeyboardInterrupt
+        return held
+
+    def _run_until(
+        self,
+        simulation: Simulation,
+        holds: Callable[[], bool],
+        limit: int,
+        pause: int | None,
+        speed: float | None,
+    ) -> bool:
+        engine = simulation.engine
+        end, rewinds = simulation.time_ns + limit, engine.rewinds
+        while not holds() and simulation.run_state is not RunState.STOPPED:
+            if engine.rewinds != rewinds:
+                # As in `run`, the time starts again.
+                end, rewinds = simulation.time_ns + limit, engine.rewinds
+            left = end - simulation.time_ns
+            if left <= 0:
+                return False
+            step = simulation.step_ns
+            self._advance(simulation, min(max(pause or step, step), max(left, step)), speed)
+        return True
+
+    def on(self, time: float, action: Callable[[], Any]) -> Timer:
+        """Runs an action once, at a simulation time, before the step that starts there.
+
+        Due devices run after the action, so that a command acts in the same step. Actions at the
+        same time run in the order in which they were added. An exception in the action stops `run`
+        after the step, as in `subscribe`. `reset` removes all pending actions.
+
+        Args:
+            time: Simulation time, s. A time within a step is handled at the next step.
+            action: Is called without arguments.
+
+        Returns:
+            A handle that cancels the action.
+
+        Raises:
+            CartwheelError: The time has passed, or is out of range, or `action` is not a function.
+            SimulationError: The world is closed.
+        """
+        due = duration_ns(time, "the time in s")
+        with self.used() as simulation:
+            if due < simulation.time_ns or not callable(action):
+                now = simulation.time_ns / NANOSECONDS
+                raise CartwheelError(
+                    f"the action must be a function, and its time not before {now:.9g} s "
+                    f"(got {time:.9g} s)",
+                    code=NUMBER_OUT_OF_RANGE,
+                    values={"name": "time", "value": float(time), "now": now},
+                )
+
+            def guarded() -> None:
+                try:
+                    action()
+                except BaseException as error:  # noqa: BLE001 - raised by `run`
+                    simulation.faults.defer(error)
+
+            return Timer(simulation.alarms.add(Alarm(guarded, due)))
+
+
+def timed_out(message: str, values: dict[str, Value], hint: str | None = None) -> TimedOutError:
+    """The error for something that did not happen in time."""
+    return TimedOutError(message, code=WAIT_TIMED_OUT, values=values, hint=hint)

@@ -1,0 +1,246 @@
+"""Topics of a world as objects: their messages, and publishing at a rate."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from cartwheel import arrays
+from cartwheel.api.timing import TIMEOUT, timed_out
+from cartwheel.codes.graph import NO_MESSAGE
+from cartwheel.errors import GraphError, Value
+from cartwheel.graph import Subscription, check_message
+from cartwheel.messages import from_dict, from_flat
+from cartwheel.similar_names import suggestion
+from cartwheel.simulation.alarms import Alarm
+from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import check_size, rate_period_ns
+
+if TYPE_CHECKING:
+    from cartwheel.api.messaging import MessagingWorld
+
+RATE = 10.0
+"""Default rate of `Topic.hold`, Hz, as in ``cartwheel teleop``."""
+_KEPT, _KEPT_LARGE = 1000, 10
+_LARGE = frozenset(
+    f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "PointCloud", "PointCloud2")
+)
+
+
+class Topic:
+    """A topic of a world, and its newest messages.
+
+    `World.topic` creates it and subscribes to the topic, so that its sensor produces data. It keeps
+    the newest 1000 messages, of images and point clouds the newest 10.
+    """
+
+    def __init__(
+        self, world: MessagingWorld, name: str, kind: str | None, keep: int | None
+    ) -> None:
+        self._world = world
+        graph = world.graph
+        self._messages: deque[tuple[int, Any]] = deque()
+        self.count = 0
+        """Number of messages received."""
+        self._latched = graph.latched(name)
+        self._subscription: Subscription = graph.subscribe(
+            name, self._receive, type_name=kind, node="World.topic"
+        )
+        self.name = self._subscription.topic
+        """Name of the topic."""
+        self.type: str = graph.topic(self.name).type
+        """Type of the messages, such as ``sensor_msgs/msg/LaserScan``."""
+        self._messages = deque(maxlen=keep or (_KEPT_LARGE if self.type in _LARGE else _KEPT))
+        if self._latched is not None:
+            self._add(self._latched)
+
+    def __repr__(self) -> str:
+        return f"<Topic {self.name} {self.type}, {self.count} messages>"
+
+    def keep(self, size: int) -> None:
+        """Keeps at least the newest `size` messages from now on."""
+        check_size(size)
+        if size > (self._messages.maxlen or 0):
+            self._messages = deque(self._messages, maxlen=size)
+
+    def _receive(self, message: Any) -> None:
+        # The graph also delivers the latched message, which `latest` contains at once.
+        if message is not self._latched:
+            self._add(message)
+        self._latched = None
+
+    def _add(self, message: Any) -> None:
+        self.count += 1
+        self._messages.append((self._world.session.simulation.time_ns, message))
+
+    @property
+    def latest(self) -> Any:
+        """The newest message; None if there is none yet. Do not change it."""
+        return self._messages[-1][1] if self._messages else None
+
+    @property
+    def latest_time(self) -> float | None:
+        """Simulation time at which the newest message was published, s."""
+        return self._messages[-1][0] / NANOSECONDS if self._messages else None
+
+    def history(self, size: int | None = None) -> list[Any]:
+        """The newest messages that are kept, oldest first.
+
+        Args:
+            size: Maximum number; None for all. `World.topic` sets how many are kept.
+        """
+        return [message for _, message in self._newest(size)]
+
+    def times(self, size: int | None = None) -> list[float]:
+        """Simulation times at which the messages of `history` were published, s."""
+        return [time_ns / NANOSECONDS for time_ns, _ in self._newest(size)]
+
+    def _newest(self, size: int | None) -> Sequence[tuple[int, Any]]:
+        if size is None:
+            return list(self._messages)
+        check_size(size)
+        return list(self._messages)[-size:]
+
+    def array(self) -> Any:
+        """The newest message as an array; see `cartwheel.arrays.array`.
+
+        Raises:
+            GraphError: There is no message yet, or its type contains no array, or its sizes are
+                inconsistent.
+        """
+        if not self._messages:
+            raise GraphError(
+                f'no message was received on "{self.name}"',
+                code=NO_MESSAGE,
+                values={"topic": self.name},
+                hint="Call World.run or Topic.wait first.",
+            )
+        return arrays.array(self.latest)
+
+    def wait(self, timeout: float = TIMEOUT) -> Any:
+        """Runs the world until the next message, and returns it.
+
+        Args:
+            timeout: Maximum simulation time, s.
+
+        Raises:
+            TimedOutError: No message was published within the time, or `World.stop` was called. The
+                error contains the publishers of the topic.
+            CartwheelError: `timeout` is out of range.
+            SimulationError: See `World.run`.
+        """
+        before = self.count
+        self._world._until(lambda: self.count > before, timeout=timeout)
+        if self.count == before:
+            raise self._silent(timeout)
+        return self.latest
+
+    def _silent(self, timeout: float) -> Exception:
+        graph = self._world.graph
+        publishers, rate = graph.publishers(), None
+        own = [each for each in publishers if each.topic == self.name]
+        names = {each.topic for each in publishers if each.type == self.type}
+        if own:
+            rate = next((each.rate for each in own if each.rate), None)
+            nodes = ", ".join(sorted({each.node for each in own}))
+            known = f"{nodes} publishes it" + (f" at {rate:g} Hz" if rate else "")
+            hint = None
+        else:
+            known = "nothing publishes it"
+            hint = suggestion(self.name, sorted(names - {self.name}))
+        last = f"the last message was published at {self.latest_time:.9g} s" if self.count else ""
+        values: dict[str, Value] = {
+            "topic": self.name,
+            "timeout": timeout,
+            "publishers": tuple(each.node for each in own),
+            "rate": rate,
+            "messages": self.count,
+        }
+        text = "; ".join(part for part in (known, last) if part)
+        return timed_out(
+            f'no message on "{self.name}" was published within {timeout:g} s: {text}', values, hint
+        )
+
+    def publish(self, message: Any = None, **fields: Any) -> None:
+        """Publishes a message; see `World.publish`."""
+        self._world.publish(self.name, message, **fields)
+
+    def hold(self, message: Any = None, *, rate: float = RATE, **fields: Any) -> Hold:
+        """Publishes a message now, and then at a rate while the world runs.
+
+        Devices execute the message in the step in which it is published. A reset starts the periods
+        again.
+
+        Args:
+            message: As for `World.publish`.
+            rate: Hz of simulation time.
+            fields: As for `World.publish`.
+
+        Returns:
+            A handle whose `stop` ends it. In a ``with`` block, the end of the block does so. The
+            last message stays in effect.
+
+        Raises:
+            CartwheelError: The rate is out of range.
+            GraphError: As for `World.publish`.
+        """
+        world = self._world
+        period = rate_period_ns(rate)
+        kind = self.type
+        made = made_message(self.name, kind, message, fields)
+        with world.used() as simulation:
+            publisher = world.graph.advertise(self.name, kind, node="World.hold", rate=rate)
+
+            def publish() -> None:
+                publisher.publish(made)
+
+            alarm = Alarm(publish, simulation.time_ns, period)
+            simulation.alarms.add(alarm)
+        return Hold(alarm, publisher.close)
+
+    def close(self) -> None:
+        """Ends the subscription. The messages stay readable."""
+        self._subscription.close()
+        self._world._forget_topic(self)
+
+
+class Hold:
+    """A message that is published at a rate; see `Topic.hold`."""
+
+    def __init__(self, alarm: Alarm, close: Callable[[], None]) -> None:
+        self._alarm = alarm
+        self._close = close
+
+    @property
+    def active(self) -> bool:
+        """Whether the message is still published."""
+        return self._alarm.pending
+
+    def stop(self) -> None:
+        """Ends the publishing. Does nothing if it has ended."""
+        if self._alarm.pending:
+            self._alarm.cancel()
+            self._close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+
+def made_message(topic: str, kind: str, message: Any, fields: Mapping[str, Any]) -> Any:
+    """The message that a program gives as a message, a mapping or keyword arguments."""
+    if fields:
+        return from_flat(kind, fields)
+    if message is None or isinstance(message, Mapping):
+        return from_dict(kind, message or {})
+    check_message(topic, kind, message)
+    return message
