@@ -69,6 +69,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "check.md",
             "python.md",
             "python/state.md",
+            "python/messages.md",
             "ros1.md",
             "ros2.md",
             "foxglove.md",

@@ -336,8 +336,8 @@ def test_two_worlds_have_their_own_servers_and_recordings(tmp_path: Path, folder
         two.run(0.5)
     found = list(map(counts, files))
     assert found[0]["/clock"] == 51
-    assert found[0]["/odom"] == 50
-    assert found[1]["/clock"] == 150
+    assert found[0]["/odom"] == 51
+    assert found[1]["/clock"] == 151
     assert "/odom" not in found[1]
 
 

@@ -8,7 +8,6 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
-from weakref import WeakValueDictionary
 
 from cartwheel.api.timing import TimedWorld
 from cartwheel.api.topics import Topic, made_message
@@ -89,9 +88,12 @@ class MessagingWorld(TimedWorld):
         return found
 
     @functools.cached_property
-    def _known_topics(self) -> WeakValueDictionary[str, Topic]:
-        # The graph holds the topics until it is closed, so that the world can be freed then.
-        return WeakValueDictionary()
+    def _known_topics(self) -> dict[str, Topic]:
+        return {}
+
+    def _end(self) -> None:
+        self._known_topics.clear()
+        super()._end()
 
     def _forget_topic(self, topic: Topic) -> None:
         for name in [name for name, each in self._known_topics.items() if each is topic]:

@@ -11,15 +11,16 @@ from cartwheel import arrays
 from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import GraphError, Value
-from cartwheel.graph import Subscription, check_message
+from cartwheel.graph import check_message
 from cartwheel.messages import from_dict, from_flat
-from cartwheel.similar_names import suggestion
+from cartwheel.similar_names import meant, suggestion
 from cartwheel.simulation.alarms import Alarm
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import check_size, rate_period_ns
 
 if TYPE_CHECKING:
     from cartwheel.api.messaging import MessagingWorld
+    from cartwheel.simulation import Simulation
 
 RATE = 10.0
 """Default rate of `Topic.hold`, Hz, as in ``cartwheel teleop``."""
@@ -27,6 +28,33 @@ _KEPT, _KEPT_LARGE = 1000, 10
 _LARGE = frozenset(
     f"sensor_msgs/msg/{name}" for name in ("Image", "CompressedImage", "PointCloud", "PointCloud2")
 )
+
+
+class _Received:
+    """The newest messages of a topic, without a reference to the `Topic`, which would be a cycle.
+
+    Args:
+        simulation: The simulation, for the time.
+        latched: The message that the graph delivers again to a new subscriber, or None.
+    """
+
+    def __init__(self, simulation: Simulation, latched: Any) -> None:
+        self._simulation = simulation
+        self._latched = latched
+        self.messages: deque[tuple[int, Any]] = deque(maxlen=_KEPT)
+        self.count = 0
+
+    def __call__(self, message: Any) -> None:
+        if message is not self._latched:
+            self.add(message)
+        self._latched = None
+
+    def add(self, message: Any) -> None:
+        self.count += 1
+        self.messages.append((self._simulation.time_ns, message))
+
+    def keep(self, size: int) -> None:
+        self.messages = deque(self.messages, maxlen=size)
 
 
 class Topic:
@@ -41,20 +69,18 @@ class Topic:
     ) -> None:
         self._world = world
         graph = world.graph
-        self._messages: deque[tuple[int, Any]] = deque()
-        self.count = 0
-        """Number of messages received."""
-        self._latched = graph.latched(name)
-        self._subscription: Subscription = graph.subscribe(
-            name, self._receive, type_name=kind, node="World.topic"
+        latched = graph.latched(name)
+        self._received = _Received(world.session.simulation, latched)
+        self._subscription = graph.subscribe(
+            name, self._received, type_name=kind, node="World.topic"
         )
         self.name = self._subscription.topic
         """Name of the topic."""
         self.type: str = graph.topic(self.name).type
         """Type of the messages, such as ``sensor_msgs/msg/LaserScan``."""
-        self._messages = deque(maxlen=keep or (_KEPT_LARGE if self.type in _LARGE else _KEPT))
-        if self._latched is not None:
-            self._add(self._latched)
+        self._received.keep(keep or (_KEPT_LARGE if self.type in _LARGE else _KEPT))
+        if latched is not None:
+            self._received.add(latched)
 
     def __repr__(self) -> str:
         return f"<Topic {self.name} {self.type}, {self.count} messages>"
@@ -63,17 +89,16 @@ class Topic:
         """Keeps at least the newest `size` messages from now on."""
         check_size(size)
         if size > (self._messages.maxlen or 0):
-            self._messages = deque(self._messages, maxlen=size)
+            self._received.keep(size)
 
-    def _receive(self, message: Any) -> None:
-        # The graph also delivers the latched message, which `latest` contains at once.
-        if message is not self._latched:
-            self._add(message)
-        self._latched = None
+    @property
+    def _messages(self) -> deque[tuple[int, Any]]:
+        return self._received.messages
 
-    def _add(self, message: Any) -> None:
-        self.count += 1
-        self._messages.append((self._world.session.simulation.time_ns, message))
+    @property
+    def count(self) -> int:
+        """Number of messages received."""
+        return self._received.count
 
     @property
     def latest(self) -> Any:
@@ -157,6 +182,7 @@ class Topic:
             "publishers": tuple(each.node for each in own),
             "rate": rate,
             "messages": self.count,
+            "meant": "" if own else meant(self.name, names - {self.name}),
         }
         text = "; ".join(part for part in (known, last) if part)
         return timed_out(

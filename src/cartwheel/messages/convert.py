@@ -21,6 +21,8 @@ _ROS1_NAMES: dict[str, dict[str, str | None]] = {
     "sensor_msgs/msg/CameraInfo": {"D": "d", "K": "k", "R": "r", "P": "p"},
 }
 """ROS 1 names of fields, for values pasted from ROS 1. None means that the field is ignored."""
+_TIMES = frozenset({"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"})
+"""Types for which a number of seconds can be given."""
 
 
 def to_dict(message: Any) -> dict[str, Any]:
@@ -36,7 +38,7 @@ def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any
     """Creates a message from YAML or JSON values. Omitted fields are zero or empty.
 
     ROS 1 field names (``secs``, ``seq``, ``K``) are accepted. A list contains the fields of a
-    message in order, as in ``rostopic pub``.
+    message in order, as in ``rostopic pub``. A number stands for a time or duration in s.
 
     Args:
         type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
@@ -165,6 +167,8 @@ def _message(cls: Any, given: Any, path: str) -> Any:
 def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
     """The given values, by the field names of the message classes."""
     names = [field.name for field in fields(type_name)]
+    if type_name in _TIMES and isinstance(given, int | float) and not isinstance(given, bool):
+        return _parts(float(given))
     if isinstance(given, Mapping):
         aliases = _ROS1_NAMES.get(type_name, {})
         result = {}
@@ -203,6 +207,14 @@ def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
         hint=f"Use the form {{{', '.join(f'{name}: …' for name in names)}}}.",
         values={"type": type_name, "field": path.rstrip("."), "value": _shown(given)},
     )
+
+
+def _parts(seconds: float) -> dict[str, Any]:
+    """The fields of a time or duration in seconds."""
+    if not math.isfinite(seconds):
+        return {"sec": seconds}  # refused as any other value
+    whole, rest = divmod(round(seconds * 1_000_000_000), 1_000_000_000)
+    return {"sec": whole, "nanosec": rest}
 
 
 def _value(field: Field, value: Any, path: str) -> Any:
