@@ -10,7 +10,8 @@ import numpy as np
 
 from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
-from cartwheel.messages.fields import FILLER, Field, fields
+from cartwheel.messages.classes import FILLER
+from cartwheel.messages.fields import Field, fields
 from cartwheel.messages.store import message_class
 from cartwheel.similar_names import meant, suggestion
 

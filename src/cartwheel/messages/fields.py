@@ -6,11 +6,9 @@ import functools
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from cartwheel.messages.classes import FILLER
 from cartwheel.messages.learnt import learnt
 from cartwheel.messages.store import loaded, message_class
-
-FILLER = "structure_needs_at_least_one_member"
-"""Byte that ROS 2 adds to a message without fields. Its value has no meaning."""
 
 CODES = {
     "bool": "?",

@@ -19,6 +19,7 @@ from typing import Any, Protocol
 
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
+from cartwheel.messages.classes import Classes
 
 DEFINITIONS = Path(__file__).parent / "definitions"
 """Contains ``<package>/msg/<Name>.msg`` and ``<package>/srv/<Name>.srv``."""
@@ -74,7 +75,9 @@ def loaded() -> Any:
 
     # rosbags shares its table of types between stores, so read it before types are added.
     _of_rosbags()
-    return get_typestore(Stores.ROS2_JAZZY)
+    made = get_typestore(Stores.ROS2_JAZZY)
+    made.types = Classes(made.types, module=__name__)
+    return made
 
 
 @functools.cache
@@ -213,6 +216,19 @@ def message_class(name: str) -> Any:
     if full not in types and not _learn(full) and not _find(full):
         raise UnknownNameError("message type", name, store().types, code=MESSAGE_TYPE_UNKNOWN)
     return types[full]
+
+
+def __getattr__(name: str) -> Any:
+    """Class of a message type by its name in Python, such as ``std_msgs__msg__Header``.
+
+    `pickle` finds the classes here.
+    """
+    if "__" not in name.strip("_"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        return message_class(name.replace("__", "/"))
+    except UnknownNameError as error:
+        raise AttributeError(error.message) from error
 
 
 def service_classes(name: str) -> tuple[Any, Any]:

@@ -21,7 +21,7 @@ from cartwheel.simulation.handles import (
     MotorHandle,
 )
 from cartwheel.simulation.requests import Requests
-from cartwheel.simulation.sensing.contacts import read_contacts
+from cartwheel.simulation.sensing.contacts import contacts_of, geoms_of
 from cartwheel.simulation.sensing.rays import RayHandle
 from cartwheel.simulation.sensing.rendering import Depth, Image
 from cartwheel.simulation.snapshot import Contact
@@ -54,6 +54,10 @@ class Part(Requests):
         """Names of the topics that plugins of the model have advertised or subscribed to."""
         self.read_sensors: set[str] = set()
         """Sensors that a plugin of the model publishes, so that no default plugin is needed."""
+        self._touched: dict[frozenset[str], dict[int, str]] = {}
+        """Geoms in the MuJoCo model of the collisions that were passed to `contacts`."""
+        self._touched_in: Any = None
+        """The MuJoCo model of `_touched`."""
 
     @property
     def world(self) -> WorldDescription:
@@ -126,8 +130,15 @@ class Part(Requests):
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
         """Contacts of these collisions (``link::collision``), each as `first`."""
-        names = {scoped(self.name, collision) for collision in collisions}
-        return read_contacts(self._engine.model, self._engine.data, names)
+        model, key = self._engine.model, frozenset(collisions)
+        if model is not self._touched_in:
+            self._touched_in = model
+            self._touched.clear()
+        geoms = self._touched.get(key)
+        if geoms is None:
+            names = {scoped(self.name, collision) for collision in collisions}
+            geoms = self._touched[key] = geoms_of(model, names)
+        return contacts_of(model, self._engine.data, geoms)
 
     def made(self, make: Callable[[], T]) -> T:
         """Creates a plugin, which owns everything it requests; all of it is undone if creation

@@ -12,7 +12,7 @@ from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
 from cartwheel.errors import CartwheelError, RecordingError, Value
 from cartwheel.messages import decode_cdr, store
-from cartwheel.messages.fields import FILLER
+from cartwheel.messages.classes import FILLER
 from cartwheel.messages.learnt import learnt, recorded, register
 from cartwheel.messages.ros1 import decode_ros1, ros1_type
 from cartwheel.messages.ros1.types import ros1_store

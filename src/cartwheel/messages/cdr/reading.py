@@ -11,7 +11,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from cartwheel.messages.fields import CODES, FILLER, Field, field_of
+from cartwheel.messages.classes import FILLER
+from cartwheel.messages.fields import CODES, Field, field_of
 from cartwheel.messages.learnt import learnt
 from cartwheel.messages.store import loaded, message_class
 

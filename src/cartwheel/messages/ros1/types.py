@@ -10,8 +10,8 @@ from typing import Any
 
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
+from cartwheel.messages.classes import FILLER
 from cartwheel.messages.definition import Definition
-from cartwheel.messages.fields import FILLER
 from cartwheel.messages.learnt import learnt, learnt_since, text_with_nested
 from cartwheel.messages.store import learning, parsed_definitions, service_name, type_name
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import mujoco
@@ -16,10 +16,12 @@ _GEOM = mujoco.mjtObj.mjOBJ_GEOM
 
 
 def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact]:
-    """Contacts of the named geoms, with the named geom as `first`.
+    """Contacts of the named geoms; see `contacts_of`."""
+    return contacts_of(model, data, geoms_of(model, names))
 
-    A contact between two named geoms is returned once for each of them.
-    """
+
+def geoms_of(model: Any, names: Collection[str]) -> dict[int, str]:
+    """The names of geoms by index. A name may have several geoms."""
     wanted = {}
     for name in names:
         for number in itertools.count():
@@ -27,12 +29,26 @@ def read_contacts(model: Any, data: Any, names: Collection[str]) -> list[Contact
             if index < 0:
                 break
             wanted[index] = name
+    return wanted
+
+
+def contacts_of(model: Any, data: Any, wanted: Mapping[int, str]) -> list[Contact]:
+    """Contacts of geoms, with the wanted geom as `first`.
+
+    A contact between two wanted geoms is returned once for each of them.
+
+    Args:
+        model: The MuJoCo model.
+        data: Its data, after a forward pass.
+        wanted: Names of geoms by index.
+    """
     if not wanted or data.ncon == 0:
         return []
-    found = []
-    pairs = data.contact.geom
-    for index in range(data.ncon):
-        one, two = int(pairs[index, 0]), int(pairs[index, 1])
+    found: list[Contact] = []
+    pairs = data.contact.geom.tolist()
+    if wanted.keys().isdisjoint(itertools.chain.from_iterable(pairs)):
+        return found
+    for index, (one, two) in enumerate(pairs):
         if one not in wanted and two not in wanted:
             continue
         contact = data.contact[index]

@@ -1,0 +1,75 @@
+"""Classes of messages: they behave like the dataclasses of rosbags."""
+
+import copy
+import dataclasses
+import pickle
+import random
+import threading
+from typing import Any
+
+import pytest
+from rosbags.typesys import Stores, get_typestore
+from tests.messages.cdr.test_cdr import grown
+
+from cartwheel.messages import encode_cdr, message_class, zero
+from cartwheel.messages.classes import Classes
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+
+def test_the_functions_of_the_module_dataclasses() -> None:
+    made = message_class("geometry_msgs/msg/Vector3")(1.0, 2.0, z=3.0)
+    assert dataclasses.is_dataclass(made)
+    assert [field.name for field in dataclasses.fields(made)] == ["x", "y", "z"]
+    assert dataclasses.replace(made, y=5.0) == type(made)(1.0, 5.0, 3.0)
+    pose = zero("geometry_msgs/msg/Pose")
+    assert dataclasses.asdict(pose)["orientation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 0.0}
+
+
+def test_copies_and_pickles() -> None:
+    made = grown(ODOMETRY, random.Random(2))
+    for again in (pickle.loads(pickle.dumps(made)), copy.deepcopy(made)):
+        assert type(again) is type(made)
+        assert encode_cdr(again) == encode_cdr(made)
+        assert again.header is not made.header
+    assert copy.copy(made).header is made.header
+
+
+def test_constants_and_names_are_those_of_rosbags() -> None:
+    theirs = get_typestore(Stores.ROS2_JAZZY).types
+    for name in ("sensor_msgs/msg/NavSatStatus", "std_msgs/msg/Header"):
+        ours = message_class(name)
+        assert ours.__name__ == theirs[name].__name__
+        assert ours.__msgtype__ == name
+        constants = {key: value for key, value in vars(theirs[name]).items() if key.isupper()}
+        assert {key: getattr(ours, key) for key in constants} == constants
+
+
+@pytest.mark.parametrize("wrong", [(1.0, 2.0), (1.0, 2.0, 3.0, 4.0)])
+def test_a_wrong_number_of_values(wrong: tuple[float, ...]) -> None:
+    with pytest.raises(TypeError):
+        message_class("geometry_msgs/msg/Vector3")(*wrong)
+
+
+def test_a_field_that_does_not_exist_cannot_be_set() -> None:
+    made = zero(ODOMETRY)
+    with pytest.raises(AttributeError):
+        made.child_frame = "base_link"
+
+
+def test_threads_convert_a_type_to_the_same_class() -> None:
+    for _ in range(20):
+        classes = Classes(dict(get_typestore(Stores.ROS2_JAZZY).types), module=__name__)
+        start = threading.Barrier(4)
+        found: list[Any] = []
+
+        def look(classes: Classes = classes, start: threading.Barrier = start) -> None:
+            start.wait(60)
+            found.append(classes[ODOMETRY])  # noqa: B023 - read in the same round
+
+        threads = [threading.Thread(target=look) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+        assert len(found) == 4 and len(set(map(id, found))) == 1
