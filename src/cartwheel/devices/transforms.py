@@ -23,12 +23,13 @@ def transform_stamped(
         position: Of the child frame in the parent frame, m.
         orientation: The same, ``(x, y, z, w)``.
     """
-    TransformStamped, Transform, Vector3, Quaternion = _classes()
+    TransformStamped, Transform, Vector3, Quaternion = transform_classes()
     return TransformStamped(moment, child, Transform(Vector3(*position), Quaternion(*orientation)))
 
 
 @functools.cache
-def _classes() -> tuple[Any, Any, Any, Any]:
+def transform_classes() -> tuple[Any, Any, Any, Any]:
+    """Returns the classes TransformStamped, Transform, Vector3 and Quaternion."""
     return (
         message_class(TRANSFORM_STAMPED),
         message_class("geometry_msgs/msg/Transform"),

@@ -20,36 +20,37 @@ def _header_class() -> Any:
     return message_class("std_msgs/msg/Header")
 
 
-_Moment = tuple[int, Any, dict[str, Any]]
-"""What messages with the same timestamp share: time in ns, stamp, and headers by frame."""
-_recent: tuple[_Moment, _Moment] = ((-1, None, {}), (-1, None, {}))
-"""The last two timestamps: wheel transforms have a timestamp 1 ns after all other messages.
+_recent: tuple[tuple[int, Any], tuple[int, Any]] = ((-1, None), (-1, None))
+"""The last two timestamps in ns, with their messages: wheel transforms have a timestamp 1 ns after
+all other messages.
 
 The tuple is always replaced as a whole, because simulations in several threads may share it.
 """
-
-
-def _moment(time_ns: int) -> _Moment:
-    global _recent
-    newest, older = _recent
-    if newest[0] == time_ns:
-        return newest
-    if older[0] == time_ns:
-        return older
-    moment: _Moment = (time_ns, _time_class()(time_ns // _SECOND, time_ns % _SECOND), {})
-    _recent = (moment, newest)
-    return moment
+_headers: dict[str, tuple[int, Any]] = {}
+"""The last header of each frame, with its time in ns."""
+_MOST_FRAMES = 1000
 
 
 def stamp(time_ns: int) -> Any:
     """``builtin_interfaces/Time`` of a simulation time. Messages with the same time share it."""
-    return _moment(time_ns)[1]
+    global _recent
+    newest, older = _recent
+    if newest[0] == time_ns:
+        return newest[1]
+    if older[0] == time_ns:
+        return older[1]
+    made = _time_class()(time_ns // _SECOND, time_ns % _SECOND)
+    _recent = ((time_ns, made), newest)
+    return made
 
 
 def header(time_ns: int, frame: str) -> Any:
     """``std_msgs/Header``, shared by messages with the same time and frame. It must not change."""
-    _, shared, headers = _moment(time_ns)
-    made = headers.get(frame)
-    if made is None:
-        made = headers[frame] = _header_class()(shared, frame)
+    known = _headers.get(frame)
+    if known is not None and known[0] == time_ns:
+        return known[1]
+    if len(_headers) > _MOST_FRAMES:
+        _headers.clear()
+    made = _header_class()(stamp(time_ns), frame)
+    _headers[frame] = (time_ns, made)
     return made
