@@ -25,6 +25,8 @@ if TYPE_CHECKING:
         JointValues,
         Link,
         Model,
+        Picture,
+        Plot,
         Timer,
         Topic,
         Twist,
@@ -49,6 +51,8 @@ __all__ = [
     "Joints",
     "Link",
     "Model",
+    "Picture",
+    "Plot",
     "Pose",
     "Scan",
     "TimedOutError",
@@ -65,6 +69,13 @@ __all__ = [
     "scan",
 ]
 __version__ = "0.1.0"
+
+
+def load_ipython_extension(shell: Any) -> None:
+    """Implements ``%load_ext cartwheel``."""
+    from cartwheel.api.notebook import extend
+
+    extend(shell)
 
 
 def __getattr__(name: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import io
 import re
 import urllib.request
@@ -134,3 +135,42 @@ def test_a_page_for_other_computers_is_only_linked(tidy: None) -> None:
     with cw.World("empty", host="0.0.0.0") as world:
         page = world.view(port=0)
         assert page.frame is None and "iframe" not in page._repr_html_()
+
+
+def test_arrays_and_messages_become_pictures() -> None:
+    grey = np.array([[0, 100], [200, 255]], dtype=np.uint8)
+    assert (cw.Picture.of(grey).pixels == grey[..., None]).all()
+    rgba = np.dstack([grey, grey // 2, grey // 4, grey * 0])
+    assert (cw.Picture.of(rgba).pixels == rgba[..., :3]).all()
+    depth = np.array([[1.0, 3.0], [np.inf, np.nan]], dtype=np.float32)
+    assert cw.Picture.of(depth).pixels[..., 0].tolist() == [[0, 255], [0, 0]]
+    assert not cw.Picture.of(np.full((2, 2), np.inf)).pixels.any()
+    with cw.World("post") as world:
+        world.spawn("rosbots.xacro")
+        image = world.topic("/rosbots/camera1/image_raw").wait()
+        assert (cw.Picture.of(image).pixels == cw.image(image)).all()
+    for wrong in (np.zeros(3), np.zeros((2, 2, 2)), np.zeros((0, 3)), np.zeros((1, 2, 3, 4))):
+        with raises(NUMBER_OUT_OF_RANGE):
+            cw.Picture.of(wrong)
+
+
+def test_a_shell_displays_image_messages() -> None:
+    pytest.importorskip("IPython")
+    from IPython.core.interactiveshell import InteractiveShell
+    from PIL import Image
+
+    shell = InteractiveShell()
+    try:
+        shell.extension_manager.load_extension("cartwheel")
+        with cw.World("post") as world:
+            world.spawn("rosbots.xacro")
+            message = world.topic("/rosbots/camera1/image_raw").wait()
+            shown, _ = shell.display_formatter.format(message)
+            plain, _ = shell.display_formatter.format(world.topic("/odom").wait())
+        assert (np.asarray(Image.open(io.BytesIO(shown["image/png"]))) == cw.image(message)).all()
+        assert "encoding='rgb8'" in shown["text/plain"] and len(shown["text/plain"]) < 1000
+        assert list(plain) == ["text/plain"]
+    finally:
+        # It would run again at exit, and find nothing.
+        atexit.unregister(shell.atexit_operations)
+        shell.atexit_operations()

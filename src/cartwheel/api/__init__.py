@@ -7,6 +7,8 @@ from cartwheel.api.joints import Joint, Joints, JointValues
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
+from cartwheel.api.pictures import Picture
+from cartwheel.api.plots import Plot
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
@@ -22,6 +24,8 @@ __all__ = [
     "Joints",
     "Link",
     "Model",
+    "Picture",
+    "Plot",
     "Timer",
     "Topic",
     "Twist",

@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel import arrays
 from cartwheel.api.running import RunningWorld
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE
 from cartwheel.description.model import CameraIntrinsics
 from cartwheel.errors import CartwheelError
-from cartwheel.geometry import Vec3
+from cartwheel.geometry import Array, Vec3
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import number, numbers
 from cartwheel.simulation.sensing.rendering import Image
@@ -36,8 +37,38 @@ class Picture:
     """An image that notebooks display.
 
     Args:
-        pixels: Shape (height, width, 3), RGB.
+        pixels: Shape (height, width, 3), RGB, uint8.
     """
+
+    @classmethod
+    def of(cls, source: Any) -> Picture:
+        """The picture of an image message or an array, for display.
+
+        Args:
+            source: ``sensor_msgs/Image``, ``sensor_msgs/CompressedImage``, or an array of shape
+                (height, width), (height, width, 3) or (height, width, 4). Values that are not
+                uint8, such as depths, are scaled from black, the smallest, to white; values that
+                are not finite are black.
+
+        Raises:
+            GraphError: The message is inconsistent, or has an unknown encoding.
+            CartwheelError: The array has a different shape.
+        """
+        pixels: Any = arrays.image(source) if hasattr(source, "__msgtype__") else source
+        pixels = np.asarray(pixels)
+        channels = pixels.shape[2] if pixels.ndim == 3 else 1
+        if pixels.ndim not in (2, 3) or channels not in (1, 3, 4) or not pixels.size:
+            raise CartwheelError(
+                f"an array of shape {pixels.shape} is not an image",
+                code=NUMBER_OUT_OF_RANGE,
+                values={"name": "shape", "value": str(pixels.shape)},
+                hint="Pass an array of shape (height, width), (height, width, 3) or "
+                "(height, width, 4).",
+            )
+        pixels = pixels.reshape(*pixels.shape[:2], channels)[..., :3]
+        if pixels.dtype != np.uint8:
+            pixels = _scaled(pixels.astype(float))
+        return cls(np.ascontiguousarray(np.broadcast_to(pixels, (*pixels.shape[:2], 3))))
 
     def __init__(self, pixels: Image) -> None:
         self.pixels: Image = pixels
@@ -178,6 +209,16 @@ class PicturedWorld(RunningWorld):
         with self.used():
             frame = self._connected().assembly.access.framed(url)
         return Page(url, frame, str(width), int(number(height, "the height")))
+
+
+def _scaled(values: Array) -> Any:
+    """Brightnesses from 0 to 255 of any values."""
+    known = np.isfinite(values)
+    if not known.any():
+        return np.zeros(values.shape, dtype=np.uint8)
+    low, high = values[known].min(), values[known].max()
+    share = np.where(known, values - low, 0.0) / ((high - low) or 1.0)
+    return np.round(255 * share).astype(np.uint8)
 
 
 def _point(point: Vec3, name: str) -> Vec3:

@@ -7,10 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from cartwheel import arrays
+from cartwheel.api.plots import Plot
 from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import GraphError, Value
+from cartwheel.geometry import Array
 from cartwheel.graph import check_message
 from cartwheel.messages import from_dict, from_flat
 from cartwheel.similar_names import meant, suggestion
@@ -121,6 +125,35 @@ class Topic:
     def times(self, size: int | None = None) -> list[float]:
         """Simulation times at which the messages of `history` were published, s."""
         return [time_ns / NANOSECONDS for time_ns, _ in self._newest(size)]
+
+    def values(self, field: str, size: int | None = None) -> Array:
+        """One number of each message of `history`.
+
+        Args:
+            field: Names joined with dots, such as ``pose.pose.position.x`` or ``ranges[90]``.
+            size: As for `history`.
+
+        Returns:
+            Shape (n,); NaN where an array of a message has no such index. Times are in s.
+
+        Raises:
+            GraphError: The type does not have the field, or the field is not a number.
+        """
+        return arrays.values(self.history(size), field)
+
+    def plot(self, *fields: str, size: int | None = None) -> Plot:
+        """A plot of numbers over the simulation time, which notebooks display.
+
+        Args:
+            fields: Fields as for `values`.
+            size: As for `history`.
+
+        Raises:
+            GraphError: The type does not have a field, or the field is not a number.
+            CartwheelError: No field is given, or matplotlib is not installed.
+        """
+        series = {field: self.values(field, size) for field in fields}
+        return Plot(np.array(self.times(size)), series, title=self.name)
 
     def _newest(self, size: int | None) -> Sequence[tuple[int, Any]]:
         if size is None:

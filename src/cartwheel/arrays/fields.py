@@ -1,0 +1,69 @@
+"""Single numbers of messages by the names of their fields."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from cartwheel.arrays.data import Array, full_kind_of
+from cartwheel.codes.graph import FIELD_UNKNOWN
+from cartwheel.errors import GraphError
+
+_PART = re.compile(r"([A-Za-z]\w*)((?:\[\d{1,9}\])*)")
+_INDEX = re.compile(r"\d+")
+
+
+def values(messages: Iterable[Any], field: str) -> Array:
+    """One number of each message.
+
+    Args:
+        messages: Messages of one type.
+        field: Names joined with dots, with indices of arrays: ``pose.pose.position.x``,
+            ``ranges[90]``. A time or a duration, such as ``header.stamp``, is in s.
+
+    Returns:
+        Shape (n,), float64; NaN where an array of a message has no such index.
+
+    Raises:
+        GraphError: The type does not have the field, or the field is not a number.
+    """
+    steps = _steps(field)
+    return np.array([_value(message, field, steps) for message in messages], dtype=float)
+
+
+def _steps(field: str) -> list[str | int]:
+    steps: list[str | int] = []
+    for part in field.split("."):
+        match = _PART.fullmatch(part)
+        if match is None:
+            raise _unknown(f'"{field}" is not the name of a field', field)
+        steps += [match[1], *map(int, _INDEX.findall(match[2]))]
+    return steps
+
+
+def _value(message: Any, field: str, steps: list[str | int]) -> float:
+    value = message
+    for step in steps:
+        if isinstance(step, str):
+            if step not in getattr(value, "__dataclass_fields__", ()):
+                owner = full_kind_of(value) if hasattr(value, "__msgtype__") else "a number or list"
+                raise _unknown(f'{owner} does not have the field "{step}" of "{field}"', field)
+            value = getattr(value, step)
+        elif not isinstance(value, str) and hasattr(value, "__len__"):
+            if step >= len(value):
+                return float("nan")
+            value = value[step]
+        else:
+            raise _unknown(f'an index of "{field}" follows a field that is not an array', field)
+    if hasattr(value, "nanosec"):
+        return float(value.sec + value.nanosec * 1e-9)
+    if isinstance(value, bool | int | float | np.bool_ | np.number):
+        return float(value)
+    raise _unknown(f'the field "{field}" is not a number', field)
+
+
+def _unknown(message: str, field: str) -> GraphError:
+    return GraphError(message, code=FIELD_UNKNOWN, values={"field": field})
