@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from cartwheel.checks.rules.robot.wheel_separation import turn_ratio
+from cartwheel.checks.sliding import Contact, base_motion
 from cartwheel.codes.robot import SKID_STEERING
 
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
@@ -55,6 +55,11 @@ def car(plugin="", base=BASE):
             at = f"{x} {left * KINGPINS / 2} 0"
             parts.append(joint(f"{name}_steer", ("base_link", fork), at, "0 0 1", "revolute"))
             parent, place = fork, f"0 {y - left * KINGPINS / 2} 0"
+        else:
+            # Balances the fork.
+            parts.append(link(f"{name}_ballast"))
+            ends = "base_link", f"{name}_ballast"
+            parts.append(joint(f"{name}_holder", ends, f"{x} 0 0", "0 1 0", "fixed"))
         parts.append(link(f"{name}_wheel", WHEEL))
         parts.append(joint(f"{name}_joint", (parent, f"{name}_wheel"), place, "0 1 0"))
     body = "".join(parts)
@@ -428,11 +433,38 @@ def test_pairs_of_wheels_with_equal_separations_are_those_of_a_skid_steer(bench)
     assert finding.values["ratio"] == pytest.approx(TRACK**2 / (TRACK**2 + BASE**2), rel=1e-6)
 
 
+def test_a_base_with_its_weight_on_one_axle_turns_about_this_axle():
+    """The other wheels slide without a force, so nothing opposes the turn."""
+    contacts = [Contact(x=x, y=y, rim=-y) for x in (-0.2, 0.2) for y in (-0.15, 0.15)]
+    forward, sideways, turn = base_motion(contacts, (0.2, 0.0))
+    assert (forward, turn) == (pytest.approx(0.0, abs=1e-3), pytest.approx(1.0, rel=0.01))
+    assert sideways == pytest.approx(-0.2, rel=0.01)
+
+
+def test_undriven_wheels_that_do_not_swivel_slow_turns(bench):
+    """The rear wheels are driven, and the front wheels are on the body instead of the forks.
+
+    The front wheels hold their axle: with the turn rate w of 1 rad/s commanded, the driven wheels
+    slide by w b across and by (1 - w) t/2 along the robot. The torque of the side forces at both
+    axles balances that of the driven wheels where b² w = (1 - w) t²/4, so w = t² / (t² + 4 b²).
+    """
+    drive = {**REAR, "wheel_separation": TRACK, "wheel_diameter": 2 * RADIUS}
+    text = car(plugin("libgazebo_ros_diff_drive.so", **drive))
+    for steer in ("front_left_steer", "front_right_steer"):
+        text = text.replace(f'name="{steer}" type="revolute"', f'name="{steer}" type="fixed"')
+    (finding,) = [each for each in bench.report(text).findings if each.code is SKID_STEERING]
+    ratio = TRACK**2 / (TRACK**2 + 4 * BASE**2)
+    assert finding.values["ratio"] == pytest.approx(ratio, rel=1e-3)
+
+
 @pytest.mark.parametrize("places", [[0.0, 0.0], [-0.1, 0.0, 0.1]])
 def test_wheels_of_one_axle_do_not_slide_and_more_axles_turn_more_slowly(places):
-    ratio = turn_ratio(0.4, [*places, *places])
+    def ratio(places):
+        contacts = [Contact(x=x, y=y, rim=-y) for x in places for y in (-0.2, 0.2)]
+        return base_motion(contacts, (0.0, 0.0))[2]
+
     if len(places) == 2:
-        assert ratio == pytest.approx(1.0)
+        assert ratio(places) == pytest.approx(1.0)
     else:
         # The middle axle helps: faster than two axles at ±0.1 m, slower than one.
-        assert turn_ratio(0.4, [-0.1, -0.1, 0.1, 0.1]) < ratio < 1.0
+        assert ratio([-0.1, 0.1]) < ratio(places) < 1.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -165,31 +165,37 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
         spellings = claimed.names(controller, row)
         value = controller.value(*spellings)
         number = value.number if value is not None else None
+        times = controller.value(*(f"{each}_multiplier" for each in spellings))
         groups = [joints[field] for field in row.wheels]
         if len(groups) == 2 and groups[0] is groups[1]:
             # The distance between both wheels of one axle.
             groups = [groups[0][:1], groups[0][1:2]] if len(groups[0]) == 2 else [[], []]
         sides = [tuple(_known(robot, group)) for group in groups]
-        if value is None or number is None or not all(sides):
+        written = value or times
+        if written is None or (value is not None and number is None) or not all(sides):
             continue
-        name = next(each for each in spellings if controller.has(each))
-        times = controller.value(f"{name}_multiplier")
+        name = next((each for each in spellings if controller.has(each)), spellings[0])
         factor = times.number if times is not None else None
-        yield Stated(
+        one = Stated(
             robot=robot,
             measure=_MEASURES[row.role],
             label=f'"{name.rpartition("/")[2]}"',
-            value=number,
+            value=number or 0.0,
             written=True,
             first=sides[0],
             second=sides[1] if len(sides) == 2 else (),
             skids=len(sides[0]) > 1,
             factor=factor or 1.0,
-            origin=value.origin,
-            mark=value.text,
-            write=value.replaced,
+            origin=written.origin,
+            mark=written.text,
+            write=written.replaced,
             place="line",
         )
+        if value is not None:
+            yield one
+        elif one.measure == "apart":
+            # The controller measures the distance between the wheels itself.
+            yield replace(one, value=mean_between(one, beside=True))
 
 
 def _known(robot: Robot, values: Sequence[Value | None]) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.faults import Fault
@@ -15,6 +15,8 @@ from cartwheel.errors import Code, Diagnostic
 
 _AGREES = 0.15
 """Relative tolerance between a measured velocity and the one that a mistake predicts."""
+_HEAVY = 1000.0
+"""Ratio of a link's stated inertia to the largest possible one."""
 _DRIVING = frozenset(
     {
         robot.DRIVE_JOINT_UNKNOWN,
@@ -93,7 +95,8 @@ def faults(
     missing = {fault.subject: fault for fault in reversed([*_missing(verdict, description)])}
     yield from reversed(missing.values())
     idle = next((each.reason for each in missing.values() if each.test == "controller"), None)
-    yield from _measured(verdict, findings, idle if not verdict.controllers else None)
+    children = {joint.name: joint.child for joint in description.joints}
+    yield from _measured(verdict, children, findings, idle if not verdict.controllers else None)
 
 
 def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]:
@@ -148,11 +151,15 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
 
 
 def _measured(
-    verdict: Verdict, findings: Callable[[], Sequence[Diagnostic]], idle: Diagnostic | None
+    verdict: Verdict,
+    children: Mapping[str, str],
+    findings: Callable[[], Sequence[Diagnostic]],
+    idle: Diagnostic | None,
 ) -> Iterator[Fault]:
     """The failed tests of a robot that was loaded, with reasons.
 
-    `idle` is the reason why no controller holds the joints; None if one runs or none is needed.
+    `children` contains the child link of each joint. `idle` is the reason why no controller holds
+    the joints; None if one runs or none is needed.
     """
     said = verdict.diagnostics
     fallen: Diagnostic | None = None
@@ -162,7 +169,10 @@ def _measured(
     for topic in verdict.silent:
         reason = _coded(said, frozenset({world.OPENGL_MISSING}))
         yield Fault(test="publish", subject=topic, reason=reason)
+    pushed = any(drive.follows and drive.turns for drive in verdict.drives)
     for drive in verdict.drives:
+        if pushed and not (drive.follows and drive.turns) and _is_free(said, drive.topic):
+            continue
         if not drive.follows:
             reason = _of_drive((*said, *findings()), 1.0 + drive.error, turning=False)
             yield Fault(test="drive", subject=drive.topic, reason=reason)
@@ -177,11 +187,13 @@ def _measured(
     for reach in verdict.reaches:
         if not reach.arrived:
             # A robot that fell may lie on its joints.
-            reason = _of_joint((*said, *findings()), reach.joint) or fallen
+            names = reach.joint, children.get(reach.joint, "")
+            reason = _of_joint((*said, *findings()), *names) or fallen
             yield Fault(test="reach", subject=reach.joint, reason=reason)
     for spin in verdict.spins:
         if not spin.follows:
-            reason = _of_joint((*said, *findings()), spin.joint)
+            names = spin.joint, children.get(spin.joint, "")
+            reason = _of_joint((*said, *findings()), *names)
             yield Fault(test="spin", subject=spin.joint, reason=reason)
     for flight in verdict.flights:
         if not flight.flies:
@@ -217,6 +229,15 @@ def _of_drive(
     return _first(each for each in found if each.code in codes)
 
 
+def _is_free(said: Iterable[Diagnostic], topic: str) -> bool:
+    """Whether a controller only turns wheels without friction, while another drive pushes them."""
+    names = topic.split("/")
+    return any(
+        each.code is robot.WHEEL_FRICTIONLESS and each.values.get("controller") in names
+        for each in said
+    )
+
+
 def _reverses(finding: Diagnostic) -> bool:
     """Whether it reports ``<legacyMode>``, which reverses the turning direction."""
     return (
@@ -245,17 +266,28 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
 
 
 def _explains_fall(each: Diagnostic) -> bool:
-    if each.code is files.FILE_MISSING:
+    if each.code in (files.FILE_MISSING, files.MESH_UNREADABLE):
         return each.values.get("left_out") == "collision"
     return each.code in _STANDING
 
 
-def _of_joint(found: Iterable[Diagnostic], joint: str) -> Diagnostic | None:
+def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:
     return _first(
         each
         for each in found
         if each.code in _JOINTS
         and joint in (each.values.get("joint"), each.values.get("name"), each.values.get("link"))
+    ) or _first(each for each in found if _is_heavy(each, child))
+
+
+def _is_heavy(each: Diagnostic, link: str) -> bool:
+    """Whether no motor of usual strength accelerates a link, because of its inertia."""
+    ratio = each.values.get("ratio")
+    return (
+        each.code is robot.INERTIA_GEOMETRY_MISMATCH
+        and each.values.get("link") == link
+        and isinstance(ratio, float)
+        and ratio > _HEAVY
     )
 
 

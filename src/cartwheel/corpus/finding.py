@@ -145,7 +145,7 @@ class _Folder:
             if path.suffix == ".sdf" and not _is_chosen(path):
                 return "old version"
             return "part" if part or (not launched and self._is_elsewhere(path, error)) else None
-        is_part = path.suffix == ".xacro" and (
+        is_part = (part or path.suffix == ".xacro") and (
             "name" not in root.attributes or self._hangs(path, root)
         )
         return "part" if is_part else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import Any
 
 from cartwheel.api import Model, World
@@ -70,7 +70,13 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
 
 
 def drives(
-    world: World, model: Model, robot: Robot, limits: StatedLimits, *, steered: bool
+    world: World,
+    model: Model,
+    robot: Robot,
+    limits: StatedLimits,
+    *,
+    idle: Set[str],
+    steered: bool,
 ) -> Iterator[Drive]:
     """Drives on each topic with velocity commands, forward and turning, each after a reset.
 
@@ -79,6 +85,7 @@ def drives(
         model: The robot in the world.
         robot: Its description.
         limits: The robot's own limits. The commands stay below them.
+        idle: Nodes of controllers that do not run, whose topics are not tested.
         steered: The base cannot turn in place, so it turns while it drives forward.
     """
     forward = min(VELOCITY, limits.forward)
@@ -90,7 +97,7 @@ def drives(
         min(_LONGEST, 2.0 * max(forward / limits.acceleration, turn / limits.turn_acceleration)),
     )
     for info in world.graph.topics():
-        if not info.drives:
+        if not info.drives or (info.subscribers and idle >= set(info.subscribers)):
             continue
         ahead, _ = _driven(world, model, robot, info, (forward, 0.0, speed_up))
         both = (forward if steered else 0.0, turn, speed_up)
@@ -126,6 +133,7 @@ def reaches(
         targets = {name: _target(joints[name], model.joint(name)) for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
         told += [(taker, joints[name], value) for name, value in targets.items()]
+    loads = {joint.name: _load(world, model, joint.name) for _, joint, _ in told}
     if told:
         world.run(_REACHING)
     return [
@@ -135,7 +143,7 @@ def reaches(
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
-            sag=_sag(world, model, joint.name, gains.get(joint.name, 0.0)),
+            sag=_sag(loads[joint.name], gains.get(joint.name, 0.0)),
         )
         for taker, joint, target in told
     ]
@@ -146,9 +154,20 @@ def yields(proportional: float, integral: float) -> bool:
     return integral * _REACHING < proportional
 
 
-def _sag(world: World, model: Model, joint: str, gain: float) -> float:
-    """Error of a proportional controller because of gravity and friction, rad or m."""
-    return resistance(world, model, joint)[0] / gain if gain > 0 else 0.0
+def _sag(load: float, gain: float) -> float:
+    """Error of a proportional controller because of a load in N m or N, rad or m."""
+    return load / gain if gain > 0 else 0.0
+
+
+def _load(world: World, model: Model, joint: str) -> float:
+    """Load of gravity plus friction on a joint at rest, N m or N.
+
+    A suspension carries the robot through its wheels, so its load is what its motor holds.
+    """
+    load, _ = resistance(world, model, joint)
+    return max(
+        load, abs(float(world.session.simulation.data.qfrc_actuator[_dof(world, model, joint)]))
+    )
 
 
 def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
@@ -161,9 +180,15 @@ def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
     simulation = world.session.simulation
     simulation.refresh()
     engine, data = simulation.model, simulation.data
-    place = engine.jnt_dofadr[simulation.engine.joint_id(model.name, joint)]
+    place = _dof(world, model, joint)
     load = abs(float(data.qfrc_bias[place])) + float(engine.dof_frictionloss[place])
     return load, float(engine.dof_M0[place])
+
+
+def _dof(world: World, model: Model, joint: str) -> int:
+    """Index of a joint's velocity."""
+    simulation = world.session.simulation
+    return int(simulation.model.jnt_dofadr[simulation.engine.joint_id(model.name, joint)])
 
 
 def _driven(

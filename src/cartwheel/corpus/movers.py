@@ -15,6 +15,8 @@ _MOVES = re.compile(
     re.IGNORECASE,
 )
 """Names of plugins that move something. Those of controller managers are not among them."""
+_RECORDS = re.compile(r"(?:^|_)bag_plugin|record", re.IGNORECASE)
+"""Names of plugins that only record what moves."""
 _MANAGER = re.compile(r"ros2?_control")
 _COMMANDS = re.compile(r"gain|force|torque|thrust|motor|rotor|cmd_?vel", re.IGNORECASE)
 """Names of the tags of unsupported plugins that move something."""
@@ -43,6 +45,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         tag
         for tag in robot.plugins
         if not _MANAGER.search(name := short_name(tag.filename))
+        and not _RECORDS.search(name)
         and (_MOVES.search(name) or (not is_known(tag) and _acts(tag.element, joints)))
     ]
 

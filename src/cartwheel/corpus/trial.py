@@ -217,6 +217,7 @@ def _moved(
             model,
             Robot(robot, None),
             stated_limits(robot, started),
+            idle=_idle(world),
             steered=_steered(robot, started),
         )
         verdict = replace(verdict, drives=tuple(bases))
@@ -267,11 +268,15 @@ def _controllers(world: World) -> ControllerFiles:
     return world.session.shared.get(ControllerFiles)
 
 
+def _idle(world: World) -> set[str]:
+    """Nodes of controllers that do not run: two controllers of one joint are used alternately."""
+    return {each.node for each in _controllers(world).loaded if not each.running}
+
+
 def _listened(world: World) -> tuple[int, tuple[str, ...]]:
     """The number of topics with a stated rate, and those without messages."""
     graph = world.graph
-    # Two controllers of one joint are used alternately.
-    idle = {each.node for each in _controllers(world).loaded if not each.running}
+    idle = _idle(world)
     rated = {each.topic: each for each in graph.publishers() if each.rate and each.node not in idle}
     boxes = {topic: world.mailbox(topic, size=1) for topic in rated}
     slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)

@@ -102,6 +102,7 @@ PLUGINS = {
     "hector_gazebo_ros_sonar": "makers.hector_sonar",
     "ign_ros2_control-system": "ros2_control.plugin",
     "leo_gazebo_differential_plugin": "makers.mimic_joint",
+    "nexus_ros_force_based_move": "makers.force_based_move",
     "plugin_drone": "makers.flying.sjtu_drone",
     "realsense_gazebo_plugin": "makers.realsense",
     "ridgeback_ros_force_based_move": "makers.force_based_move",

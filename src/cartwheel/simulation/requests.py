@@ -210,6 +210,8 @@ class Requests:
         servos = self._servos(joint)
         for servo in servos:
             servo.alone = len(servos) == 1 and not servo.shared
+        if len(servos) == 2:
+            self._warn_of_two(joint, "the last command is used", origin)
         task = self.schedule(0, before=handle.follow)
         task.asleep = True
         handle.wake = partial(self._engine.wake, task)

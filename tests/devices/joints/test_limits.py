@@ -11,6 +11,7 @@ from cartwheel.devices.joints.limits import (
     JointLimits,
     limited_effort,
     limited_position,
+    saturated,
     velocity_bounds,
 )
 from cartwheel.devices.joints.pid import DampedEffort
@@ -48,8 +49,6 @@ def test_a_target_position_is_within_the_limits():
 @pytest.mark.parametrize(
     ("effort", "position", "velocity", "expected"),
     [
-        (50.0, 0.0, 0.0, 10.0),
-        (-50.0, 0.0, 0.0, -10.0),
         (5.0, 2.1, 0.0, 0.0),  # beyond the upper limit: not farther
         (-5.0, 2.1, 0.0, -5.0),  # but back
         (-5.0, -1.1, 0.0, 0.0),
@@ -60,6 +59,23 @@ def test_a_target_position_is_within_the_limits():
 def test_beyond_a_limit_an_effort_only_moves_the_joint_back(effort, position, velocity, expected):
     command = DampedEffort(effort, 0.5)
     assert limited_effort(HARD, command, position, velocity) == DampedEffort(expected, 0.5)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_limited_effort_is_constant_until_the_joint_is_fast_enough(sign):
+    command = DampedEffort(sign * 50.0, 20.0)
+    # 50 - 20 v exceeds 10 N m up to v = 2 rad/s, and is -10 N m at 3 rad/s.
+    for velocity, expected in ((0.0, (10.0, 0.0)), (1.9, (10.0, 0.0)), (2.5, (50.0, 20.0))):
+        effort, damping = saturated(command, 10.0, sign * velocity)
+        assert (sign * effort, damping) == expected
+    assert saturated(command, 10.0, sign * 4.0) == (sign * -10.0, 0.0)
+
+
+def test_a_limited_effort_on_a_light_joint_keeps_the_damping():
+    # 10 N m would accelerate the joint to 5 rad/s in one period, beyond the commanded 2.5 rad/s.
+    effort, damping = saturated(DampedEffort(50.0, 20.0), 10.0, 1.0, gain=0.5)
+    assert damping == 20.0
+    assert effort - damping * 1.0 == pytest.approx(10.0)
 
 
 def test_near_a_soft_limit_an_effort_is_a_damper_toward_the_velocity_bound():

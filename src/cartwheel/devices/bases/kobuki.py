@@ -32,8 +32,9 @@ class KobukiSensorsConfig:
     """Smallest distance to the floor that is a cliff, m."""
     bumper: frozenset[str]
     """Collisions of the bumper, as ``link::collision``."""
-    wheels: tuple[frozenset[str], frozenset[str]]
-    """Collisions of the left and the right wheel. Without contact, the wheel has dropped."""
+    wheels: tuple[frozenset[str] | None, frozenset[str] | None]
+    """Collisions of the left and the right wheel. Without contact, the wheel has dropped. None:
+    the wheel has no sensor, and never drops."""
     unit: InertialUnitConfig
     namespace: str
     """Prefix of the topics, which ends with a slash."""
@@ -139,7 +140,8 @@ class KobukiSensors(Component):
                     pressed[side] = True
         self._publish_changes("bumper", self._pressed, pressed)
         dropped = {
-            side: not self.part.contacts(collisions) for side, collisions in self._wheels.items()
+            side: collisions is not None and not self.part.contacts(collisions)
+            for side, collisions in self._wheels.items()
         }
         self._publish_changes("wheel_drop", self._dropped, dropped)
 

@@ -12,7 +12,7 @@ from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
-from cartwheel.devices.drives.rollers import has_rollers, rolling_direction
+from cartwheel.devices.drives.rollers import has_grip, has_rollers, rolling_direction
 from cartwheel.devices.elementwise import Number, cos, sin
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
@@ -208,7 +208,7 @@ class MecanumDriveConfig:
 class MecanumDrive(Drive):
     """Drives mecanum wheels from Twist commands and publishes odometry from their rotation.
 
-    A servo pushes robots whose wheels do not model rollers.
+    A servo pushes robots whose wheels have friction but do not model rollers.
 
     Raises:
         UnknownNameError: A joint does not exist.
@@ -222,7 +222,10 @@ class MecanumDrive(Drive):
             [Wheel(part, name, max_effort=None, origin=origin) for name in names]
             for names in corners
         ]
-        servo = None if has_rollers(part.description) else part.body_drive(origin=origin)
+        pushes = not has_rollers(part.description) and has_grip(
+            part.description, [name for names in corners for name in names]
+        )
+        servo = part.body_drive(origin=origin) if pushes else None
         self._reckoning = DeadReckoning()
         heading = rolling_direction(
             part.description,

@@ -1,9 +1,9 @@
-"""Detects the rollers and the direction of mecanum wheels in a robot's description."""
+"""Detects the rollers, friction and direction of mecanum wheels in a robot's description."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from cartwheel.geometry import rotate
 
 _AGREE = 0.9
 """Minimum length of the mean of the wheels' axes, which are unit vectors."""
+_SLIPPERY = 0.01
+"""Friction coefficient below which a wheel does not move a robot."""
 _NOISE = 1e-3
 """Smaller angles are rounding errors of the description, rad."""
 
@@ -25,6 +27,25 @@ def has_rollers(description: RobotDescription) -> bool:
     """
     surfaces = [c.surface for link in description.links for c in link.collisions]
     return any(each.fdir1_frame is not None and each.mu1 != each.mu2 for each in surfaces)
+
+
+def has_grip(description: RobotDescription, joints: Collection[str]) -> bool:
+    """Whether a wheel has friction. Robots that another drive pushes often have wheels without.
+
+    Args:
+        description: The robot.
+        joints: Joints of the wheels.
+    """
+    wheels = {each.child for each in description.joints if each.name in joints}
+    coefficients = [
+        (collision.surface.mu1, collision.surface.mu2)
+        for link in description.links
+        if link.name in wheels
+        for collision in link.collisions
+    ]
+    return not coefficients or any(
+        mu is None or mu >= _SLIPPERY for pair in coefficients for mu in pair
+    )
 
 
 def rolling_direction(

@@ -10,6 +10,7 @@ from cartwheel.devices.joints.limits import (
     JointLimits,
     limited_effort,
     limited_position,
+    saturated,
     velocity_bounds,
 )
 from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
@@ -201,7 +202,7 @@ class JointActuator:
             else:
                 self._follow_position(target, fastest, seconds)
         elif active == "effort":
-            self._write_effort()
+            self._write_effort(seconds)
         elif active == "held":
             assert self._servo is not None
             self._servo.command_position(target)
@@ -241,7 +242,7 @@ class JointActuator:
             command = pid.velocity(target, self.velocity, seconds)
             self._servo.command_effort(command.effort, damping=command.damping)
 
-    def _write_effort(self) -> None:
+    def _write_effort(self, seconds: float) -> None:
         effort, damping, limits, state = self.command, self._damping, self.limits, self.state
         position, velocity, most = state.position, state.velocity, limits.velocity
         if limits.soft is not None or (
@@ -251,7 +252,12 @@ class JointActuator:
             or velocity > most
         ):
             command = DampedEffort(effort, damping)
-            effort, damping = limited_effort(limits, command, position, velocity)
+            gain = state.lightness * seconds
+            effort, damping = limited_effort(limits, command, position, velocity, gain)
+        elif damping:
+            command = DampedEffort(effort, damping)
+            gain = state.lightness * seconds
+            effort, damping = saturated(command, limits.effort, velocity, gain)
         else:
             # The same without an object.
             effort = clamp(effort, -limits.effort, limits.effort)

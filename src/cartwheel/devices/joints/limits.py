@@ -66,8 +66,41 @@ def limited_position(
     return clamp(target, lower, upper), fastest
 
 
+def saturated(
+    command: DampedEffort, limit: float, velocity: Number, gain: Number = 0.0
+) -> DampedEffort:
+    """Returns an effort whose value at the joint's velocity is within a limit.
+
+    While the effort is limited, it is constant, so that a joint under load reaches the velocity at
+    which the commanded effort is within the limit. If the joint is so light that it would reach
+    this velocity within one control period, the damping remains: a constant effort would exceed the
+    velocity, and the next effort would return the joint beyond it.
+
+    Args:
+        command: The commanded effort.
+        limit: Maximum effort, N m or N.
+        velocity: Velocity of the joint, rad/s or m/s.
+        gain: Change of the velocity in one control period, for an effort of 1 N m or 1 N.
+    """
+    effort, damping = command
+    output = effort - damping * velocity
+    clamped = clamp(output, -limit, limit)
+    over = output != clamped
+    if not anywhere(over):
+        return command
+    light = clamp(effort - damping * (velocity + gain * clamped), -limit, limit) != clamped
+    return DampedEffort(
+        where(over, where(light, clamped + damping * velocity, clamped), effort),
+        where(over, where(light, damping, 0.0), damping),
+    )
+
+
 def limited_effort(
-    limits: JointLimits, command: DampedEffort, position: Number, velocity: Number
+    limits: JointLimits,
+    command: DampedEffort,
+    position: Number,
+    velocity: Number,
+    gain: Number = 0.0,
 ) -> DampedEffort:
     """Returns an effort within the limits.
 
@@ -76,9 +109,9 @@ def limited_effort(
         command: The commanded effort.
         position: Position of the joint, rad or m.
         velocity: Velocity of the joint, rad/s or m/s.
+        gain: Change of the velocity per effort in one control period; see `saturated`.
     """
-    effort, damping = command
-    effort = clamp(effort, -limits.effort, limits.effort)
+    effort, damping = saturated(command, limits.effort, velocity, gain)
     if limits.soft is not None:
         # Acts as a damper toward the bound, which the physics integrates implicitly.
         gain, output = limits.soft.k_velocity, effort - damping * velocity

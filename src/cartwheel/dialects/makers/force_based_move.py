@@ -56,14 +56,15 @@ class ForceBasedMove(Plugin[ForceBasedMoveParameters]):
     The robot moves in the xy plane, with the commanded ``linear.x``, ``linear.y`` and
     ``angular.z``. The force is a gain times the error of the linear velocity, and the torque is a
     gain times the error of the angular velocity. Both act at the centre of mass. The odometry is
-    relative to the robot's initial pose. Original packages: ``ridgeback_gazebo_plugins`` and
-    ``hector_gazebo_plugins``.
+    relative to the robot's initial pose. Original packages: ``ridgeback_gazebo_plugins``,
+    ``hector_gazebo_plugins`` and their copies.
     """
 
     filenames: ClassVar[tuple[str, ...]] = (
         "libridgeback_ros_force_based_move.so",
         "libgazebo_ros_force_based_move.so",
         "librobotnik_force_based_move.so",
+        "libnexus_ros_force_based_move.so",
     )
 
     def configure(self) -> None:

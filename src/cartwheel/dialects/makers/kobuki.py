@@ -68,11 +68,13 @@ class KobukiParameters:
     bumper: str = tag("bumper_name", doc="Name of the bumper's contact sensor.")
     drop_left: str = tag(
         "wheel_drop_left_sensor_name",
+        default="",
         doc="Name of the left wheel's contact sensor. While it has no contact, a wheel drop is "
-        "reported.",
+        "reported. Versions of the plugin before 2023 do not have this tag.",
     )
     drop_right: str = tag(
         "wheel_drop_right_sensor_name",
+        default="",
         doc="Name of the right wheel's contact sensor. While it has no contact, a wheel drop is "
         "reported.",
     )
@@ -139,14 +141,14 @@ class Kobuki(Plugin[KobukiParameters]):
             read_scanner(self._sensor(name), self.part.report)
             for name in (config.cliff_left, config.cliff_center, config.cliff_right)
         )
+        names = (config.bumper, config.drop_left, config.drop_right)
         bumper, drop_left, drop_right = (
-            read_collisions(self, self._sensor(name))
-            for name in (config.bumper, config.drop_left, config.drop_right)
+            read_collisions(self, self._sensor(name)) if name else None for name in names
         )
         return KobukiSensorsConfig(
             floors=(left, center, right),
             cliff_threshold=config.cliff_threshold,
-            bumper=bumper,
+            bumper=bumper or frozenset(),
             wheels=(drop_left, drop_right),
             unit=read_inertial_unit(self.part, self._sensor(config.imu)),
             namespace=_BASE,

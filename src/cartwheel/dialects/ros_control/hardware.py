@@ -8,7 +8,7 @@ from functools import cache, partial
 
 from cartwheel.codes import devices
 from cartwheel.component import Component
-from cartwheel.description.model import Joint, Mimic
+from cartwheel.description.model import Joint, Mimic, RobotDescription
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
 from cartwheel.devices.joints.gravity import gravity_efforts
 from cartwheel.devices.joints.limits import JointLimits, position_range
@@ -110,7 +110,7 @@ def _strength(
     """Returns the maximum effort of position commands, N m or N, which holds the joint."""
     if limit == math.inf:
         return limit
-    need = needs().get(joint.name, 0.0)
+    need = needs().get(joint.name, 0.0) + _friction(owner.part.description, joint)
     if limit >= need:
         return limit
     raises = owner.part.adds("raised-efforts")
@@ -123,11 +123,22 @@ def _strength(
     owner.warn(
         devices.EFFORT_LIMIT_TOO_LOW,
         f'the effort limit of joint "{joint.name}", {limit:g} {unit}, is below the '
-        f"{need:.3g} {unit} required to hold the joint against gravity; {result}{held:.3g} {unit}",
+        f"{need:.3g} {unit} required to hold the joint against gravity and to overcome its "
+        f"friction; {result}{held:.3g} {unit}",
         at=interfaces.origin,
         values={"joint": joint.name, "stated": limit, "needed": need, "used": held},
     )
     return held
+
+
+def _friction(description: RobotDescription, joint: Joint) -> float:
+    """Friction of a joint and of the joints that mimic it, N m or N."""
+    led = [
+        each.axis.friction * abs(each.mimic.multiplier)
+        for each in description.joints
+        if each.mimic is not None and each.mimic.joint == joint.name
+    ]
+    return joint.axis.friction + sum(led)
 
 
 class Hardware:

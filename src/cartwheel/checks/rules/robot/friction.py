@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
+from cartwheel.checks.sliding import rolls_only_forward
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import lowest, wheel_axis, wheel_joints, wheel_links, wheel_place
+from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
-from cartwheel.description.model import Joint, Link
+from cartwheel.description.model import Link
 from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01
-_PARALLEL = 0.95
-"""Minimum cosine between parallel axles."""
-_AHEAD = 0.02
-"""Minimum distance between the axles of a caster and of the driven wheels, m."""
 
 
 @rule(robot_codes.WHEEL_FRICTIONLESS)
@@ -54,7 +49,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
             holder = robot.inbound.get(link.name)
             if "caster" not in link.name.lower() or holder is None:
                 continue
-            rolls = _rolls_only_forward(robot, holder)
+            rolls = rolls_only_forward(robot, holder, wheel_joints(robot))
             if holder.type != "fixed" and not rolls:
                 continue
             if not _touches_ground(robot, link, wheels):
@@ -73,23 +68,6 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 instead=text,
                 hint="Add these tags to the robot, or change the existing values.",
             )
-
-
-def _rolls_only_forward(robot: Robot, holder: Joint) -> bool:
-    """Whether a wheel's axle is parallel to the driven one, but not above it or on a swivel."""
-    if holder.type != "continuous":
-        return False
-    axis = wheel_axis(robot, holder)
-    for driven in wheel_joints(robot):
-        same_body = robot.rigid_root(driven.parent) == robot.rigid_root(holder.parent)
-        axle = wheel_axis(robot, driven)
-        between = np.subtract(
-            wheel_place(robot, holder).position, wheel_place(robot, driven).position
-        )
-        ahead = np.cross(axle, between)[2]
-        if same_body and abs(np.dot(axis, axle)) > _PARALLEL and abs(ahead) > _AHEAD:
-            return True
-    return False
 
 
 def _names_nothing(subject: Subject) -> bool:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
 from cartwheel.checks.rule import rule
+from cartwheel.checks.sliding import turn_ratio
 from cartwheel.checks.stated_sizes import (
     LEAST,
     Stated,
@@ -29,7 +29,6 @@ not longer than wide; see `_widest`.
 """
 _LEAST_SKID = 0.05
 """Minimum relative difference between the commanded and the expected turn rate."""
-_HALVINGS = 40
 
 
 @rule(robot_codes.WHEEL_SEPARATION_MISMATCH)
@@ -84,14 +83,14 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
     # Steered and mecanum wheels, whose drives also state a wheel base, do not slide.
     others = {id(one.robot) for one in sizes if one.measure in ("base", "reach")}
     for one in sizes:
-        if one.measure != "apart" or not one.skids or id(one.robot) in others:
+        if one.measure != "apart" or id(one.robot) in others:
             continue
-        track = mean_between(one, beside=True, middles=True)
-        places = _places(one)
-        if track <= 0 or len(places) < 4 or max(places) - min(places) < 0.01 * track:
-            continue
-        ratio = one.value * one.factor / track * turn_ratio(track, places)
-        if abs(ratio - 1.0) <= _LEAST_SKID:
+        left, right = (
+            [one.robot.joints[name] for name in side] for side in (one.first, one.second)
+        )
+        axle = axle_of(one.robot, one.first, one.second, beside=True)
+        ratio = turn_ratio(one.robot, left, right, axle, one.value * one.factor / 2)
+        if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
             continue
         wanted = one.value * one.factor / ratio
         yield robot_codes.SKID_STEERING.diagnostic(
@@ -102,32 +101,6 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
             hint=f"A wheel separation of {wanted:.4g} m compensates for this.",
             mark=one.mark,
         )
-
-
-def turn_ratio(track: float, places: Sequence[float]) -> float:
-    """Turn rate of a skid-steered robot, relative to the one at which its wheels would roll.
-
-    All wheels carry the same load, and their friction opposes their sliding velocity. If the wheels
-    are driven for a turn rate of 1 rad/s and the robot turns at w, a wheel at x slides by
-    (w - 1) t/2 along the robot and by w x across it. The torques of the friction forces balance.
-    For four wheels at ±b/2 the result is t² / (t² + b²).
-
-    Args:
-        track: Distance between the left and right wheels, m.
-        places: Positions of all wheels along the robot, m.
-    """
-    middle = sum(places) / len(places)
-    offsets = [each - middle for each in places]
-    half = track / 2
-    low, high = 0.0, 1.0
-    for _ in range(_HALVINGS):
-        turn = (low + high) / 2
-        torque = 0.0
-        for x in offsets:
-            along, across = (turn - 1.0) * half, turn * x
-            torque -= (along * half + across * x) / (math.hypot(along, across) or 1.0)
-        low, high = (turn, high) if torque > 0 else (low, turn)
-    return (low + high) / 2
 
 
 def _places(one: Stated) -> list[float]:

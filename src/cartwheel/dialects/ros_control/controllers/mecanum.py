@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, robot, running
 from cartwheel.devices.drives.limiter import Limits
 from cartwheel.devices.drives.mecanum import MecanumWheels, MecanumWheelsConfig
-from cartwheel.devices.drives.rollers import has_rollers, rolling_direction
+from cartwheel.devices.drives.rollers import has_grip, has_rollers, rolling_direction
 from cartwheel.dialects.ros_control.controllers.limits import read_limits
 from cartwheel.dialects.ros_control.controllers.odometry import wheel_odometry
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
@@ -216,8 +216,15 @@ class MecanumDriveController(WheelController):
         if husarion and given.publish_limited:
             self.warn_ignored("publish_limited_velocity")
         wheels = [(joint,) for joint in self._joints]
-        self._wheels = MecanumWheels(config, wheels, self.robot.push, self._odometry.reckoning)
-        if self.robot.push is None and not has_rollers(description):
+        grips = has_grip(description, [each.joint for each in self._joints])
+        push = self.robot.push if grips else None
+        self._wheels = MecanumWheels(config, wheels, push, self._odometry.reckoning)
+        if not grips:
+            self.warn(
+                robot.WHEEL_FRICTIONLESS,
+                "the wheels have no friction, so the controller does not move the robot",
+            )
+        elif push is None and not has_rollers(description):
             self.warn(
                 running.WHEELS_WITHOUT_ROLLERS,
                 "the wheels do not model rollers, so the robot does not move sideways",

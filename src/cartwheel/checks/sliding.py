@@ -1,0 +1,208 @@
+"""How a base moves whose wheels slide on the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cartwheel.checks.resting import Surfaces, center_of_mass, starting_poses
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_middle, wheel_place
+from cartwheel.description.model import Joint
+from cartwheel.description.solids import Floats
+from cartwheel.geometry import rotate
+
+_ROUNDS = 200
+"""Rounds of reweighting; the turn rate then changes by less than 1 %."""
+_STILL = 1e-6
+"""Sliding speed, m/s, below which a contact counts as not sliding."""
+_PARALLEL = 0.95
+"""Minimum cosine between parallel axles."""
+_AHEAD = 0.02
+"""Minimum distance between the axles of a caster and of the driven wheels, m."""
+_NEAR = 0.006
+"""Maximum difference in height between parts that touch the ground, m."""
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Contact:
+    """Where a part of a base touches the ground."""
+
+    x: float
+    """m, across the axles."""
+    y: float
+    """m, along the axles."""
+    rim: float = 0.0
+    """Speed at which a motor turns the wheel, m/s along x."""
+    friction: tuple[float, float] = (1.0, 1.0)
+    """Coefficients along and across `direction`; 0 where it rolls freely or swivels."""
+    direction: tuple[float, float] = (1.0, 0.0)
+    """Unit vector."""
+
+
+def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Floats:
+    """Velocity of a base on which only the friction of its contacts acts, by Coulomb's law.
+
+    The friction opposes the sliding velocity of each contact, so its forces and torque balance
+    where the power that the contacts dissipate is least. This power is a sum of norms, which is
+    minimised by repeatedly weighted least squares.
+
+    Args:
+        contacts: Where the base touches the ground.
+        center: Centre of mass: x and y, m.
+
+    Returns:
+        Velocity along x and y in m/s, and turn rate in rad/s, shape (3,).
+    """
+    x, y, rim = np.array([(each.x, each.y, each.rim) for each in contacts]).T
+    loads = _loads(x, y, center)
+    c, s = np.array([each.direction for each in contacts]).T
+    # Sliding velocities along and across the direction, each as rows @ motion - driven.
+    axes = [(np.stack([a, b, b * x - a * y], 1), a * rim) for a, b in ((c, s), (-s, c))]
+    grips = [loads * [each.friction[i] for each in contacts] for i in (0, 1)]
+    motion: Floats = np.zeros(3)
+    for _ in range(_ROUNDS):
+        slides = [
+            np.where(grip > 0, rows @ motion - driven, 0.0)
+            for grip, (rows, driven) in zip(grips, axes, strict=True)
+        ]
+        weights = 1.0 / np.sqrt(slides[0] ** 2 + slides[1] ** 2 + _STILL**2)
+        matrix, vector = np.zeros((3, 3)), np.zeros(3)
+        for grip, (rows, driven) in zip(grips, axes, strict=True):
+            weighted = (rows * (grip * weights)[:, None]).T
+            matrix, vector = matrix + weighted @ rows, vector + weighted @ driven
+        motion = np.linalg.lstsq(matrix, vector, rcond=None)[0]
+    return np.asarray(motion)
+
+
+def _loads(x: Floats, y: Floats, center: tuple[float, float]) -> Floats:
+    """Shares of the weight: the plane over all contacts that supports the centre of mass."""
+    places = np.stack([np.ones_like(x), x, y], 1)
+    plane = np.linalg.lstsq(places.T @ places, np.array([1.0, *center]), rcond=None)[0]
+    return np.asarray(np.maximum(places @ plane, 0.0))
+
+
+def turn_ratio(
+    robot: Robot, left: Sequence[Joint], right: Sequence[Joint], axle: Floats, rim: float
+) -> float | None:
+    """Turn rate of a base whose left and right wheels are driven for a turn of 1 rad/s.
+
+    Args:
+        robot: The robot.
+        left: Driven joints of the left wheels.
+        right: Driven joints of the right wheels.
+        axle: Direction of the axles in the model frame, a unit vector.
+        rim: Speed of the rims, m/s.
+
+    Returns:
+        None if no wheel has to slide in a turn, or if the contacts are unknown.
+    """
+    center = center_of_mass(robot, starting_poses(robot))
+    driven = [*left, *right]
+    wheels = {name for joint in driven for name in wheel_links(robot, joint)}
+    bottoms = [height for name in wheels if (height := lowest(robot, name)) is not None]
+    complete = all(robot.whole(joint.child) for joint in driven)
+    if not complete or not bottoms or not robot.placed.issuperset(wheels):
+        return None
+    if center is None:
+        center = np.mean([wheel_place(robot, joint).position for joint in driven], axis=0)
+    contacts = [
+        Contact(
+            x=_ahead(axle, wheel_place(robot, joint).position),
+            y=float(axle @ wheel_middle(robot, joint)),
+            rim=rim if joint in left else -rim,
+            friction=_friction(robot, joint.child),
+            direction=_direction(robot, joint.child, axle),
+        )
+        for joint in driven
+    ]
+    others = list(_others(robot, driven, wheels, axle, min(bottoms)))
+    skids = any(each.friction[0] < each.friction[1] for each in others)
+    spread = {round(each.x, 3) for each in contacts}
+    # What another plugin drives is unknown here.
+    elsewhere = robot.driven - {joint.name for joint in driven}
+    also = {name for each in elsewhere for name in wheel_links(robot, robot.joints[each])}
+    if also & _touching(robot, min(bottoms)) or (len(spread) < 2 and not skids):
+        return None
+    motion = base_motion([*contacts, *others], (_ahead(axle, center), float(axle @ center)))
+    return abs(float(motion[2]))
+
+
+def _others(
+    robot: Robot, driven: Sequence[Joint], wheels: set[str], axle: Floats, bottom: float
+) -> Iterator[Contact]:
+    """The other parts that touch the ground."""
+    base = robot.rigid_root(driven[0].parent)
+    touching = _touching(robot, bottom)
+    for link in robot.description.links:
+        if link.name in wheels or link.name not in touching:
+            continue
+        holder = robot.inbound.get(link.name)
+        rolls = holder is not None and rolls_only_forward(robot, holder, driven)
+        fixed = robot.rigid_root(link.name) == base
+        place = Surfaces(robot, [link.name]).lowest(_UP)
+        if place is None:
+            continue
+        mu = max(_friction(robot, link.name))
+        if rolls and holder is not None:
+            place = np.array(wheel_place(robot, holder).position)
+        yield Contact(
+            x=_ahead(axle, place),
+            y=float(axle @ place),
+            friction=(mu if fixed else 0.0, mu if rolls or fixed else 0.0),
+        )
+
+
+def _touching(robot: Robot, bottom: float) -> set[str]:
+    heights = {link.name: lowest(robot, link.name) for link in robot.description.links}
+    return {name for name, z in heights.items() if z is not None and abs(z - bottom) < _NEAR}
+
+
+def rolls_only_forward(robot: Robot, holder: Joint, driven: Sequence[Joint]) -> bool:
+    """Whether a wheel's axle is parallel to the driven ones, but not above them or on a swivel."""
+    if holder.type != "continuous":
+        return False
+    axis = wheel_axis(robot, holder)
+    for each in driven:
+        same_body = robot.rigid_root(each.parent) == robot.rigid_root(holder.parent)
+        axle = wheel_axis(robot, each)
+        between = np.subtract(
+            wheel_place(robot, holder).position, wheel_place(robot, each).position
+        )
+        ahead = np.cross(axle, between)[2]
+        if same_body and abs(np.dot(axis, axle)) > _PARALLEL and abs(ahead) > _AHEAD:
+            return True
+    return False
+
+
+def _ahead(axle: Floats, place: Sequence[float] | Floats) -> float:
+    return float(np.cross(axle, place)[2])
+
+
+def _friction(robot: Robot, link: str) -> tuple[float, float]:
+    """Coefficients along and across the direction of a link's first collision, at most 1."""
+    for collision in robot.links[link].collisions:
+        surface = collision.surface
+        first = 1.0 if surface.mu1 is None else surface.mu1
+        second = first if surface.mu2 is None else surface.mu2
+        if surface.fdir1_frame is None:
+            # The axes turn with the wheel, or are those of the world.
+            first = second = max(first, second)
+        return min(first, 1.0), min(second, 1.0)
+    return 1.0, 1.0
+
+
+def _direction(robot: Robot, link: str, axle: Floats) -> tuple[float, float]:
+    """Direction of a link's first friction coefficient, if it is fixed in the base."""
+    for collision in robot.links[link].collisions[:1]:
+        fdir, frame = collision.surface.fdir1, collision.surface.fdir1_frame
+        if fdir is not None and frame in robot.placed:
+            turned = np.array(rotate(robot.links[frame].pose.orientation, fdir))
+            x, y = _ahead(axle, turned), float(axle @ turned)
+            length = float(np.hypot(x, y))
+            if length > 0:
+                return x / length, y / length
+    return 1.0, 0.0
