@@ -62,18 +62,20 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
     c, s = np.array([each.direction for each in contacts]).T
     # Sliding velocities along and across the direction, each as rows @ motion - driven.
     axes = [(np.stack([a, b, b * x - a * y], 1), a * rim) for a, b in ((c, s), (-s, c))]
-    grips = [loads * [each.friction[i] for each in contacts] for i in (0, 1)]
-    motion: Floats = np.zeros(3)
+    grips = [loads * np.array([each.friction[i] for each in contacts]) for i in (0, 1)]
+    motion = np.zeros(3)
     for _ in range(_ROUNDS):
         slides = [
             np.where(grip > 0, rows @ motion - driven, 0.0)
             for grip, (rows, driven) in zip(grips, axes, strict=True)
         ]
         weights = 1.0 / np.sqrt(slides[0] ** 2 + slides[1] ** 2 + _STILL**2)
-        matrix, vector = np.zeros((3, 3)), np.zeros(3)
+        matrix: Floats = np.zeros((3, 3))
+        vector: Floats = np.zeros(3)
         for grip, (rows, driven) in zip(grips, axes, strict=True):
-            weighted = (rows * (grip * weights)[:, None]).T
-            matrix, vector = matrix + weighted @ rows, vector + weighted @ driven
+            weighted: Floats = np.asarray(rows * (grip * weights)[:, None]).T
+            matrix = matrix + weighted @ rows
+            vector = vector + weighted @ driven
         motion = np.linalg.lstsq(matrix, vector, rcond=None)[0]
     return np.asarray(motion)
 

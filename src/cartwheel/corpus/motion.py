@@ -133,7 +133,7 @@ def reaches(
         targets = {name: _target(joints[name], model.joint(name)) for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
         told += [(taker, joints[name], value) for name, value in targets.items()]
-    loads = {joint.name: _load(world, model, joint.name) for _, joint, _ in told}
+    held = {joint.name: _held(world, model, joint.name) for _, joint, _ in told}
     if told:
         world.run(_REACHING)
     return [
@@ -143,7 +143,7 @@ def reaches(
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
-            sag=_sag(loads[joint.name], gains.get(joint.name, 0.0)),
+            sag=_sag(world, model, joint.name, gains.get(joint.name, 0.0), held[joint.name]),
         )
         for taker, joint, target in told
     ]
@@ -154,20 +154,20 @@ def yields(proportional: float, integral: float) -> bool:
     return integral * _REACHING < proportional
 
 
-def _sag(load: float, gain: float) -> float:
-    """Error of a proportional controller because of a load in N m or N, rad or m."""
-    return load / gain if gain > 0 else 0.0
+def _sag(world: World, model: Model, joint: str, gain: float, held: float) -> float:
+    """Error of a proportional controller because of its load, rad or m.
 
-
-def _load(world: World, model: Model, joint: str) -> float:
-    """Load of gravity plus friction on a joint at rest, N m or N.
-
-    A suspension carries the robot through its wheels, so its load is what its motor holds.
+    A suspension carries the robot through its wheels, so its load is not gravity at the joint, but
+    what its motor `held` before the command, N m or N.
     """
-    load, _ = resistance(world, model, joint)
-    return max(
-        load, abs(float(world.session.simulation.data.qfrc_actuator[_dof(world, model, joint)]))
-    )
+    return max(resistance(world, model, joint)[0], held) / gain if gain > 0 else 0.0
+
+
+def _held(world: World, model: Model, joint: str) -> float:
+    """Effort of a joint's motor, N m or N."""
+    simulation = world.session.simulation
+    simulation.refresh()
+    return abs(float(simulation.data.qfrc_actuator[_dof(world, model, joint)]))
 
 
 def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
