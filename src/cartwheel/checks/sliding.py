@@ -63,7 +63,7 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
     # Sliding velocities along and across the direction, each as rows @ motion - driven.
     axes = [(np.stack([a, b, b * x - a * y], 1), a * rim) for a, b in ((c, s), (-s, c))]
     grips = [loads * np.array([each.friction[i] for each in contacts]) for i in (0, 1)]
-    motion = np.zeros(3)
+    motion: Floats = np.zeros(3)
     for _ in range(_ROUNDS):
         slides = [
             np.where(grip > 0, rows @ motion - driven, 0.0)
@@ -76,8 +76,8 @@ def base_motion(contacts: Sequence[Contact], center: tuple[float, float]) -> Flo
             weighted: Floats = np.asarray(rows * (grip * weights)[:, None]).T
             matrix = matrix + weighted @ rows
             vector = vector + weighted @ driven
-        motion = np.linalg.lstsq(matrix, vector, rcond=None)[0]
-    return np.asarray(motion)
+        motion = np.asarray(np.linalg.lstsq(matrix, vector, rcond=None)[0], dtype=np.float64)
+    return motion
 
 
 def _loads(x: Floats, y: Floats, center: tuple[float, float]) -> Floats:
