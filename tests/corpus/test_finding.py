@@ -40,6 +40,18 @@ def test_a_part_that_is_included_is_no_robot_without_it(folder):
     assert found == ["cart.xacro"]
 
 
+def test_an_included_gazebo_file_that_hangs_on_the_whole_is_a_part(folder):
+    sensor = LINK.format("eye") + (
+        '<joint name="neck" type="fixed"><parent link="base"/><child link="eye"/></joint>'
+    )
+    whole = '<xacro:include filename="cart.gazebo"/>' + LINK.format("base")
+    found = folder(
+        cart_dot_gazebo=XACRO.format(' name="cart"', sensor),
+        cart_dot_xacro=XACRO.format(' name="cart"', whole),
+    )
+    assert found == ["cart.xacro"]
+
+
 def test_a_whole_robot_that_another_includes_is_one_as_well(folder):
     found = folder(
         base__urdf__base_dot_urdf_dot_xacro=XACRO.format(' name="base"', LINK.format("base")),

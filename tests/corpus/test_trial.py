@@ -13,6 +13,7 @@ from cartwheel.codes.devices import (
 from cartwheel.codes.files import INCLUDE_ABSENT
 from cartwheel.codes.robot import (
     DUPLICATE_NAME,
+    INERTIA_GEOMETRY_MISMATCH,
     JOINTS_UNDRIVEN,
     UNBALANCED,
     WHEEL_DIAMETER_MISMATCH,
@@ -20,7 +21,7 @@ from cartwheel.codes.robot import (
     WHEEL_SEPARATION_MISMATCH,
     WHEELS_SWAPPED,
 )
-from cartwheel.codes.running import CONTROLLER_NOT_STARTED
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.corpus import try_robot
 from cartwheel.corpus.launches import launches_near
 from cartwheel.corpus.trial import _listened
@@ -310,6 +311,29 @@ def test_an_arm_that_nothing_drives_falls_and_the_reason_is_told(tried):
     assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
 
 
+def test_an_inertia_that_no_motor_moves_is_why_a_joint_does_not_arrive(tmp_path, tried):
+    path = tmp_path / "arm.yaml"
+    path.write_text(PID.format(p=100.0))
+    heavy = ARM.format(kind="Effort").replace('ixx="0.01" iyy="0.01"', 'ixx="1e5" iyy="1e5"')
+    shape = '<collision><geometry><box size="0.1 0.1 0.2"/></geometry></collision></link>'
+    heavy = heavy.replace('izz="0.01"/></inertial></link>', f'izz="1e5"/></inertial>{shape}')
+    (fault,) = tried(heavy, controllers=[path]).faults
+    assert (fault.test, fault.code) == ("reach", INERTIA_GEOMETRY_MISMATCH)
+    assert fault.source == "file"
+
+
+def test_two_controller_managers_are_why_a_joint_does_not_arrive(tmp_path, tried):
+    path = tmp_path / "arm.yaml"
+    path.write_text(
+        "arm_controller:\n  type: position_controllers/JointPositionController\n  joint: shoulder\n"
+    )
+    second = '<gazebo><plugin name="again" filename="libgazebo_ros_control.so">'
+    second += "<robotNamespace>/again</robotNamespace></plugin></gazebo>"
+    verdict = tried(ARM.format(kind="Position"), second, controllers=[path])
+    assert JOINT_DRIVEN_TWICE in {each.code for each in verdict.diagnostics}
+    assert all(fault.source == "file" for fault in verdict.faults)
+
+
 def test_an_effort_moves_a_light_link_without_throwing_it(tmp_path, tried):
     path = tmp_path / "push.yaml"
     path.write_text("push:\n  type: effort_controllers/JointEffortController\n  joint: shoulder\n")
@@ -348,6 +372,55 @@ def test_a_plugin_that_is_missing_and_moves_a_joint_is_a_fault(tried):
     assert fault.source == "unknown"
     assert verdict.should_move
     assert not verdict.moves
+
+
+def test_a_plugin_that_only_records_motors_is_no_fault(tried):
+    plugin = (
+        '<gazebo><plugin name="b" filename="librotors_gazebo_bag_plugin.so">'
+        "<commandMotorSpeedTopic>command</commandMotorSpeedTopic></plugin></gazebo>"
+    )
+    verdict = tried(cart(0.1), plugin)
+    assert verdict.missing == ("rotors_gazebo_bag_plugin",)
+    assert verdict.good
+
+
+def test_a_controller_of_wheels_without_friction_is_no_fault_if_the_robot_is_pushed(
+    tmp_path, tried
+):
+    """A planar drive moves the robot; the controller only turns its mecanum wheels."""
+    names = ("front_left", "front_right", "back_left", "back_right")
+    wheels, interfaces = "", ""
+    for name in names:
+        x = 0.1 if name.startswith("front") else -0.1
+        y = 0.1 if name.endswith("left") else -0.1
+        wheels += WHEEL.format(name=name, y=y).replace('xyz="0 ', f'xyz="{x} ')
+        wheels += f'<gazebo reference="{name}"><mu1>0</mu1><mu2>0</mu2></gazebo>'
+        interfaces += f'<joint name="{name}_joint"><command_interface name="velocity"/></joint>'
+    path = tmp_path / "mecanum.yaml"
+    path.write_text(
+        "controller_manager:\n  ros__parameters:\n    base:\n"
+        "      type: mecanum_drive_controller/MecanumDriveController\n"
+        "base:\n  ros__parameters:\n"
+        + "".join(
+            f"    {name.replace('back', 'rear')}_wheel_command_joint_name: {name}_joint\n"
+            for name in names
+        )
+        + "    kinematics: {wheels_radius: 0.05,"
+        " sum_of_robot_center_projection_on_X_Y_axis: 0.2}\n"
+    )
+    verdict = tried(
+        BOX.format(name="base", at="0 0 0", size="0.3 0.15 0.03") + wheels,
+        '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
+        f"</plugin></hardware>{interfaces}</ros2_control><gazebo>"
+        '<plugin name="c" filename="gz_ros2_control-system"/>'
+        '<plugin name="p" filename="libgazebo_ros_planar_move.so"/></gazebo>',
+        controllers=[path],
+    )
+    errors = {drive.topic: drive.error for drive in verdict.drives}
+    assert len(errors) == 2
+    assert abs(errors["/cmd_vel"]) < 0.05
+    assert min(errors.values()) == pytest.approx(-1.0, abs=0.05)
+    assert verdict.moves, verdict.faults
 
 
 def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_fault(tmp_path):

@@ -207,6 +207,17 @@ def test_wheels_in_the_air_are_dropped_until_they_stand(make):
     assert last == {0: 0, 1: 0}
 
 
+def test_the_tags_of_wheel_drops_may_be_absent_as_in_older_versions(make):
+    older = "\n".join(line for line in PLUGIN.splitlines() if "wheel_drop" not in line)
+    world = make.world(ground=1.0)
+    world.session.spawn(kobuki(make, older), pose=Pose((0, 0, 0.2)))
+    box = world.mailbox(f"{BASE}/events/wheel_drop")
+    world.run(1.0)
+    assert box.drain() == []
+    drive(world, 2.0, 0.2)
+    assert world.model("kobuki").pose.x == pytest.approx(0.4, rel=0.1)
+
+
 def test_a_sensor_that_is_not_there_is_refused_with_the_likely_one(make):
     wrong = PLUGIN.replace("<imu_name>gyro<", "<imu_name>gyr<")
     with pytest.raises(UnknownNameError) as caught:

@@ -37,6 +37,29 @@ def test_an_effort_limit_below_the_weight_is_reported_and_exceeded(held):
     assert warning.values["needed"] == pytest.approx(9.8, rel=0.01)
 
 
+def test_an_effort_limit_below_the_friction_is_reported_and_exceeded(bench):
+    """The friction of a joint that mimics it counts too: 3 N m, and twice 2 N m."""
+    limit = 'lower="-3" upper="3" effort="5" velocity="10"'
+    led = 'lower="-6" upper="6" effort="5" velocity="10"'
+    body = "".join(
+        (
+            beam("beam", "world", axis="0 0 1", limit=limit),
+            beam("led", "world", axis="0 0 1", limit=led, origin="0 2 1"),
+            transmission("beam_joint", "Position"),
+        )
+    )
+    body = body.replace(f"<limit {limit}/>", f'<limit {limit}/><dynamics friction="3"/>')
+    mimic = '<dynamics friction="2"/><mimic joint="beam_joint" multiplier="2"/>'
+    body = body.replace(f"<limit {led}/>", f"<limit {led}/>{mimic}")
+    group = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
+    made = bench(robot(body, ROS1), {"c": group})
+    made.publish("/c/command", "std_msgs/msg/Float64", data=0.2)
+    made.world.run(2.0)
+    assert made.position("beam_joint") == pytest.approx(0.2, abs=0.01)
+    (warning,) = [each for each in made.warnings if each.code is devices.EFFORT_LIMIT_TOO_LOW]
+    assert warning.values["needed"] == pytest.approx(7.0, abs=0.01)
+
+
 def test_an_effort_limit_above_the_weight_holds_the_arm(held):
     places, warnings = held(1.02 * WEIGHT)
     assert warnings == []

@@ -59,6 +59,28 @@ def test_an_effort_is_limited_to_the_joints(bench):
     assert made.position("beam_joint") == pytest.approx(0.5 * 2.0 / TURNED * 0.5**2, rel=0.03)
 
 
+def test_a_pid_on_velocity_reaches_it_although_the_effort_is_limited(bench):
+    """P times the target is 40 times the limit, which holds until the joint is fast enough.
+
+    About an upright axis, 2 N m accelerate the beam to 2 rad/s within 2 J / 2 N m = 0.6 s. The
+    limit applies to the difference of the target and the velocity: limiting P times the target
+    instead would end at 2 / 40 rad/s.
+    """
+    limit = 'lower="-100" upper="100" effort="2" velocity="100"'
+    made = bench(
+        one("Effort", axis="0 0 1", limit=limit),
+        controller("effort_controllers/JointVelocityController", pid={"p": 40.0}),
+    )
+    made.publish("/c/command", "std_msgs/msg/Float64", data=2.0)
+    made.world.run(0.3)
+    # Half of M / J t².
+    assert made.position("beam_joint") == pytest.approx(0.5 * 2.0 / TURNED * 0.3**2, rel=0.05)
+    made.world.run(1.0)
+    before = made.position("beam_joint")
+    made.world.run(0.5)
+    assert made.position("beam_joint") - before == pytest.approx(2.0 * 0.5, rel=0.01)
+
+
 def test_a_pid_on_effort_sags_by_what_the_weight_asks(bench):
     """In the end p times the error bears the weight, which the angle makes a little less."""
     p = 400.0

@@ -6,7 +6,7 @@ import pytest
 from tests.coded import coded
 from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, Car, four_wheels, heading, rollers
 
-from cartwheel.codes import devices
+from cartwheel.codes import devices, robot
 
 REACH = (BASE + TRACK) / 2
 NAMES = ("front_left", "front_right", "rear_left", "rear_right")
@@ -59,6 +59,29 @@ def test_wheels_and_the_motion_that_is_wanted_are_told(drive):
     found = [getattr(state, f"{corner}_wheel_velocity") for corner in corners]
     assert found == pytest.approx(wheels(0.2, -0.1, 0.4), abs=0.05)
     assert state.header.frame_id == "odom"
+
+
+def test_wheels_without_friction_turn_but_do_not_move_the_robot(make, tmp_path):
+    """Another plugin pushes such a robot, which the controller must not hinder."""
+    slippery = "".join(
+        f'<gazebo reference="{name}"><mu1>0</mu1><mu2>0</mu2></gazebo>' for name in NAMES
+    )
+    settings = {
+        "type": "mecanum_drive_controller/MecanumDriveController",
+        **{f"{name}_wheel_command_joint_name": f"{name}_joint" for name in NAMES},
+        "kinematics": {
+            "wheels_radius": RADIUS,
+            "sum_of_robot_center_projection_on_X_Y_axis": REACH,
+        },
+    }
+    made = Car(make, tmp_path, four_wheels(), "reference", slippery, **settings)
+    start = made.world.model("car").pose
+    made.go(1.0, 0.3, 0.0, 0.0)
+    found = made.speeds(*(f"{name}_joint" for name in NAMES))
+    assert found == pytest.approx(wheels(0.3, 0.0, 0.0), abs=0.05)
+    assert made.world.model("car").pose.x - start.x == pytest.approx(0.0, abs=0.005)
+    codes_found = [each.code for each in made.world.diagnostics]
+    assert robot.WHEEL_FRICTIONLESS in codes_found
 
 
 def test_husarions_controller_of_the_same_name_has_its_own_parameters(make, tmp_path):
