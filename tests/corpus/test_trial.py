@@ -311,6 +311,23 @@ def test_an_arm_that_nothing_drives_falls_and_the_reason_is_told(tried):
     assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
 
 
+def test_a_velocity_error_that_follows_from_the_load_and_the_gain_is_none(tmp_path, tried):
+    """A load of 1 kg on a vertical slide: (9.8 N + 1 N s/m v) = 100 N s/m (0.5 m/s - v)."""
+    path = tmp_path / "lift.yaml"
+    path.write_text(
+        "lift_controller:\n  type: effort_controllers/JointVelocityController\n"
+        "  joint: shoulder\n  pid: {p: 100.0}\n"
+    )
+    lift = ARM.format(kind="Effort").replace('type="revolute"', 'type="prismatic"')
+    lift = lift.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/><dynamics damping="1"/>')
+    lift = lift.replace('lower="-1" upper="1"', 'lower="-2" upper="2"')
+    verdict = tried(lift, controllers=[path])
+    (spin,) = verdict.spins
+    assert spin.measured == pytest.approx((100.0 * 0.5 - 9.8) / 101.0, rel=0.01)
+    assert spin.follows
+    assert verdict.good, verdict.faults
+
+
 def test_an_inertia_that_no_motor_moves_is_why_a_joint_does_not_arrive(tmp_path, tried):
     path = tmp_path / "arm.yaml"
     path.write_text(PID.format(p=100.0))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from cartwheel.api import Model, World
-from cartwheel.corpus.motion import positions, resistance
+from cartwheel.corpus.motion import degree, positions, resistance
 from cartwheel.corpus.verdict import RISEN, Flight, Spin
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -38,9 +38,17 @@ _MOTOR = re.compile(r"motor_model|multicopter-motor")
 
 
 def spins(
-    world: World, model: Model, robot: RobotDescription, started: Sequence[Controller]
+    world: World,
+    model: Model,
+    robot: RobotDescription,
+    started: Sequence[Controller],
+    gains: Mapping[str, float],
 ) -> Iterator[Spin]:
-    """Commands the joints that accept velocities, all at once, and each that accepts efforts."""
+    """Commands the joints that accept velocities, all at once, and each that accepts efforts.
+
+    `gains` contains the proportional gains of PID controllers with an effort output and a slow or
+    no integral, by joint, in N m s/rad or N s/m.
+    """
     by_velocity: list[tuple[TopicInfo, tuple[str, ...]]] = []
     by_effort: list[tuple[TopicInfo, tuple[str, ...]]] = []
     by_position = {each.owner for each in world.graph.joint_inputs.all()}
@@ -63,7 +71,12 @@ def spins(
             for name in joints:
                 speed = (after[name] - before[name]) / _MEASURED
                 yield Spin(
-                    topic=info.name, joint=name, commanded=_VELOCITY, measured=speed, effort=False
+                    topic=info.name,
+                    joint=name,
+                    commanded=_VELOCITY,
+                    measured=speed,
+                    effort=False,
+                    sag=_sag(world, model, name, gains.get(name, 0.0)),
                 )
     for info, joints in by_effort:
         effort = min(_effort(world, model, robot, name) for name in joints)
@@ -105,6 +118,15 @@ def _joints(info: TopicInfo, robot: RobotDescription) -> tuple[str, ...]:
         if topic is not None and joint is not None and info.name.endswith(topic.text.strip()):
             named.append(joint.text.strip())
     return tuple(dict.fromkeys(named))
+
+
+def _sag(world: World, model: Model, joint: str, gain: float) -> float:
+    """Error of a proportional controller because of its load at the commanded velocity."""
+    if gain <= 0:
+        return 0.0
+    load, _ = resistance(world, model, joint)
+    damping = float(world.session.simulation.model.dof_damping[degree(world, model, joint)])
+    return (load + damping * _VELOCITY) / gain
 
 
 def _effort(world: World, model: Model, robot: RobotDescription, name: str) -> float:

@@ -167,7 +167,7 @@ def _held(world: World, model: Model, joint: str) -> float:
     """Effort of a joint's motor, N m or N."""
     simulation = world.session.simulation
     simulation.refresh()
-    return abs(float(simulation.data.qfrc_actuator[_dof(world, model, joint)]))
+    return abs(float(simulation.data.qfrc_actuator[degree(world, model, joint)]))
 
 
 def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
@@ -180,12 +180,12 @@ def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
     simulation = world.session.simulation
     simulation.refresh()
     engine, data = simulation.model, simulation.data
-    place = _dof(world, model, joint)
+    place = degree(world, model, joint)
     load = abs(float(data.qfrc_bias[place])) + float(engine.dof_frictionloss[place])
     return load, float(engine.dof_M0[place])
 
 
-def _dof(world: World, model: Model, joint: str) -> int:
+def degree(world: World, model: Model, joint: str) -> int:
     """Index of a joint's velocity."""
     simulation = world.session.simulation
     return int(simulation.model.jnt_dofadr[simulation.engine.joint_id(model.name, joint)])

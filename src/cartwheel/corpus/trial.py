@@ -224,11 +224,10 @@ def _moved(
         yield verdict
         verdict = replace(verdict, flights=tuple(commands.flights(world, model, robot)))
         yield verdict
-    verdict = replace(
-        verdict, reaches=tuple(motion.reaches(world, model, robot, _gains(robot, started)))
-    )
+    gains = _gains(robot, started)
+    verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot, gains)))
     yield verdict
-    yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started)))
+    yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
 
 
 def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:

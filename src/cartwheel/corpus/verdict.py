@@ -134,13 +134,16 @@ class Spin:
     """Velocity of the joint, rad/s or m/s."""
     effort: bool
     """Whether the command is an effort, so that any motion is a success."""
+    sag: float = 0.0
+    """Error that follows from gravity, friction, damping and the controller's own gains, rad/s or
+    m/s; see `Reach.sag`."""
 
     @property
     def follows(self) -> bool:
         """Whether the joint moved as commanded."""
         if self.effort:
             return self.measured * self.commanded > 0
-        return abs(self.measured / self.commanded - 1.0) <= TOLERANCE
+        return abs(self.measured - self.commanded) <= TOLERANCE * abs(self.commanded) + self.sag
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

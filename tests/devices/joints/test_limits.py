@@ -47,18 +47,27 @@ def test_a_target_position_is_within_the_limits():
 
 
 @pytest.mark.parametrize(
-    ("effort", "position", "velocity", "expected"),
+    ("effort", "position", "velocity", "applies"),
     [
-        (5.0, 2.1, 0.0, 0.0),  # beyond the upper limit: not farther
-        (-5.0, 2.1, 0.0, -5.0),  # but back
-        (-5.0, -1.1, 0.0, 0.0),
-        (5.0, 0.0, 3.1, 0.0),  # too fast: not faster
-        (-5.0, 0.0, 3.1, -5.0),
+        (5.0, 2.1, 0.0, False),  # beyond the upper limit: not farther
+        (-5.0, 2.1, 0.0, True),  # but back
+        (-5.0, -1.1, 0.0, False),
+        (5.0, 0.0, 3.1, False),  # too fast: not faster
+        (-5.0, 0.0, 3.1, True),
+        (1.0, 0.0, 3.1, True),  # 1 N m - 0.5 N m s/rad * 3.1 rad/s slows the joint
     ],
 )
-def test_beyond_a_limit_an_effort_only_moves_the_joint_back(effort, position, velocity, expected):
+def test_beyond_a_limit_an_effort_only_moves_the_joint_back(effort, position, velocity, applies):
     command = DampedEffort(effort, 0.5)
-    assert limited_effort(HARD, command, position, velocity) == DampedEffort(expected, 0.5)
+    expected = command if applies else DampedEffort(0.0, 0.0)
+    assert limited_effort(HARD, command, position, velocity) == expected
+
+
+def test_an_effort_that_slows_a_joint_that_is_too_fast_is_limited_as_well():
+    """-10 N m, with the damping: a constant effort would reverse this light joint."""
+    effort, damping = limited_effort(HARD, DampedEffort(2.0, 10.0), 0.0, 4.0, gain=0.5)
+    assert damping == 10.0
+    assert effort - damping * 4.0 == pytest.approx(-10.0)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -6,8 +6,11 @@ import math
 from dataclasses import dataclass
 
 from cartwheel.description.model import Joint, SoftLimits
-from cartwheel.devices.elementwise import Number, anywhere, clamp, maximum, minimum, where
+from cartwheel.devices.elementwise import Number, anywhere, clamp, maximum, where
 from cartwheel.devices.joints.pid import DampedEffort
+
+_INSIDE = 1 - 1e-6
+"""Part of a limit: MuJoCo does not integrate the damping of an actuator at its limit implicitly."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,7 +93,7 @@ def saturated(
         return command
     light = clamp(effort - damping * (velocity + gain * clamped), -limit, limit) != clamped
     return DampedEffort(
-        where(over, where(light, clamped + damping * velocity, clamped), effort),
+        where(over, where(light, _INSIDE * clamped + damping * velocity, clamped), effort),
         where(over, where(light, damping, 0.0), damping),
     )
 
@@ -125,8 +128,9 @@ def limited_effort(
     above = (position > limits.upper) | (velocity > limits.velocity)
     outside = below | above
     if outside is not False and anywhere(outside):
-        back = where(above, minimum(effort, 0.0), effort)
-        effort = where(below, maximum(effort, 0.0), back)
+        output = effort - damping * velocity
+        farther = (above & (output > 0.0)) | (below & (output < 0.0))
+        effort, damping = where(farther, 0.0, effort), where(farther, 0.0, damping)
     # Most commands are within the limits, and a new object takes as long as the comparisons above.
     unchanged = effort is command.effort and damping is command.damping
     return command if unchanged else DampedEffort(effort, damping)

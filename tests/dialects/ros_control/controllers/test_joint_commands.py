@@ -255,6 +255,25 @@ def test_a_reset_begins_anew(bench):
 POSITION = {"type": "effort_controllers/JointPositionController"}
 
 
+def test_a_limited_pid_with_damping_does_not_throw_a_light_joint_to_and_fro(bench):
+    """10 N m accelerate 0.01 kg m² by 10 rad/s in 10 ms, and the joint's limit is 0.5 rad/s.
+
+    With p = d, the error decreases with the time constant d / p = 1 s.
+    """
+    limit = 'lower="-3" upper="3" effort="10" velocity="0.5"'
+    body = beam("beam", "world", axis="0 0 1", limit=limit)
+    body = body.replace(f'xyz="{ARM} 0 0"', 'xyz="0 0 0"').replace(f'"{INERTIA}"', '"0.01"')
+    made = bench(
+        robot(body + transmission("beam_joint", "Effort"), ROS1),
+        controller("effort_controllers/JointPositionController", pid={"p": 10.0, "d": 10.0}),
+    )
+    made.publish("/c/command", "std_msgs/msg/Float64", data=0.2)
+    made.world.run(1.0)
+    early = 0.2 - made.position("beam_joint")
+    made.world.run(1.0)
+    assert 0.2 - made.position("beam_joint") == pytest.approx(early * math.exp(-1.0), rel=0.05)
+
+
 @pytest.mark.parametrize("inertia", [1e-1, 1e-4, 1e-7])
 def test_a_pid_without_damping_explodes_for_no_joint_however_light(bench, inertia):
     link = f"""<link name="tip"><inertial><mass value="1e-3"/><inertia ixx="{inertia}"
