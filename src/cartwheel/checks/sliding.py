@@ -126,7 +126,12 @@ def turn_ratio(
     spread = {round(each.x, 3) for each in contacts}
     # What another plugin drives is unknown here.
     elsewhere = robot.driven - {joint.name for joint in driven}
-    also = {name for each in elsewhere for name in wheel_links(robot, robot.joints[each])}
+    also = {
+        name
+        for each in elsewhere
+        if each in robot.joints
+        for name in wheel_links(robot, robot.joints[each])
+    }
     if also & _touching(robot, min(bottoms)) or (len(spread) < 2 and not skids):
         return None
     motion = base_motion([*contacts, *others], (_ahead(axle, center), float(axle @ center)))
