@@ -54,6 +54,20 @@ def test_a_robot_of_ros_control_gets_the_file_of_its_joints(workspace):
     assert names(workspace, text) == ["one.yaml"]
 
 
+def test_controllers_of_the_own_package_are_those_of_the_robot(workspace):
+    """Other robots in the packages beside it have joints with equal names."""
+    text = robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1)
+    broadcaster = "s:\n  type: joint_state_controller/JointStateController\n"
+    (workspace / "arm_bringup" / "config" / "states.yaml").write_text(broadcaster)
+    own = workspace / "arm_description" / "config"
+    own.mkdir()
+    (own / "own.yaml").write_text(ROS1_FILE)
+    assert sorted(names(workspace, text)) == ["own.yaml", "states.yaml"]
+    # A file that only publishes states is not enough.
+    (own / "own.yaml").write_text(broadcaster)
+    assert sorted(names(workspace, text)) == ["one.yaml", "own.yaml", "states.yaml"]
+
+
 def test_a_joint_after_an_argument_of_the_launch_file_is_one_of_the_robots(workspace):
     with_argument = ROS1_FILE.replace("beam_joint", "$(arg prefix)_joint")
     (workspace / "arm_bringup" / "config" / "one.yaml").write_text(with_argument)

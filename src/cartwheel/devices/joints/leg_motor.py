@@ -15,7 +15,7 @@ from cartwheel.messages import zero
 
 COMMAND = "unitree_legged_msgs/msg/MotorCmd"
 _STATE = "unitree_legged_msgs/msg/MotorState"
-_BRAKE, _SERVO = 0x00, 0x0A
+_BRAKE, SERVO = 0x00, 0x0A
 """Modes of a command. In any other mode the command is ignored."""
 _NO_POSITION, _NO_VELOCITY = 2.146e9, 16000.0
 """Targets that disable their gain."""
@@ -44,7 +44,7 @@ def leg_motor_target(message: Any, limits: JointLimits) -> LegMotorTarget | None
         return None
     if message.mode == _BRAKE:
         return LegMotorTarget()
-    if message.mode != _SERVO:
+    if message.mode != SERVO:
         return None
     position, velocity, torque, p, d = numbers
     return LegMotorTarget(

@@ -66,13 +66,22 @@ def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list
     """Returns YAML files with controllers for a robot's joints, or for the states of all joints.
 
     The folders named ``config`` in the robot's package and in the packages beside it are searched.
+    If its own package contains controllers for the joints, those of the packages beside it are for
+    other robots with equal joints.
 
     Args:
         robot: File of the robot.
         joints: Names of the movable joints.
         ros2: Search for ROS 2 parameter files.
     """
-    return with_controllers(_candidates(robot), joints, ros2=ros2)
+    package = _package(robot)
+    own: list[tuple[Path, bool]] = []
+    others: list[tuple[Path, bool]] = []
+    for path, named in _fitting(_candidates(package), joints, ros2=ros2):
+        (own if package in path.parents else others).append((path, named))
+    if any(named for _, named in own):
+        others = [(path, named) for path, named in others if not named]
+    return [path for path, _ in sorted(own + others)]
 
 
 def with_controllers(
@@ -85,7 +94,13 @@ def with_controllers(
         joints: Names of the movable joints.
         ros2: Search for ROS 2 parameter files.
     """
-    files = []
+    return [path for path, _ in _fitting(paths, joints, ros2=ros2)]
+
+
+def _fitting(
+    paths: Iterable[Path], joints: Sequence[str], *, ros2: bool
+) -> Iterator[tuple[Path, bool]]:
+    """The files, each with whether it contains controllers for the joints."""
     for path in paths:
         try:
             content = read_parameters(path)
@@ -101,8 +116,7 @@ def with_controllers(
         named = any(_names(word, joint) for joint in joints for word in words)
         broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
         if named or broadcasts:
-            files.append(path)
-    return files
+            yield path, named
 
 
 def _manager(tag: PluginTag) -> str:
@@ -124,11 +138,12 @@ def _entries(content: Mapping[str, Any], source: str, *, ros2: bool) -> list[Con
     return controller_entries(ros2_file([content], ""), "", source)
 
 
-def _candidates(robot: Path) -> Iterator[Path]:
-    package = next(
-        (each for each in robot.resolve().parents[:_LEVELS] if package_name(each) is not None),
-        None,
-    )
+def _package(robot: Path) -> Path | None:
+    folders = robot.resolve().parents[:_LEVELS]
+    return next((each for each in folders if package_name(each) is not None), None)
+
+
+def _candidates(package: Path | None) -> Iterator[Path]:
     if package is None:
         return
     seen = 0

@@ -103,3 +103,16 @@ def test_other_modes_change_nothing(motor):
     made.publish("/c/command", COMMAND, mode=3, q=-0.5, Kp=400.0, Kd=40.0)
     made.world.run(2.0)
     assert made.position("beam_joint") == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_manual_position_is_a_command_with_the_gains_of_the_file(bench):
+    body = beam("beam", "world", axis=UPRIGHT) + transmission("beam_joint", "Effort")
+    parameters = {"c": {"type": TYPE, "joint": "beam_joint", "pid": {"p": 50.0, "d": 10.0}}}
+    made = bench(robot(body, ROS1), parameters)
+    box = made.box("/c/command")
+    (manual,) = made.world.graph.joint_inputs.all()
+    manual.put({"beam_joint": 0.4}, 0.0)
+    made.world.run(4.0)
+    assert made.position("beam_joint") == pytest.approx(0.4, abs=0.01)
+    (command,) = box.drain()
+    assert (command.mode, command.Kp, command.Kd) == (SERVO, 50.0, 10.0)
