@@ -105,9 +105,10 @@ def turn_ratio(
     center = center_of_mass(robot, starting_poses(robot))
     driven = [*left, *right]
     wheels = {name for joint in driven for name in wheel_links(robot, joint)}
-    bottoms = [height for name in wheels if (height := lowest(robot, name)) is not None]
-    complete = all(robot.whole(joint.child) for joint in driven)
-    if not complete or not bottoms or not robot.placed.issuperset(wheels):
+    heights = [lowest(robot, *wheel_links(robot, joint)) for joint in driven]
+    bottoms = [height for height in heights if height is not None]
+    # A wheel without its collision may be one whose mesh is missing.
+    if not bottoms or len(bottoms) < len(heights) or not robot.placed.issuperset(wheels):
         return None
     if center is None:
         center = np.mean([wheel_place(robot, joint).position for joint in driven], axis=0)

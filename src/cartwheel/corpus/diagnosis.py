@@ -128,7 +128,7 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
     for name in verdict.spawned:
         if name in refused and name not in verdict.controllers:
             yield Fault(test="controller", subject=name, reason=refused[name])
-    if verdict.drives or verdict.reaches or verdict.spins:
+    if verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
         return
     wheels = any(joint.type == "continuous" for joint in description.joints)
     lost = _coded(said, frozenset({files.INCLUDE_ABSENT}))

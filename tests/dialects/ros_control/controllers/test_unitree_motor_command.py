@@ -110,6 +110,7 @@ def test_a_manual_position_is_a_command_with_the_gains_of_the_file(bench):
     parameters = {"c": {"type": TYPE, "joint": "beam_joint", "pid": {"p": 50.0, "d": 10.0}}}
     made = bench(robot(body, ROS1), parameters)
     box = made.box("/c/command")
+    made.world.run(0.02)
     (manual,) = made.world.graph.joint_inputs.all()
     manual.put({"beam_joint": 0.4}, 0.0)
     made.world.run(4.0)
