@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import weakref
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ from cartwheel.options import STRICT
 from cartwheel.simulation import Part, Simulation
 from cartwheel.simulation.clock import Task
 from cartwheel.simulation.models.compilations import Compiler
-from cartwheel.simulation.models.resident import Behaviour
+from cartwheel.simulation.models.resident import Behaviour, Resident
 from cartwheel.simulation.pacing import Pacer
 
 CLOCK_RATE = 100.0
@@ -87,6 +88,10 @@ class Session:
                 self.shared.get(PluginFiles).load(path)
         self.strict = strict
         self._spawning = False
+        self.spawned: dict[str, tuple[tuple[Path, ...], tuple[Path, ...]]] = {}
+        """Controller files and package folders of the models that were spawned, by model."""
+        self.originals: weakref.WeakKeyDictionary[object, Any] = weakref.WeakKeyDictionary()
+        """For each saved state, the objects that were saved; see `cartwheel.saving`."""
         # Without a reference to the session, because the simulation would keep it alive.
         types, shared = self.types, self.shared
 
@@ -151,7 +156,7 @@ class Session:
         if self._packages.add(description.origin.file, package_path):
             self.types.forget_missing()
         with self.spawning():
-            return self._spawn(
+            spawned = self._spawn(
                 description,
                 controllers,
                 name=name,
@@ -159,6 +164,8 @@ class Session:
                 namespace=namespace,
                 frame_prefix=frame_prefix,
             )
+        self.spawned[spawned] = tuple(controllers), tuple(package_path)
+        return spawned
 
     def _spawn(
         self, description: RobotDescription, controllers: Sequence[Path], **options: Any
@@ -180,6 +187,32 @@ class Session:
                 "gz_ros2_control-system in a <gazebo> tag.",
             )
         return spawned
+
+    def admit(
+        self,
+        description: RobotDescription,
+        name: str,
+        *,
+        pose: Pose,
+        namespace: str,
+        frame_prefix: str,
+        controllers: Sequence[Path],
+        package_path: Sequence[Path],
+    ) -> Resident:
+        """Creates a model again, to be compiled afterwards; see `spawn` and `Population.admit`."""
+        if self._packages.add(description.origin.file, package_path):
+            self.types.forget_missing()
+        files = self.shared.get(ControllerFiles)
+        files.paths = tuple(controllers)
+        try:
+            resident = self.simulation.population.admit(
+                description, name, pose, namespace, frame_prefix
+            )
+        finally:
+            files.take()
+        resident.part.spawned = True
+        self.spawned[name] = tuple(controllers), tuple(package_path)
+        return resident
 
     @contextlib.contextmanager
     def spawning(self) -> Iterator[None]:
@@ -253,6 +286,7 @@ class Session:
     def close(self) -> None:
         """Stops the simulation; see `Simulation.close`."""
         self.simulation.close()
+        self.originals.clear()
         self.types.report = _ignore
         self.shared.get(ControllerFiles).loaded.clear()
         self.graph.close()

@@ -47,7 +47,18 @@ MAY_IMPORT = {
     "plugin": {"component", "dialects"},
     "interfaces": {"description", "simulation", "graph"},
     "session": {"component", "description", "simulation", "messages", "graph", "dialects"},
+    "saving": {
+        "component",
+        "description",
+        "world",
+        "simulation",
+        "messages",
+        "graph",
+        "dialects",
+        "session",
+    },
     "api": {
+        "saving",
         "arrays",
         "gazebo",
         "description",

@@ -12,6 +12,7 @@ from cartwheel.api.plots import Plot
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
+from cartwheel.saving import State
 
 __all__ = [
     "Acceleration",
@@ -26,6 +27,7 @@ __all__ = [
     "Model",
     "Picture",
     "Plot",
+    "State",
     "Timer",
     "Topic",
     "Twist",

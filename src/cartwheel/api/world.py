@@ -12,6 +12,7 @@ from cartwheel.api.calling import CallingWorld
 from cartwheel.api.messaging import several
 from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
+from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings import SurroundingWorld
 from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -24,7 +25,7 @@ from cartwheel.simulation.limits import number
 from cartwheel.simulation.models.compilations import Compiler
 
 
-class World(SurroundingWorld, PicturedWorld, CallingWorld):
+class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
     """A simulation that advances when you call `run` or `spin`.
 
     Several threads can share a world: while one thread is in `run`, calls from other threads wait.

@@ -116,3 +116,6 @@ WAIT_TIMED_OUT = Code(
 CONDITION_INVALID = Code(
     "CW634", "condition-invalid", "error", "the condition of a run is not a function"
 )
+STATE_MISMATCH = Code(
+    "CW635", "state-mismatch", "error", "a saved state does not fit the world that restores it"
+)

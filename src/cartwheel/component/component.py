@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
 from cartwheel.codes import running
@@ -54,6 +54,8 @@ class Component:
         else:
             scope.holder._open.callback(self._open.close)
         self._devices: list[Component] = []
+        self._items: list[object] = []
+        """What the component registered with the graph or keeps open."""
         self.publishers: list[Publisher] = []
         """The component's own topics, without those of its devices."""
         self._crowded = False
@@ -102,13 +104,31 @@ class Component:
 
     def keep(self, item: K) -> K:
         """Registers an item that is closed with the component, and returns it."""
+        self._items.append(item)
         self._open.callback(item.close)
         return item
 
     def add(self, device: D) -> D:
         """Registers a device that is reset and closed with the component, and returns it."""
         self._devices.append(device)
-        return self.keep(device)
+        self._open.callback(device.close)
+        return device
+
+    @property
+    def items(self) -> tuple[object, ...]:
+        """The component's publishers, subscriptions, services and other things that it keeps."""
+        return tuple(self._items)
+
+    def components(self) -> Iterable[Component]:
+        """The devices of the component, and what else is saved as a component of its own."""
+        return tuple(self._devices)
+
+    def structure(self) -> Any:
+        """What `rebuild` needs to create components that were added at run time."""
+        return None
+
+    def rebuild(self, structure: Any) -> None:
+        """Adds and closes components, so that they are those of a saved `structure`."""
 
     def resolve(self, name: str) -> str:
         """Returns a topic or service name in the component's namespace, after remapping."""
@@ -193,6 +213,7 @@ class Component:
                     values={"name": self.resolve(name)},
                 )
             return False
+        self._items.append(service)
         self._open.callback(self.graph.withdraw, service)
         return True
 
@@ -228,6 +249,7 @@ class Component:
         inputs = self.graph.joint_inputs
         joint_input = self.joint_input(joints, put)
         inputs.add(joint_input)
+        self._items.append(joint_input)
         self._open.callback(inputs.remove, joint_input)
 
     def joint_input(

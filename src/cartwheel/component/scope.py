@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -35,6 +35,11 @@ class Shared:
             self._objects[kind] = kind()
         existing: T = self._objects[kind]
         return existing
+
+    def objects(self) -> Iterator[tuple[str, object]]:
+        """Yields the objects that exist, by the names of their classes."""
+        for kind, each in self._objects.items():
+            yield f"{kind.__module__}.{kind.__qualname__}", each
 
 
 @dataclass(kw_only=True, slots=True)

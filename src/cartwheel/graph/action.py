@@ -7,7 +7,6 @@ services of ROS 2) is an `ActionListener` of this action. Call everything on the
 from __future__ import annotations
 
 import enum
-import itertools
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
@@ -137,6 +136,8 @@ class Action:
         GraphError: The name is invalid or already in use.
     """
 
+    _unsaved = frozenset({"listeners"})
+
     def __init__(
         self,
         graph: Offers,
@@ -155,7 +156,8 @@ class Action:
         self.time_ns = time_ns
         self._on_goal, self._on_cancel = on_goal, on_cancel
         self._goals: dict[str, Goal] = {}
-        self._numbers = itertools.count(1)
+        self._generated = 0
+        """Number of generated identifiers."""
         self.listeners: tuple[ActionListener, ...] = ()
         graph.offer(self)
 
@@ -199,7 +201,9 @@ class Action:
         """
         now = self.time_ns()
         self._forget(now)
-        identity = identity or f"{self.node}-{next(self._numbers)}-{now / 1e9:.9f}"
+        if not identity:
+            self._generated += 1
+            identity = f"{self.node}-{self._generated}-{now / 1e9:.9f}"
         if identity in self._goals:
             return None
         made = Goal(self, identity, now if stamp_ns is None else stamp_ns, goal)

@@ -50,6 +50,13 @@ class JointInputs:
         if not same:
             self._changed()
 
+    def replace(self, every: tuple[JointInput, ...]) -> None:
+        """Sets all inputs, oldest first."""
+        with self._lock:
+            same, self._all = self._all == every, every
+        if not same:
+            self._changed()
+
     def close(self) -> None:
         """Removes all inputs, without calling `changed`."""
         with self._lock:

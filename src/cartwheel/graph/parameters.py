@@ -31,6 +31,11 @@ class Parameters:
         self._lock = threading.Lock()
         self._tree: dict[str, Any] = {}
 
+    @property
+    def tree(self) -> dict[str, Any]:
+        """The tree of this process; empty if the values are stored externally."""
+        return self._tree
+
     def get(self, name: str, default: Any = None) -> Any:
         """Value of a name, mapping for a namespace, or `default` if the name does not exist.
 

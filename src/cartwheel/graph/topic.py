@@ -144,6 +144,16 @@ class Publisher:
         """Type of the topic, ``pkg/msg/Name``."""
         return self._topic.type
 
+    @property
+    def latched(self) -> Any:
+        """The message that new subscribers of a latched topic receive; otherwise None."""
+        return self._topic.latched if self.qos == "latched" else None
+
+    @latched.setter
+    def latched(self, message: Any) -> None:
+        if self.qos == "latched":
+            self._topic.latched = message
+
     def publish(self, message: Any) -> None:
         """Delivers a message to all subscribers at once. Call it on the owner's thread."""
         self.sent += 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from cartwheel.codes import running
@@ -60,7 +59,8 @@ class Elevator(Component):
         self._config = config
         self._lift = self._drive(config.lift_joint, _LIFT_EFFORT, _LIFT_SPEED, _LIFT_ACCELERATION)
         self._door = self._drive(config.door_joint, _DOOR_EFFORT, _DOOR_SPEED, _DOOR_ACCELERATION)
-        self._steps: deque[Callable[[], bool]] = deque()
+        self._steps: deque[tuple[str, float]] = deque()
+        """What remains of the trip: "door" or "lift" with its target in m, or "wait"."""
         self._wait_until: int | None = None
         self.part.schedule(_RATE, before=self._control)
 
@@ -106,11 +106,11 @@ class Elevator(Component):
             return
         self._steps.extend(
             [
-                lambda: self._door.reached(0.0),
-                lambda: self._lift.reached(height),
-                lambda: self._door.reached(self._door.within(_OPEN)),
-                self._waited,
-                lambda: self._door.reached(0.0),
+                ("door", 0.0),
+                ("lift", height),
+                ("door", self._door.within(_OPEN)),
+                ("wait", 0.0),
+                ("door", 0.0),
             ]
         )
 
@@ -122,10 +122,15 @@ class Elevator(Component):
         )
 
     def _control(self) -> None:
-        if self._steps and self._steps[0]():
+        if self._steps and self._completed(*self._steps[0]):
             self._steps.popleft()
         self._lift.control()
         self._door.control()
+
+    def _completed(self, step: str, target: float) -> bool:
+        if step == "wait":
+            return self._waited()
+        return (self._lift if step == "lift" else self._door).reached(target)
 
     def _waited(self) -> bool:
         now = self.part.time_ns

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from cartwheel.codes import running
+from cartwheel.component import Component
 from cartwheel.description.model import Sensor
 from cartwheel.devices.contact.loads import JointLoad
 from cartwheel.devices.drives.rollers import has_rollers
@@ -26,6 +27,17 @@ class ControlPlugin(Plugin[Any]):
     """Runs a controller manager at a rate."""
 
     manager: ControllerManager | None = None
+
+    def components(self) -> Iterable[Component]:
+        manager = self.manager
+        return (*super().components(), *(manager.controllers if manager is not None else ()))
+
+    def structure(self) -> Any:
+        return None if self.manager is None else self.manager.structure()
+
+    def rebuild(self, structure: Any) -> None:
+        if self.manager is not None:
+            self.manager.rebuild(structure)
 
     def reset(self) -> None:
         if self.manager is not None:

@@ -60,7 +60,10 @@ class Controller(Component):
         """Whether the controller is running, or starts at the next update."""
         self.started = False
         """Whether `start` has been called. Messages that arrive earlier are kept until then."""
-        self._early: list[Callable[[], None]] = []
+        self._receivers: list[Callable[[Any], None]] = []
+        """The callbacks of all subscriptions."""
+        self._early: list[tuple[int, Any]] = []
+        """Messages that arrived early, with the indices of their receivers."""
         self.claims: dict[str, JointHardware] = {}
         """The claimed joints, by name."""
         self.interfaces: dict[str, str] = {}
@@ -96,8 +99,8 @@ class Controller(Component):
         self.start(time_ns)
         self.started = True
         early, self._early = self._early, []
-        for call in early:
-            call()
+        for receiver, message in early:
+            self._receivers[receiver](message)
         if self._input is not None and not self.chained:
             self.graph.joint_inputs.add(self._input)
 
@@ -188,10 +191,12 @@ class Controller(Component):
         what NaN and infinity mean.
         """
         checked = self.checked(callback, unset=unset)
+        number = len(self._receivers)
+        self._receivers.append(checked)
 
         def receive(message: Any) -> None:
             if self.running and not self.started:
-                self._early.append(lambda: checked(message))
+                self._early.append((number, message))
             elif self.running or always:
                 checked(message)
 
@@ -249,6 +254,7 @@ class Controller(Component):
     ) -> None:
         graph = self.graph
         service = graph.serve(name, type_name, handler, node=self.node, threaded=threaded)
+        self._items.append(service)
         self._open.callback(graph.withdraw, service)
 
     def warn(

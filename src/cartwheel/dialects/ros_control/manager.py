@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from cartwheel.codes import devices
 from cartwheel.dialects.ros_control.catalogue import find_type
@@ -18,6 +19,24 @@ from cartwheel.dialects.ros_control.switching import (
 )
 from cartwheel.errors import Origin
 from cartwheel.graph import Publisher
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedController:
+    """A controller from which it can be loaded again."""
+
+    name: str
+    type: str
+    settings: Settings
+    remappings: Mapping[str, str] | None
+
+    def equals(self, other: LoadedController | None) -> bool:
+        """Whether both are the same controller with the same parameters."""
+        return (
+            other is not None
+            and self.type == other.type
+            and self.settings.flat() == other.settings.flat()
+        )
 
 
 class ControllerManager:
@@ -244,6 +263,33 @@ class ControllerManager:
         self._starting = [each for each in self._controllers.values() if each.running]
         for controller in self._starting:
             controller.started = False
+
+    def structure(self) -> tuple[LoadedController, ...]:
+        """The loaded controllers, for `rebuild`."""
+        remappings = self.robot.remappings
+        return tuple(
+            LoadedController(each.name, each.type, each.settings, remappings.get(each.name))
+            for each in self._controllers.values()
+        )
+
+    def rebuild(self, structure: Sequence[LoadedController]) -> None:
+        """Unloads and loads controllers, so that they are those of a saved `structure`.
+
+        Raises:
+            CartwheelError: A controller cannot be loaded.
+        """
+        wanted = {each.name: each for each in structure}
+        for each in self.structure():
+            if not each.equals(wanted.get(each.name)):
+                self._controllers[each.name].running = False
+                self.unload(each.name)
+        for name, each in wanted.items():
+            if name not in self._controllers:
+                if each.remappings is not None:
+                    self.robot.remappings[name] = each.remappings
+                self.load(name, each.settings, each.type)
+        self._controllers = {name: self._controllers[name] for name in wanted}
+        self._order = update_order(self._controllers)
 
     def close(self) -> None:
         """Unloads all controllers."""

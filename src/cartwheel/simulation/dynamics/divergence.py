@@ -51,6 +51,16 @@ class Guard:
         """Stores the current state for the dump."""
         self._states.append((self._data.time, self._qpos.copy(), self._qvel.copy()))
 
+    def save(self) -> tuple[Any, ...]:
+        """The stored states and reported warnings, for `restore`."""
+        return tuple(self._states), dict(self._seen)
+
+    def restore(self, saved: tuple[Any, ...]) -> None:
+        """Sets the stored states and reported warnings."""
+        self.forget()
+        self._states.extend(saved[0])
+        self._seen.update(saved[1])
+
     def forget(self) -> None:
         """Discards the stored states after a time reset."""
         self._states.clear()

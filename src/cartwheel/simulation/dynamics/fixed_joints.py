@@ -47,7 +47,8 @@ class AttachmentHandle:
         self.name = name
         self.held: Held | None = None
         """None while nothing is attached."""
-        self._kept: list[tuple[Any, int, float]] = []
+        self._kept: list[tuple[str, int, float]] = []
+        """Values of the compiled model before the attachment: array, index and value."""
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the names in a compiled model; detaches if a link was removed."""
@@ -109,8 +110,8 @@ class AttachmentHandle:
         self.held = None
         if self.id >= 0:
             self._data.eq_active[self.id] = 0
-        for array, index, value in reversed(self._kept):
-            array[index] = value
+        for name, index, value in reversed(self._kept):
+            getattr(self._model, name)[index] = value
         self._kept = []
 
     def _take(self, held: Held) -> None:
@@ -123,7 +124,7 @@ class AttachmentHandle:
             if tree >= 0:
                 # While asleep, the link would not load its holder and would float after it is
                 # released.
-                self._set(model.tree_sleep_policy, tree, mujoco.mjtSleepPolicy.mjSLEEP_NEVER.value)
+                self._set("tree_sleep_policy", tree, mujoco.mjtSleepPolicy.mjSLEEP_NEVER.value)
                 self._data.tree_awake[tree] = 1
         if not held.collides:
             self._pass_through(body)
@@ -133,14 +134,15 @@ class AttachmentHandle:
         model = self._model
         geoms = set(np.flatnonzero(model.geom_bodyid == body).tolist())
         for geom in geoms:
-            self._set(model.geom_contype, geom, 0)
-            self._set(model.geom_conaffinity, geom, 0)
+            self._set("geom_contype", geom, 0)
+            self._set("geom_conaffinity", geom, 0)
         for pair in range(model.npair):
             if {int(model.pair_geom1[pair]), int(model.pair_geom2[pair])} & geoms:
-                self._set(model.pair_margin, pair, _NEVER)
+                self._set("pair_margin", pair, _NEVER)
 
-    def _set(self, array: Any, index: int, value: float) -> None:
-        self._kept.append((array, index, array[index]))
+    def _set(self, name: str, index: int, value: float) -> None:
+        array = getattr(self._model, name)
+        self._kept.append((name, index, array[index]))
         array[index] = value
 
     def _body(self, name: str) -> int:

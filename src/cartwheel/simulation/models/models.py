@@ -40,6 +40,11 @@ class Models(Run):
         self._population = Population(engine, self.forces, attach, compiler)
 
     @property
+    def population(self) -> Population:
+        """The models with their plugins."""
+        return self._population
+
+    @property
     def models(self) -> tuple[str, ...]:
         """Names of the models, in spawn order."""
         return tuple(self._population.residents)

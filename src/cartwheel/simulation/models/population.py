@@ -68,7 +68,7 @@ class Population:
         """
         self._engine.on_tasks.append(self.gather_tasks)
         self._engine.on_entries.append(self.compile)
-        self.house.behaviours = attach_world(self.house.part)
+        self.house.attach(attach_world)
         self.compile()
         self.house.part.spawned = True
         for diagnostic in self.house.part.diagnostics:
@@ -191,7 +191,7 @@ class Population:
         part = Part(self._engine, entry, namespace=namespace, frame_prefix=frame_prefix)
         resident = Resident(entry, part)
         try:
-            resident.behaviours = self.attach(resident.part)
+            resident.attach(self.attach)
         except BaseException:
             resident.close()
             raise

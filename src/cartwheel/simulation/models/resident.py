@@ -56,6 +56,8 @@ class Resident:
         self.entry = entry
         self.part = part
         self.behaviours: list[Behaviour] = []
+        self.created: tuple[Behaviour, ...] = ()
+        """All plugins that were created, also those that were disabled since."""
         self.drives: dict[str, MotorHandle] = {}
         """Motorised joints that no plugin drives."""
         self.start: Pose = entry.pose
@@ -95,6 +97,11 @@ class Resident:
             motors[joint] = replace(motor, max_effort=max(max_effort, _WEAKEST))
         return True
 
+    def attach(self, attach: Attach) -> None:
+        """Creates the plugins."""
+        self.behaviours = attach(self.part)
+        self.created = tuple(self.behaviours)
+
     def close(self) -> None:
         """Closes all plugins."""
         for behaviour in self.behaviours:
@@ -126,6 +133,7 @@ class Resident:
         for behaviour in self.behaviours:
             behaviour.drop_references()
         self.behaviours = []
+        self.created = ()
         self.drives.clear()
         self.part.handles.clear()
         self.part.tasks.clear()

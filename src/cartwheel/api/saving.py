@@ -1,0 +1,63 @@
+"""Saves, restores and resets the state of a world."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+
+from cartwheel.api.messaging import MessagingWorld
+from cartwheel.codes.world import RUN_NESTED
+from cartwheel.errors import SimulationError
+from cartwheel.saving import State, restore, save
+
+
+class SavingWorld(MessagingWorld):
+    """The part of `World` that saves and restores its state."""
+
+    def save(self) -> State:
+        """Saves the state: physics, plugins, controllers, commands and noise.
+
+        A world that restores the state continues bit for bit as this one: with the same commands,
+        it reaches the same states and publishes the same messages.
+
+        Subscribers and callbacks of the program, connections and recordings are not part of the
+        state; `State.left_out` lists them.
+
+        Raises:
+            SimulationError: The world is closed, or a callback of the same world called the method.
+        """
+        with self.used():
+            if self._running and self._runner == threading.get_ident():
+                raise _nested("saves")
+            return save(self.session, tuple(self._left_out()))
+
+    def restore(self, state: State) -> None:
+        """Restores a state of this world, or of a world that was made in the same way.
+
+        Models that were spawned since are deleted, and deleted models are spawned again. The state
+        can be restored any number of times. Subscribers of the program remain.
+
+        Args:
+            state: The result of `save`, which may have been pickled.
+
+        Raises:
+            SimulationError: The world is running or closed, or differs from the saved one. In the
+                latter case, do not use it further.
+            CartwheelError: A deleted model cannot be spawned again.
+        """
+        with self.used(change=True):
+            if self._running:
+                raise _nested("restores")
+            restore(self.session, state)
+
+    def _left_out(self) -> Iterator[str]:
+        if self._connections is not None:
+            yield "connections and recordings"
+
+
+def _nested(what: str) -> SimulationError:
+    return SimulationError(
+        f"the world {what} its state while it runs",
+        code=RUN_NESTED,
+        hint="Call save and restore between two runs.",
+    )

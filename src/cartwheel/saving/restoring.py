@@ -1,0 +1,184 @@
+"""Restores the state of a session."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.codes.world import STATE_MISMATCH
+from cartwheel.component import Component
+from cartwheel.errors import SimulationError
+from cartwheel.saving.changes import mismatch
+from cartwheel.saving.models import SavedModel, replace_entry
+from cartwheel.saving.reading import Reader
+from cartwheel.saving.state import Saved, State, objects, version
+from cartwheel.simulation.models.resident import Resident
+
+if TYPE_CHECKING:
+    from cartwheel.session import Session
+
+
+def restore(session: Session, state: State) -> None:
+    """Restores a state; the session continues as it did after the state was saved.
+
+    Models that were spawned since are deleted, and deleted models are spawned again. Call it on the
+    owner's thread, while the simulation does not advance.
+
+    Args:
+        session: The session that was saved, or one that was made in the same way.
+        state: The state.
+
+    Raises:
+        SimulationError: The session differs from the one that was saved.
+        CartwheelError: A model cannot be spawned again.
+    """
+    _check(session, state)
+    simulation = session.simulation
+    simulation.drain()
+    population, engine = simulation.population, simulation.engine
+    saved = session.originals.get(state)
+    before = engine.model
+    changed = _restore_world(session, state)
+    residents = _restore_models(session, state)
+    changed |= list(residents) != list(population.residents)
+    for model in state._models:
+        resident = residents[model.entry.name]
+        _restore_plugins(resident, model)
+        changed |= replace_entry(resident.entry, model.entry)
+        resident.start = model.start
+    population.residents = residents
+    reader = Reader(
+        state._nodes,
+        session.graph.types.message_class,
+        None if saved is None else saved.originals,
+    )
+    roots = _read(reader, session, state, saved)
+    reader.apply()
+    _put(session, roots)
+    physics = state._physics
+    if changed or not physics.fits(engine.model):
+        population.compile()
+        # Compiling bound the handles again, which acts on what was restored.
+        reader.apply()
+    if not physics.fits(engine.model):
+        raise mismatch("its links or joints differ")
+    physics.restore(engine.model, engine.data)
+    vars(engine).update(roots["engine"])
+    population.gather_tasks()
+    if engine.model is not before:
+        population.observe()
+    engine.rewinds += 1
+    for callback in simulation.on_reset:
+        callback()
+
+
+def _check(session: Session, state: State) -> None:
+    if state._version != version():
+        saved, now = (
+            f"Cartwheel {each[0]} with MuJoCo {each[1]}" for each in (state._version, version())
+        )
+        raise SimulationError(
+            f"the state was saved by {saved}, and this is {now}",
+            code=STATE_MISMATCH,
+            hint="Save the state again with these versions.",
+            values={"saved": saved, "now": now},
+        )
+    name = session.simulation.world.name
+    if state._world.name != name:
+        raise mismatch(f'the state is of world "{state._world.name}", and this is world "{name}"')
+
+
+def _restore_world(session: Session, state: State) -> bool:
+    """Restores gravity, lights and step length; returns whether the world must be compiled."""
+    engine = session.simulation.engine
+    world = replace(state._world, models=engine.world.models)
+    if world == engine.world:
+        return False
+    engine.world = world
+    return True
+
+
+def _restore_models(session: Session, state: State) -> dict[str, Resident]:
+    """Closes models that are not in the state, and creates those that are missing."""
+    simulation = session.simulation
+    population = simulation.population
+    wanted = {model.entry.name: model for model in state._models}
+    live = dict(population.residents)
+    for name, resident in population.residents.items():
+        model = wanted.get(name)
+        if model is None or not _same(resident, model):
+            simulation.forces.drop(name)
+            resident.close()
+            del live[name]
+    residents = {}
+    for name, model in wanted.items():
+        residents[name] = (
+            live[name]
+            if name in live
+            else session.admit(
+                model.entry.description,
+                name,
+                pose=model.start,
+                namespace=model.namespace,
+                frame_prefix=model.frame_prefix,
+                controllers=model.controllers,
+                package_path=model.package_path,
+            )
+        )
+    return residents
+
+
+def _same(resident: Resident, model: SavedModel) -> bool:
+    """Whether a model can be restored without being created again."""
+    alive = {
+        index for index, plugin in enumerate(resident.created) if plugin in resident.behaviours
+    }
+    part = resident.part
+    return alive.issuperset(model.plugins) and (part.namespace, part.frame_prefix) == (
+        model.namespace,
+        model.frame_prefix,
+    )
+
+
+def _restore_plugins(resident: Resident, model: SavedModel) -> None:
+    """Closes plugins that were disabled, and lets the others create their parts."""
+    created = resident.created
+    if len(created) <= max(model.plugins, default=-1):
+        raise mismatch(f'model "{model.entry.name}" has other plugins')
+    for index, plugin in enumerate(created):
+        if index not in model.plugins:
+            resident.end(plugin)
+    for index, structure in zip(model.plugins, model.structures, strict=True):
+        plugin = created[index]
+        if isinstance(plugin, Component):
+            plugin.rebuild(structure)
+
+
+def _read(reader: Reader, session: Session, state: State, saved: Saved | None) -> dict[str, Any]:
+    """Decodes all objects of a session; see `objects`."""
+    known = {} if saved is None else saved.residents
+    population = session.simulation.population
+    strange = {
+        resident.entry.name
+        for resident in population.residents.values()
+        if known.get(resident.entry.name) is not resident
+    }
+    live = dict(objects(session))
+    roots = {}
+    for name, encoded in state._roots.items():
+        model = name.rpartition(" ")[0]
+        roots[name] = reader.root(
+            encoded, live.get(name), own=saved is not None and model not in strange
+        )
+    reader.finish()
+    return roots
+
+
+def _put(session: Session, roots: dict[str, Any]) -> None:
+    """Sets the containers that may have been replaced since."""
+    for resident in session.simulation.population.everyone():
+        name = resident.entry.name
+        resident.part.tasks = roots[f"{name} tasks"]
+        resident.part.handles = roots[f"{name} handles"]
+        resident.drives = roots[f"{name} drives"]
+    session.graph.joint_inputs.replace(roots["joint inputs"])
