@@ -3,99 +3,88 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from tests.golden.commanding import Commands
+from tests.golden.adapter import controller_files
+from tests.golden.commanding import PERIOD, Commands
 from tests.golden.trial import resting_height
 
 import cartwheel as cw
+from cartwheel.description import load_robot
 from cartwheel.messages import encode_cdr
 
-PERIOD = 0.05
-LARGE = 500
-"""Degrees of freedom from which shorter times are simulated."""
 ROBOTS = Path(__file__).parents[1] / "golden" / "robots"
-IMAGES = ("/Image", "/CompressedImage", "/DisparityImage")
+DUE = {2: 0.5, 4: 1.5, 6: 2.5}
+"""Steps at which joints, topics and actions get their commands, with the times that `Commands` has
+for them."""
 
 
 class Journey:
     """A robot with commands under way, whose messages and states are hashed.
 
     Args:
-        file: A robot or a world.
-        images: Whether the images of cameras are subscribed to.
+        file: A robot, or a world with a robot.
         height: Height at which the robot is spawned, m; None if it is to rest on the ground.
     """
 
-    def __init__(self, file: Path, *, images: bool = True, height: float | None = None) -> None:
-        self.file, self._images = file, images
-        if file.suffix in (".world", ".sdf"):
+    def __init__(self, file: Path, height: float | None = None) -> None:
+        self.height = height or 0.0
+        if file.suffix == ".world":
             self.world = cw.World(file, lenient=True)
         else:
-            self.world = cw.World(lenient=True)
-            description = cw.load_robot(file) if hasattr(cw, "load_robot") else _load(file)
+            description = load_robot(file)
             self.height = resting_height(description) if height is None else height
-            from tests.golden.adapter import controller_files
-
+            self.world = cw.World(lenient=True)
             self.world.spawn(description, z=self.height, controllers=controller_files(description))
         self._sum = hashlib.sha256()
-        self.counts: dict[str, int] = {}
-        self._topics: set[str] = set()
-        self.listen()
+        self._counts: dict[str, int] = {}
+        for topic in self.world.graph.topics():
+            if topic.publishers:
+                self.world.graph.subscribe(
+                    topic.name, self._hasher(topic.name), type_name=topic.type, node="test"
+                )
         self._commands = Commands(self.world)
 
-    def listen(self) -> None:
-        """Subscribes to the topics that are new."""
-        for topic in self.world.graph.topics():
-            if topic.name in self._topics or not topic.publishers:
-                continue
-            self._topics.add(topic.name)
-            if not self._images and topic.type.endswith(IMAGES):
-                continue
-            self.world.graph.subscribe(
-                topic.name, self._hasher(topic.name), type_name=topic.type, node="test"
-            )
-
-    def _hasher(self, topic):
-        def add(message):
-            self._sum.update(topic.encode())
-            self._sum.update(bytes(encode_cdr(message)))
-            self.counts[topic] = self.counts.get(topic, 0) + 1
+    def _hasher(self, topic: str) -> Callable[[Any], None]:
+        def add(message: Any) -> None:
+            self._sum.update(topic.encode() + bytes(encode_cdr(message)))
+            self._counts[topic] = self._counts.get(topic, 0) + 1
 
         return add
 
     def set_out(self, seconds: float = 1.0) -> None:
         """Starts motions, goals and drives, and runs."""
         for step in range(round(seconds / PERIOD)):
-            self._commands.give({2: 0.5, 4: 1.5, 6: 2.5}.get(step, 0.5 + step * PERIOD))
+            self._commands.give(DUE.get(step, 0.5 + step * PERIOD))
             self.world.run(PERIOD)
 
-    def continue_(self, seconds: float = 0.5, start: float = 1.0) -> tuple[str, dict[str, int]]:
-        """Runs with further commands; returns a digest of the states and messages, and the number
-        of messages by topic.
+    def go_on(self, seconds: float = 0.5) -> tuple[str, dict[str, int]]:
+        """Runs with further commands.
+
+        Returns:
+            A digest of all states and messages, and the number of messages of each topic.
         """
-        self._sum, self.counts = hashlib.sha256(), {}
-        commands = Commands(self.world)
-        commands._done = {"joints", "topics", "actions", "topics back"}
+        self._sum, self._counts = hashlib.sha256(), {}
+        self._commands = Commands(self.world)
         for step in range(round(seconds / PERIOD)):
-            commands.give(start + step * PERIOD + (2.5 if step == 4 else 0.0))
+            # A drive at each step, and everything else while the commands of before are under way.
+            self._commands.give(5.0 if step == 4 else 0.4 + step * PERIOD / 4)
             self.world.run(PERIOD)
-            data = self.world.session.simulation.data
+            simulation = self.world.session.simulation
+            data = simulation.data
             for each in (data.qpos, data.qvel, data.qacc, data.ctrl, data.qfrc_applied):
                 self._sum.update(each.tobytes())
-            self._sum.update(str(self.world.session.simulation.time_ns).encode())
-        return self._sum.hexdigest(), self.counts
+            self._sum.update(str(simulation.time_ns).encode())
+        return self._sum.hexdigest(), self._counts
 
 
-def _load(file):
-    from cartwheel.description import load_robot
-
-    return load_robot(file)
-
-
-def continued(file: Path, state, seconds: float, images: bool, height: float | None):
-    """What `Journey.continue_` returns in a new world that restores a state."""
-    journey = Journey(file, images=images, height=height)
+def continued(
+    file: Path, state: cw.State, height: float, seconds: float
+) -> tuple[str, dict[str, int]]:
+    """What `Journey.go_on` returns in a new world that restores a state."""
+    journey = Journey(file, height)
     with journey.world as world:
         world.restore(state)
-        return journey.continue_(seconds)
+        return journey.go_on(seconds)

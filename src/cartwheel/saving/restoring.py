@@ -11,7 +11,7 @@ from cartwheel.errors import SimulationError
 from cartwheel.saving.changes import mismatch
 from cartwheel.saving.models import SavedModel, replace_entry
 from cartwheel.saving.reading import Reader
-from cartwheel.saving.state import Saved, State, objects, version
+from cartwheel.saving.state import Saved, State, objects, registered, version
 from cartwheel.simulation.models.resident import Resident
 
 if TYPE_CHECKING:
@@ -163,14 +163,12 @@ def _read(reader: Reader, session: Session, state: State, saved: Saved | None) -
         for resident in population.residents.values()
         if known.get(resident.entry.name) is not resident
     }
-    live = dict(objects(session))
     roots = {}
-    for name, encoded in state._roots.items():
-        model = name.rpartition(" ")[0]
-        roots[name] = reader.root(
-            encoded, live.get(name), own=saved is not None and model not in strange
-        )
-    reader.finish()
+    for places in (objects, registered):
+        for name, live in list(places(session)):
+            own = saved is not None and name.rpartition(" ")[0] not in strange
+            roots[name] = reader.root(state._roots[name], live, own=own)
+        reader.finish()
     return roots
 
 

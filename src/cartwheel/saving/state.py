@@ -99,8 +99,10 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
     simulation = session.simulation
     simulation.drain()
     writer = Writer()
-    roots = {name: writer.root(value, name) for name, value in list(objects(session))}
-    writer.finish()
+    roots = {}
+    for places in (objects, registered):
+        roots |= {name: writer.root(value, name) for name, value in places(session)}
+        writer.finish()
     state = State(
         version=version(),
         world=replace(simulation.world, models=()),
@@ -151,6 +153,10 @@ def objects(session: Session) -> Iterator[tuple[str, Any]]:
     for kind, shared in session.shared.objects():
         yield f"shared {kind}", shared
     yield "parameters", session.graph.parameters.tree
+
+
+def registered(session: Session) -> Iterator[tuple[str, Any]]:
+    """Yields lists of objects that `objects` refer to, of which some may not be listed."""
     yield "joint inputs", session.graph.joint_inputs.all()
 
 
