@@ -12,8 +12,11 @@ from tests.saving.journeys import ROBOTS, Journey, continued
 import cartwheel as cw
 
 CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROBOTS.parents[3] / "shared" / "corpus"))
-SOCKETS = {"ArduPilotPlugin.urdf", "libgazebo_mavlink_interface.urdf"}
-"""Robots with a connection to a flight controller, which is not saved."""
+CONNECTED = {
+    "ArduPilotPlugin.urdf": ["Conversation"],
+    "libgazebo_mavlink_interface.urdf": ["Px4Link"],
+}
+"""Robots with a connection to a flight controller, which is not saved, and its class."""
 
 SLOW, SHORT = {"large_model.urdf.xacro", "turtlebot3_waffle.urdf.xacro"}, (0.35, 0.1)
 """Robots with many links or large images, and the times for which they are simulated, s."""
@@ -46,7 +49,7 @@ def compare(file, elsewhere, times=(1.0, 0.5)):
 )
 def test_each_plugin_continues(name, elsewhere):
     left_out = compare(ROBOTS / name, elsewhere)
-    assert [each.rpartition(" (")[2] for each in left_out] == ["socket)"] * (name in SOCKETS)
+    assert [each.rpartition("(")[2].rstrip(")") for each in left_out] == CONNECTED.get(name, [])
 
 
 @pytest.mark.skipif(not CORPUS.is_dir(), reason=f"{CORPUS} does not exist")

@@ -1,6 +1,6 @@
 """The base class of everything that acts in a simulation: devices, plugins and controllers."""
 
-from cartwheel.component.component import Closable, Component
+from cartwheel.component.component import Closable, Component, is_connection
 from cartwheel.component.scope import Scope, Shared
 
-__all__ = ["Closable", "Component", "Scope", "Shared"]
+__all__ = ["Closable", "Component", "Scope", "Shared", "is_connection"]

@@ -31,6 +31,11 @@ class Closable(Protocol):
         """Releases the resource."""
 
 
+def is_connection(item: object) -> bool:
+    """Whether an item is a connection to another program, which a saved state does not contain."""
+    return bool(getattr(type(item), "is_connection", False))
+
+
 K = TypeVar("K", bound=Closable)
 D = TypeVar("D", bound="Component")
 
@@ -43,6 +48,9 @@ class Component:
     Args:
         scope: The component's model and names.
     """
+
+    _unsaved = frozenset({"_items"})
+    """Attributes that a saved state does not contain."""
 
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
@@ -116,8 +124,11 @@ class Component:
 
     @property
     def items(self) -> tuple[object, ...]:
-        """The component's publishers, subscriptions, services and other things that it keeps."""
-        return tuple(self._items)
+        """The component's publishers, subscriptions, services and other things that it keeps.
+
+        Connections to other programs are excluded.
+        """
+        return tuple(each for each in self._items if not is_connection(each))
 
     def components(self) -> Iterable[Component]:
         """The devices of the component, and what else is saved as a component of its own."""

@@ -371,6 +371,8 @@ class Reader:
                     old = getattr(target, name, _MISSING)
                 value = self._value(each, old, own=own)
                 if value is _BOUND:
+                    if old is _MISSING and type(each) is Left:
+                        raise mismatch(f"{node.cls.name}.{name} cannot be created")
                     kept.add(name)
                     continue
             (slotted if name in names else values)[name] = value

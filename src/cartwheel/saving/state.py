@@ -99,7 +99,7 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
     simulation = session.simulation
     simulation.drain()
     writer = Writer()
-    roots = {}
+    roots: dict[str, Any] = {}
     for places in (objects, registered):
         roots |= {name: writer.root(value, name) for name, value in places(session)}
         writer.finish()

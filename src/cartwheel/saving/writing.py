@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.component import Component
+from cartwheel.component import Component, is_connection
 from cartwheel.saving.encoded import (
     Constant,
     Items,
@@ -213,7 +213,7 @@ class Writer:
                 warnings.simplefilter("ignore")
                 content = pickle.dumps(value)
         except Exception:  # noqa: BLE001 - any class may refuse in its own way
-            self.left_out.append(f"{self._place()} ({type(value).__qualname__})")
+            self._leave_out(value)
             return self._structure(value)
         return self._new(value, Node(Kind.PICKLED, _constant(type(value)), content))
 
@@ -244,8 +244,7 @@ class Writer:
                 self._here = (index, "")
                 node.content = self.value(value.save())
                 node.attributes = {
-                    name: self.value(vars(value)[name])
-                    for name in ("_devices", "_items", "publishers")
+                    name: self.value(vars(value)[name]) for name in ("_devices", "publishers")
                 }
                 return
             case _:
@@ -289,6 +288,9 @@ class Writer:
             elif name not in excluded:
                 self._here = (index, f".{name}")
                 found[name] = self.value(each)
+            elif is_connection(each):
+                self._here = (index, f".{name}")
+                self._leave_out(each)
         return found
 
     def _cell(self, cell: types.CellType) -> Any:
@@ -297,6 +299,9 @@ class Writer:
         except ValueError:
             return Sentinel.UNSET
         return self.value(content)
+
+    def _leave_out(self, value: Any) -> None:
+        self.left_out.append(f"{self._place()} ({type(value).__qualname__})")
 
     def _place(self) -> str:
         """Where the current value was found: ``rosbots: libgazebo_ros_imu.so._socket``."""

@@ -62,6 +62,8 @@ class ArduPilot(Component):
         UnknownNameError: A joint or the link of the IMU does not exist.
     """
 
+    _unsaved = frozenset({"_autopilot", "_is_open"})
+
     def __init__(self, scope: Scope, config: ArduPilotConfig) -> None:
         super().__init__(scope)
         part = self.part

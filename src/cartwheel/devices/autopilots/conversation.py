@@ -38,6 +38,9 @@ class Conversation:
         reports: Receives what happens on the port.
     """
 
+    is_connection = True
+    """The state of a world does not contain connections to other programs."""
+
     def __init__(
         self, port: DatagramPort, *, lock_step: bool, most_missed: int, reports: Reports
     ) -> None:

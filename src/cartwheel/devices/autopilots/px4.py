@@ -101,6 +101,8 @@ class Px4(Component):
         UnknownNameError: A joint or the link does not exist.
     """
 
+    _unsaved = frozenset({"_vehicle", "_is_open"})
+
     def __init__(self, scope: Scope, config: Px4Config) -> None:
         super().__init__(scope)
         part = self.part

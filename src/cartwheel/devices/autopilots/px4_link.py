@@ -35,6 +35,9 @@ class Px4Link:
         reports: Receives what happens on the port.
     """
 
+    is_connection = True
+    """The state of a world does not contain connections to other programs."""
+
     def __init__(self, port: StreamPort, *, lock_step: bool, reports: Reports) -> None:
         self._port = port
         self._lock_step = lock_step
