@@ -63,7 +63,7 @@ def restore(session: Session, state: State) -> None:
     if not physics.fits(engine.model):
         raise mismatch("its links or joints differ")
     physics.restore(engine.model, engine.data)
-    vars(engine).update(roots["engine"])
+    engine.restore(state._engine)
     population.gather_tasks()
     if engine.model is not before:
         population.observe()

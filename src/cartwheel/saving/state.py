@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from cartwheel.simulation import Simulation
     from cartwheel.simulation.models.resident import Resident
 
-UNSAVED_ENGINE = frozenset({"rewinds", "touches"})
-"""Counters of changes, which only grow."""
-
 
 class State:
     """The state of a world; `World.save` returns it and `World.restore` takes it.
@@ -40,6 +37,7 @@ class State:
         time_ns: int,
         roots: dict[str, Any],
         nodes: list[Node],
+        engine: dict[str, Any],
         physics: Physics,
         left_out: tuple[str, ...],
     ) -> None:
@@ -49,6 +47,7 @@ class State:
         self._time_ns = time_ns
         self._roots = roots
         self._nodes = nodes
+        self._engine = engine
         self._physics = physics
         self._left_out = left_out
 
@@ -113,6 +112,7 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
         time_ns=simulation.time_ns,
         roots=roots,
         nodes=writer.nodes,
+        engine=simulation.engine.save(),
         physics=Physics(simulation.model, simulation.data),
         left_out=(*left_out, *_subscribers(session), *writer.left_out),
     )
@@ -138,15 +138,6 @@ def objects(session: Session) -> Iterator[tuple[str, Any]]:
     population = simulation.population
     for resident in population.everyone():
         yield from _objects_of(resident)
-    engine = simulation.engine
-    yield (
-        "engine",
-        {
-            name: value
-            for name, value in vars(engine).items()
-            if name not in UNSAVED_ENGINE and isinstance(value, int | float | bytes)
-        },
-    )
     yield "forces", simulation.forces
     yield "watch", population.watch
     yield "separation", population.separation

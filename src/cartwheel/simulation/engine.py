@@ -161,6 +161,24 @@ class Engine:
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._located = self._refreshed = b""
 
+    def save(self) -> dict[str, Any]:
+        """The engine's own numbers, without model and data, for `restore`."""
+        return {
+            name: value
+            for name, value in vars(self).items()
+            if isinstance(value, int | float | bytes) and name != "rewinds"
+        }
+
+    def restore(self, saved: dict[str, Any]) -> None:
+        """Sets the saved numbers, after the model and the data were restored."""
+        # Signatures of before must not return for other states.
+        changes, before = self._changes + 1, saved["_changes"].to_bytes(8)
+        vars(self).update(saved, _changes=changes)
+        now = self.signature()
+        for name in ("_located", "_refreshed"):
+            if saved[name] == now.removesuffix(changes.to_bytes(8)) + before:
+                setattr(self, name, now)
+
     def note_change(self) -> None:
         """Makes the next `refresh` compute a forward pass, after a change of the model.
 
