@@ -32,12 +32,14 @@ def refill_dict(target: dict[Any, Any], items: dict[Any, Any]) -> None:
 
 
 def set_slots(target: Any, values: dict[str, Any], removed: Sequence[str]) -> None:
-    """Sets some slots of an object and clears others, also if it is frozen."""
+    """Sets some slots of an object and clears others; a frozen object has all its slots."""
+    frozen = getattr(getattr(target, "__dataclass_params__", None), "frozen", False)
+    put = object.__setattr__ if frozen else setattr
     for name, value in values.items():
-        object.__setattr__(target, name, value)
+        put(target, name, value)
     for name in removed:
         if hasattr(target, name):
-            object.__delattr__(target, name)
+            delattr(target, name)
 
 
 def set_attributes(target: Any, values: dict[str, Any], kept: set[str]) -> None:

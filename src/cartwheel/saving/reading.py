@@ -236,8 +236,8 @@ class Reader:
                 return live
             return node.content.copy()
         if node.kind is Kind.MESSAGE:
-            cls = self._message_class(node.cls.name)
-            return cls.__new__(cls)
+            assert node.attributes is not None
+            return self._message_class(node.cls.name)(**dict.fromkeys(node.attributes))
         assert node.attributes is not None
         cls = self._constant(node.cls, type(live))
         values = {
