@@ -6,9 +6,9 @@ import contextlib
 import weakref
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from cartwheel.codes.running import CONTROLLER_NOT_STARTED
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED, CONTROLLERS_NOT_NAMED
 from cartwheel.component import Shared
 from cartwheel.description.files.package_files import SimulationPackages
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -16,6 +16,8 @@ from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
 from cartwheel.dialects.ros_control.files import ControllerFiles
+from cartwheel.dialects.ros_control.selection import selection_near
+from cartwheel.dialects.ros_control.suggestion import lacks_controllers, suggested
 from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
@@ -133,7 +135,7 @@ class Session:
         pose: Pose | None = None,
         namespace: str = "/",
         frame_prefix: str = "",
-        controllers: Sequence[Path] = (),
+        controllers: Sequence[Path] | Literal["auto"] | None = (),
         package_path: Sequence[Path] = (),
     ) -> str:
         """Spawns a model as `Simulation.spawn` does; in strict mode, warnings are errors.
@@ -147,7 +149,9 @@ class Session:
             namespace: Default namespace of topics and services, as "/" in ROS 1's spawn_model. ""
                 leaves the default to each plugin.
             frame_prefix: Prefix of frame names.
-            controllers: YAML files whose controllers the model's controller manager starts.
+            controllers: YAML files whose controllers the model's controller manager starts. "auto"
+                selects those that the launch files of the model's package start. None selects
+                none, with a warning if the controller manager then has none.
             package_path: Folders to search for the packages of message types first.
 
         Raises:
@@ -156,26 +160,39 @@ class Session:
         if self._packages.add(description.origin.file, package_path):
             self.types.forget_missing()
         with self.spawning():
+            if controllers is None and lacks_controllers(description):
+                self.simulation.engine.report(_no_controllers(description))
+            names: tuple[str, ...] = ()
+            if controllers == "auto":
+                selected = selection_near(description, package_path)
+                controllers, names = selected.files, selected.names
+            files = tuple(Path(file) for file in controllers or ())
             spawned = self._spawn(
                 description,
-                controllers,
+                files,
+                names,
                 name=name,
                 pose=pose,
                 namespace=namespace,
                 frame_prefix=frame_prefix,
             )
-        self.spawned[spawned] = tuple(controllers), tuple(package_path)
+        self.spawned[spawned] = files, tuple(package_path)
         return spawned
 
     def _spawn(
-        self, description: RobotDescription, controllers: Sequence[Path], **options: Any
+        self,
+        description: RobotDescription,
+        controllers: Sequence[Path],
+        names: Sequence[str],
+        **options: Any,
     ) -> str:
         files = self.shared.get(ControllerFiles)
-        files.paths = tuple(controllers)
+        files.paths, files.names = tuple(controllers), frozenset(names)
         try:
             spawned = self.simulation.spawn(description, **options)
         finally:
             left = files.take()
+            files.names = frozenset()
         if left:
             self.simulation.withdraw(spawned)
             raise PluginError(
@@ -315,6 +332,20 @@ class Session:
             clock=stamp(self.simulation.time_ns)
         )
         self._clock.publish(message)
+
+
+def _no_controllers(robot: RobotDescription) -> Diagnostic:
+    """The warning for a robot with a controller manager without controllers."""
+    files = tuple(str(file) for file in suggested(robot))
+    listed = f": {', '.join(files)}" if files else ""
+    return CONTROLLERS_NOT_NAMED.diagnostic(
+        f'robot "{robot.name}" has a controller manager, but no controllers are named, so nothing '
+        "drives its joints",
+        origin=robot.origin,
+        hint='Pass controllers="auto", or the controller files'
+        f"{listed}. Pass controllers=() to load controllers later.",
+        values={"model": robot.name, "files": files},
+    )
 
 
 def _ignore(_: Diagnostic) -> None:

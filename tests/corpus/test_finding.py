@@ -3,7 +3,7 @@
 import pytest
 
 from cartwheel.corpus import robots_in, survey
-from cartwheel.corpus.launches import LaunchUse
+from cartwheel.description.launches import LaunchUse
 
 LINK = (
     '<link name="{}"><inertial><mass value="1"/>'

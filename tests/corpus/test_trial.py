@@ -23,8 +23,8 @@ from cartwheel.codes.robot import (
 )
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.corpus import try_robot
-from cartwheel.corpus.launches import launches_near
 from cartwheel.corpus.trial import _listened
+from cartwheel.description.launches import launches_near
 
 INERTIA = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
 BOX = (

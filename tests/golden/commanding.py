@@ -160,7 +160,7 @@ def velocity(time: float) -> tuple[float, float, float]:
 
 def fill(message: Any, value: float) -> None:
     """Sets the numbers of a message, except for its header."""
-    for name, kind in message.__annotations__.items():
+    for name in message.__annotations__:
         given = getattr(message, name)
         if name in ("__msgtype__", "header", "layout"):
             continue
@@ -172,7 +172,7 @@ def fill(message: Any, value: float) -> None:
             setattr(message, name, 1 if value > 0 else 0)
         elif isinstance(given, str):
             setattr(message, name, "1" if value > 0 else "0")
-        elif isinstance(given, np.ndarray) and not given.size and "float" in str(kind):
+        elif isinstance(given, np.ndarray) and not given.size and given.dtype.kind == "f":
             setattr(message, name, np.full(1, value, dtype=given.dtype))
         elif hasattr(given, "__msgtype__"):
             fill(given, value)

@@ -170,7 +170,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         frame_prefix: str = "",
         arguments: Mapping[str, str] | None = None,
         package_path: str | Path | Sequence[str | Path] = (),
-        controllers: str | Path | Sequence[str | Path] = (),
+        controllers: Literal["auto"] | str | Path | Sequence[str | Path] | None = None,
     ) -> Model:
         """Spawns a model.
 
@@ -190,7 +190,10 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             frame_prefix: Prefix of the robot's frames, such as ``left``, as ROS 1's tf_prefix.
             arguments: Arguments of the xacro file.
             package_path: Folders to search for packages first.
-            controllers: YAML files for ros_control or ros2_control, whose controllers are started.
+            controllers: YAML files for ros_control or ros2_control, whose controllers are started;
+                ``"auto"`` for the controllers that the launch files of the robot's package start.
+                None starts only those that the description names, with a warning if a controller
+                manager then has none; an empty list gives no warning.
 
         Raises:
             DescriptionError: The file cannot be used.
@@ -210,7 +213,6 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 arguments=arguments,
                 package_path=folders,
             )
-        files = [Path(file) for file in several(controllers)]
         with self.used(change=True):
             spawned = self.session.spawn(
                 robot,
@@ -218,7 +220,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 pose=place,
                 namespace=namespace,
                 frame_prefix=frame_prefix,
-                controllers=files,
+                controllers=_files(controllers),
                 package_path=folders,
             )
             return Model(self, spawned)
@@ -252,6 +254,17 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         """Resets simulation time and all models to their initial state."""
         with self.used(change=True) as simulation:
             simulation.reset()
+
+
+def _files(
+    controllers: str | Path | Sequence[str | Path] | None,
+) -> Sequence[Path] | Literal["auto"] | None:
+    """The controller files that a program gives."""
+    if controllers is None:
+        return None
+    if controllers == "auto":
+        return "auto"
+    return [Path(file) for file in several(controllers)]
 
 
 def _place(

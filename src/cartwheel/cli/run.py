@@ -53,7 +53,8 @@ def run(
         list[Path] | None,
         help.option(
             "--controllers FILE",
-            "Start the controllers in this ros_control or ros2_control YAML file. Can be repeated.",
+            "Start the controllers in this ros_control or ros2_control YAML file. Can be repeated. "
+            "auto selects the controllers that the launch files of the robot's package start.",
             help.ROBOT,
         ),
     ] = None,

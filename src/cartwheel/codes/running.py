@@ -90,3 +90,9 @@ WHEELS_WITHOUT_ROLLERS = Code(
 SIMULATION_UNRESPONSIVE = Code(
     "CW525", "simulation-unresponsive", "error", "the simulation does not respond to a request"
 )
+CONTROLLERS_NOT_NAMED = Code(
+    "CW526",
+    "controllers-not-named",
+    "warning",
+    "a robot has a controller manager, but no controllers",
+)

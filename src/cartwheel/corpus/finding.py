@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.codes.files import XACRO_NAME_UNKNOWN
-from cartwheel.corpus.launches.use import SUFFIXES, LaunchUse
 from cartwheel.description.elements.node import Node
 from cartwheel.description.files.named_files import find_description
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.use import SUFFIXES, LaunchUse
 from cartwheel.description.loading import open_description, understand
 from cartwheel.errors import DescriptionError
 

@@ -16,11 +16,11 @@ from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
-from cartwheel.corpus.launches import LaunchUse, chosen, controllers_for, launches_near, root_of
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
+from cartwheel.description.launches import LaunchUse, chosen, launches_near, root_of
 from cartwheel.description.model import RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -29,8 +29,8 @@ from cartwheel.dialects.gz.joint_controller import (
     JointPositionParameters,
 )
 from cartwheel.dialects.ros_control.controller import Controller
-from cartwheel.dialects.ros_control.files import ControllerFiles, for_robot, read_parameters
-from cartwheel.dialects.ros_control.suggestion import suggested
+from cartwheel.dialects.ros_control.files import ControllerFiles
+from cartwheel.dialects.ros_control.selection import selection
 from cartwheel.dialects.tags import read
 from cartwheel.dialects.world_plugins import BUILT_IN
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
@@ -85,13 +85,10 @@ def try_robot(
             verdict, error=str(error), failure=reason, faults=(Fault(test="load", reason=reason),)
         )
     verdict = _described(verdict, robot)
-    named: list[Path] = []
-    starter: LaunchUse | None = None
+    spawned: tuple[str, ...] = ()
     if controllers is None:
-        starter = controllers_for(file, use, launches)
-        named = suggested(robot, among=starter.controllers) if starter is not None else []
-        controllers = [each for each in named or suggested(robot) if _is_complete(each, robot)]
-    spawned = starter.spawned if starter is not None and (named or not controllers) else ()
+        selected = selection(robot, use, launches)
+        controllers, spawned = selected.files, selected.names
     try:
         with World(lenient=True) as world:
             pose = _place(robot)
@@ -167,15 +164,6 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
         ),
         diagnostics=robot.diagnostics,
     )
-
-
-def _is_complete(path: Path, robot: RobotDescription) -> bool:
-    """Whether a controller file contains no arguments that only a launch file could set."""
-    try:
-        for_robot(read_parameters(path), path, robot)
-    except PluginError:
-        return False
-    return True
 
 
 def _place(robot: RobotDescription) -> Pose:

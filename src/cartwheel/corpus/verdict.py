@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel.corpus.faults import MOTION, Fault
-from cartwheel.corpus.launches import LaunchUse
+from cartwheel.description.launches import LaunchUse
 from cartwheel.errors import Diagnostic
 
 TOLERANCE = 0.05

@@ -13,8 +13,8 @@ from typing import Any
 from cartwheel.cli.console import note, paint, say, table
 from cartwheel.codes.command import INTERNAL_FAULT, NO_ROBOTS
 from cartwheel.corpus import Fault, Kind, Survey, Verdict, survey, try_robot
-from cartwheel.corpus.launches import LaunchUse, launches_near
 from cartwheel.description.elements.xml import shown_path
+from cartwheel.description.launches import LaunchUse, launches_near
 from cartwheel.errors import CartwheelError
 
 SCHEMA = 2

@@ -7,6 +7,7 @@ import gc
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cartwheel.assembly.assembly import Assembly
@@ -92,7 +93,14 @@ def _simulate(options: Options, assembly: Assembly, report: Report) -> None:
         )
     if robot is not None:
         pose = placed(robot.pose, options.place)
-        name = session.spawn(robot, name=options.model, pose=pose, controllers=options.controllers)
+        automatic = options.controllers == (Path("auto"),)
+        name = session.spawn(
+            robot,
+            name=options.model,
+            pose=pose,
+            controllers="auto" if automatic else options.controllers,
+            package_path=options.package_path,
+        )
     session.report_unbridged()
     where = world_title(world)
     title = f"{name} in {where}" if name else where

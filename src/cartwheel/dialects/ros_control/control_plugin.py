@@ -101,10 +101,10 @@ class ControlPlugin(Plugin[Any]):
         """Loads and starts controllers. One that cannot be started is reported and skipped."""
         manager = self.manager
         assert manager is not None
-        loaded = self.shared.get(ControllerFiles).loaded
-        for entry in in_order(list(entries)):
+        files = self.shared.get(ControllerFiles)
+        for entry in in_order(files.wanted(entries)):
             try:
-                loaded.append(manager.load_entry(entry))
+                files.loaded.append(manager.load_entry(entry))
                 manager.switch([entry.name], [])
             except CartwheelError as error:
                 self.part.report(

@@ -202,6 +202,7 @@ class Controller(Component):
 
         topic = self.resolve(topic)
         self.keep(self.graph.subscribe(topic, receive, type_name=type_name, node=self.node))
+        self.part.topics.add(topic)
 
     def accept_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
         """Accepts manual joint positions while the controller runs; see `JointInput`."""

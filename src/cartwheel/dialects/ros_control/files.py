@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -55,6 +55,8 @@ class ControllerFiles:
 
     def __init__(self) -> None:
         self.paths: tuple[Path, ...] = ()
+        self.names: frozenset[str] = frozenset()
+        """Names of the controllers to start, if the files contain all of them; empty: all."""
         self.loaded: list[Controller] = []
         """Controllers that managers have loaded from files."""
 
@@ -62,6 +64,13 @@ class ControllerFiles:
     def started(self) -> list[Controller]:
         """The loaded controllers that run. One whose joint is already commanded does not start."""
         return [controller for controller in self.loaded if controller.running]
+
+    def wanted(self, entries: Iterable[ControllerEntry]) -> list[ControllerEntry]:
+        """Returns the controllers among the files' entries that are started."""
+        listed = list(entries)
+        if not self.names or not self.names <= {entry.name for entry in listed}:
+            return listed
+        return [entry for entry in listed if entry.name in self.names]
 
     def take(self) -> tuple[Path, ...]:
         """Returns the files and clears them, so that only one robot uses them."""

@@ -53,13 +53,19 @@ def suggested(robot: RobotDescription, among: Sequence[Path] | None = None) -> l
     joints = [
         each.name for each in robot.joints if each.type != "fixed" and each.name not in driven
     ]
-    managers = [tag for tag in robot.plugins if _manager(tag)]
-    if not managers or any(_has_files(tag) for tag in managers):
+    if not lacks_controllers(robot):
         return []
+    managers = [tag for tag in robot.plugins if _manager(tag)]
     ros2 = _manager(managers[0]) != ROS_CONTROL
     if among is not None:
         return with_controllers(among, joints, ros2=ros2)
     return files_for(Path(robot.origin.file), joints, ros2=ros2)
+
+
+def lacks_controllers(robot: RobotDescription) -> bool:
+    """Whether the robot has a controller manager whose tag contains no existing file."""
+    managers = [tag for tag in robot.plugins if _manager(tag)]
+    return bool(managers) and not any(_has_files(tag) for tag in managers)
 
 
 def files_for(robot: Path, joints: Sequence[str], *, ros2: bool = False) -> list[Path]:

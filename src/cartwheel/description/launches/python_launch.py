@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from cartwheel.corpus.launches.use import UNKNOWN, Facts
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.use import UNKNOWN, Facts
 
 _JOINS = frozenset({"join", "joinpath", "PathJoinSubstitution"})
 _SHARES = frozenset(

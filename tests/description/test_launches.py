@@ -2,7 +2,7 @@
 
 import pytest
 
-from cartwheel.corpus.launches import chosen, launches_near
+from cartwheel.description.launches import chosen, launches_near
 
 ROBOT = '<robot name="arm"><link name="base"/></robot>'
 INCLUDED = """import os

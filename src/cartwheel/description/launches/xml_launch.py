@@ -8,9 +8,9 @@ import shlex
 from collections.abc import Mapping
 from pathlib import Path
 
-from cartwheel.corpus.launches.use import UNKNOWN, Facts
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
+from cartwheel.description.launches.use import UNKNOWN, Facts
 
 _CALL = re.compile(r"\$\(\s*([\w-]+)\s*([^()]*)\)")
 _FALSE = frozenset({"false", "0", "False"})

@@ -7,11 +7,11 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from cartwheel.corpus.launches.python_launch import read_python
-from cartwheel.corpus.launches.use import UNKNOWN, Facts, LaunchUse
-from cartwheel.corpus.launches.xml_launch import read_xml
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.launches.python_launch import read_python
+from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse
+from cartwheel.description.launches.xml_launch import read_xml
 from cartwheel.errors import DescriptionError
 
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})

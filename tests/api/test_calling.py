@@ -1,0 +1,231 @@
+"""Services and actions that a program uses."""
+
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from tests.coded import raises
+from tests.dialects.ros_control.arms import (
+    ROS1,
+    beam,
+    robot,
+    ros2_joint,
+    ros2_parameters,
+    ros2_plugin,
+    ros2_system,
+    transmission,
+)
+from tests.dialects.ros_control.controllers.test_gripper import BODY
+
+import cartwheel as cw
+from cartwheel.codes.graph import ACTION_UNKNOWN, FIELD_UNKNOWN, SERVICE_UNKNOWN
+from cartwheel.codes.world import (
+    NUMBER_OUT_OF_RANGE,
+    RUN_NESTED,
+    SIMULATION_CLOSED,
+    WAIT_TIMED_OUT,
+)
+from cartwheel.errors import CartwheelError, UnknownNameError
+
+JOINTS = ("a_joint", "b_joint")
+FOLLOW = "/arm/follow_joint_trajectory"
+GRIP = "/gripper/gripper_cmd"
+
+
+def spawn(world: cw.World, folder: Path, text: str, controllers: dict[str, Any]) -> cw.Model:
+    (folder / "robot.urdf").write_text(text)
+    if not controllers:
+        return world.spawn(folder / "robot.urdf")
+    (folder / "controllers.yaml").write_text(yaml.safe_dump(controllers))
+    return world.spawn(folder / "robot.urdf", controllers=folder / "controllers.yaml")
+
+
+def arm(world: cw.World, folder: Path, ros: int) -> cw.Model:
+    """An arm with two joints and a trajectory controller, of ros_control or ros2_control."""
+    body = beam("a", "world") + beam("b", "world", origin="0 1 1")
+    if ros == 1:
+        text = robot(body + "".join(transmission(name, "Position") for name in JOINTS), ROS1)
+        kind = "position_controllers/JointTrajectoryController"
+        return spawn(world, folder, text, {"arm": {"type": kind, "joints": list(JOINTS)}})
+    file = folder / "ros2.yaml"
+    values = {
+        "type": "joint_trajectory_controller/JointTrajectoryController",
+        "joints": list(JOINTS),
+        "command_interfaces": ["position"],
+        "state_interfaces": ["position", "velocity"],
+    }
+    file.write_text(yaml.safe_dump(ros2_parameters(arm=values)))
+    system = ros2_system(*(ros2_joint(name) for name in JOINTS))
+    text = robot(body + system, ros2_plugin(file))
+    return spawn(world, folder, text, {})
+
+
+def trajectory(*points: tuple[float, list[float]]) -> dict[str, Any]:
+    return {
+        "joint_names": list(JOINTS),
+        "points": [
+            {"positions": positions, "time_from_start": seconds} for seconds, positions in points
+        ],
+    }
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+def test_an_arm_follows_a_trajectory(tmp_path: Path, ros: int) -> None:
+    with cw.World("empty") as world:
+        model = arm(world, tmp_path, ros)
+        assert FOLLOW in world.actions
+        world.run(0.5)
+        goal = world.send_goal(FOLLOW, trajectory=trajectory((1.0, [0.5, -0.3])))
+        assert goal.status == "active"
+        assert not goal.done
+        result = goal.result(timeout=5.0)
+        assert (goal.status, goal.done) == ("succeeded", True)
+        assert result.error_code == 0
+        # The controller ends the goal after 1 s, when the joints have settled within its tolerance.
+        assert 1.5 <= world.time < 1.6
+        assert [model.joint(name) for name in JOINTS] == pytest.approx([0.5, -0.3], abs=0.02)
+        assert goal.result() is result
+        assert len(goal.feedbacks) > 10
+        assert goal.feedback is goal.feedbacks[-1]
+        assert list(goal.feedback.joint_names) == list(JOINTS)
+        goal.cancel()
+        assert goal.status == "succeeded"
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+def test_a_goal_is_cancelled(tmp_path: Path, ros: int) -> None:
+    with cw.World("empty") as world:
+        arm(world, tmp_path, ros)
+        world.run(0.5)
+        goal = world.send_goal(FOLLOW, trajectory=trajectory((10.0, [0.5, -0.3])))
+        world.run(1.0)
+        assert goal.status == "active"
+        goal.cancel()
+        assert goal.status == "cancelled"
+        assert goal.result() is not None
+
+
+def test_a_new_goal_replaces_the_old_one_and_bad_ones_are_rejected(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        arm(world, tmp_path, 1)
+        world.run(0.5)
+        first = world.send_goal(FOLLOW, trajectory=trajectory((10.0, [0.5, -0.3])))
+        second = world.send_goal(FOLLOW, {"trajectory": trajectory((0.5, [0.1, 0.1]))})
+        assert (first.status, second.status) == ("cancelled", "active")
+        second.result()
+        assert second.status == "succeeded"
+        wrong = world.send_goal(FOLLOW, trajectory={"joint_names": ["elbow"]})
+        assert wrong.status == "rejected"
+        assert wrong.result().error_code != 0
+
+
+def test_a_goal_that_takes_too_long(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        arm(world, tmp_path, 1)
+        world.run(0.5)
+        goal = world.send_goal(FOLLOW, trajectory=trajectory((10.0, [0.5, -0.3])))
+        with raises(WAIT_TIMED_OUT, cw.TimedOutError, action=FOLLOW, status="active", timeout=0.5):
+            goal.result(timeout=0.5)
+        assert world.time == 1.0
+        with raises(NUMBER_OUT_OF_RANGE):
+            goal.result(timeout=-1)
+        with raises(ACTION_UNKNOWN, UnknownNameError, meant=FOLLOW):
+            world.send_goal("/arm/follow_joint_trajectry")
+        with raises(FIELD_UNKNOWN):
+            world.send_goal(FOLLOW, trajctory={})
+    with raises(SIMULATION_CLOSED):
+        world.send_goal(FOLLOW)
+
+
+def test_a_gripper_closes(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        text = robot(BODY.format(stop="") + transmission("finger_joint", "Position"), ROS1)
+        kind = "position_controllers/GripperActionController"
+        values = {"type": kind, "joint": "finger_joint", "goal_tolerance": 0.002}
+        model = spawn(world, tmp_path, text, {"gripper": values})
+        world.run(0.1)
+        goal = world.send_goal(GRIP, command_position=0.2, command_max_effort=20.0)
+        result = goal.result(timeout=5.0)
+        assert goal.status == "succeeded"
+        assert result.reached_goal
+        assert model.joint("finger_joint") == pytest.approx(0.2, abs=0.002)
+
+
+def test_a_callback_may_send_a_goal(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        arm(world, tmp_path, 1)
+        goals: list[cw.Goal] = []
+        command = trajectory((0.5, [0.5, -0.3]))
+        world.on(0.5, lambda: goals.append(world.send_goal(FOLLOW, trajectory=command)))
+        world.run(2.0)
+        assert [goal.status for goal in goals] == ["succeeded"]
+
+
+def test_services_respond_at_once() -> None:
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        assert "/imu/service" in world.services
+        response = world.call("/imu/service")
+        assert response.__msgtype__ == "std_srvs/srv/Empty_Response"
+        assert world.time == 0.0
+        with raises(SERVICE_UNKNOWN, UnknownNameError, meant="/imu/service"):
+            world.call("/imu/servce")
+        with raises(FIELD_UNKNOWN):
+            world.call("/imu/service", number=1)
+        with raises(NUMBER_OUT_OF_RANGE):
+            world.call("/imu/service", timeout=-1.0)
+    with raises(SIMULATION_CLOSED):
+        world.call("/imu/service")
+
+
+def test_commands_before_a_call_come_first(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        arm(world, tmp_path, 1)
+        world.run(0.1)
+        load = "/controller_manager/unload_controller"
+        switch = "/controller_manager/switch_controller"
+        stopped = world.call(switch, stop_controllers=["arm"], strictness=2)
+        assert stopped.ok
+        listed = world.call("/controller_manager/list_controllers")
+        assert [(each.name, each.state) for each in listed.controller] == [("arm", "stopped")]
+        assert world.call(load, name="arm").ok
+        assert world.actions == ()
+
+
+def test_a_service_that_works_on_a_thread() -> None:
+    with cw.World("empty") as world:
+        graph, simulation = world.graph, world.session.simulation
+        kind = "std_srvs/srv/Trigger"
+
+        def slow(request: Any) -> Any:
+            # As services that spawn models: the thread waits for the simulation's thread.
+            text = simulation.call(lambda: str(world.models)).result(30)
+            return graph.types.message_class(f"{kind}_Response")(success=True, message=text)
+
+        service = graph.serve("/slow", kind, slow, threaded=True)
+        response = world.call("/slow")
+        assert response.message == str(world.models)
+        refused: list[CartwheelError] = []
+
+        def call() -> None:
+            try:
+                world.call("/slow")
+            except CartwheelError as error:
+                refused.append(error)
+
+        world.on(0.1, call)
+        world.run(0.2)
+        assert [error.code for error in refused] == [RUN_NESTED]
+        graph.withdraw(service)
+
+        def endless(request: Any) -> Any:
+            simulation.call(lambda: None).result(30)
+            waiting.wait(30)
+
+        waiting = threading.Event()
+        graph.serve("/endless", kind, endless, threaded=True)
+        with raises(WAIT_TIMED_OUT, service="/endless"):
+            world.call("/endless", timeout=0.2)
+        waiting.set()
