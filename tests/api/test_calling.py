@@ -206,7 +206,7 @@ def test_a_service_that_works_on_a_thread() -> None:
 
         service = graph.serve("/slow", kind, slow, threaded=True)
         response = world.call("/slow")
-        assert response.message == str(world.models)
+        assert response.success
         refused: list[CartwheelError] = []
 
         def call() -> None:

@@ -419,7 +419,7 @@ def test_callbacks_read_the_step_that_called_them(make, rosbots):
 
     world.subscribe("/imu/data", note)
     world.run(1.0)
-    assert len(read) == 30
+    assert len(read) == 31
     for message, exact in read[5:]:
         # The cart stands still in an upright position, so both frames have the same acceleration.
         assert message.linear_acceleration.z == pytest.approx(exact + G, abs=1e-6)

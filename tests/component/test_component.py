@@ -1,6 +1,7 @@
 """Components hold what they advertise, also those that fail."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import pytest
 
@@ -27,7 +28,9 @@ def graph():
 
 @pytest.fixture
 def scope(graph):
-    return Scope(part=None, shared=Shared(graph), node="n", title="t", origin=None)
+    return Scope(
+        part=SimpleNamespace(topics=set()), shared=Shared(graph), node="n", title="t", origin=None
+    )
 
 
 def names(graph):

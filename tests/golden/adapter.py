@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,7 @@ __all__ = [
     "now_ns",
     "request",
     "robots_in",
+    "run_with",
     "subscribe",
     "to_dict",
     "tree",
@@ -58,6 +60,27 @@ def compiled(world: World) -> tuple[Any, Any]:
     simulation = world.session.simulation
     simulation.refresh()
     return simulation.model, simulation.data
+
+
+def run_with(
+    world: World, times: Sequence[float], act: Callable[[float], None], look: Callable[[], None]
+) -> None:
+    """Runs from each time to the next, with an action at each, before the step that starts there.
+
+    Args:
+        world: The world, at the first of the times.
+        times: At equal distances, s.
+        act: Called with each time.
+        look: Called before each run.
+    """
+    if hasattr(world, "on"):
+        for time in times:
+            world.on(time, partial(act, time))
+    for time in times:
+        look()
+        if not hasattr(world, "on"):
+            act(time)
+        world.run(times[1] - times[0])
 
 
 def now_ns(world: World) -> int:

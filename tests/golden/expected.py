@@ -6,7 +6,7 @@ import json
 from collections import Counter
 from typing import Any
 
-from .adapter import CartwheelError, World, controller_files, load_robot
+from .adapter import CartwheelError, World, controller_files, load_robot, run_with
 from .commanding import PERIOD, Commands
 from .subjects import HERE, Subject, repository_subjects
 from .trial import Ears, state
@@ -45,10 +45,8 @@ def brief(subject: Subject) -> dict[str, Any]:
         ears, commands = Ears(world, images=1, summed=False), Commands(world)
         error = ""
         try:
-            for step in range(round(SECONDS / PERIOD)):
-                ears.listen()
-                commands.give(step * PERIOD * _QUICKER)
-                world.run(PERIOD)
+            times = [step * PERIOD for step in range(round(SECONDS / PERIOD))]
+            run_with(world, times, lambda time: commands.give(time * _QUICKER), ears.listen)
         except CartwheelError as failed:
             error = failed.code.number
         now = state(world)

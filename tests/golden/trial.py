@@ -23,6 +23,7 @@ from .adapter import (
     load_robot,
     now_ns,
     request,
+    run_with,
     subscribe,
     to_dict,
 )
@@ -169,10 +170,8 @@ def resting_height(description: Any) -> float:
 
 
 def _run(world: World, ears: Ears, commands: Commands, seconds: float) -> None:
-    for step in range(round(seconds / PERIOD)):
-        ears.listen()
-        commands.give(step * PERIOD)
-        world.run(PERIOD)
+    times = [step * PERIOD for step in range(round(seconds / PERIOD))]
+    run_with(world, times, commands.give, ears.listen)
 
 
 class Ears:

@@ -129,6 +129,7 @@ def test_paced_and_watched(make, rosbots, plain):
 
     pacer.add_listener(watch, rate=50.0)
     pacer.run()
+    run.simulation.complete()
     assert len(seen) > 50
     assert run.result() == plain
 

@@ -105,7 +105,10 @@ FIXED_TO_WORLD = Code(
     "a model or link cannot be pushed or get a velocity, because it is fixed to the world",
 )
 VALUE_INVALID = Code(
-    "CW632", "value-invalid", "error", "a property of a model or link cannot have this value"
+    "CW632",
+    "property-value-invalid",
+    "error",
+    "a property of a model or link cannot have this value",
 )
 WAIT_TIMED_OUT = Code(
     "CW633",

@@ -50,4 +50,4 @@ def test_what_no_joint_moves_can_go_on_a_topic_of_its_own(make, read):
     assert len(moved) == 51
     told = still.drain()
     assert {message.child_frame_id for message in told} == {"swing/base"}
-    assert len(told) == 10
+    assert len(told) == 11

@@ -115,7 +115,7 @@ def test_gz_odometry_publisher_tells_the_model_in_its_own_axes(make, read):
     assert len(messages) == 51
     last = messages[-1]
     assert (last.header.frame_id, last.child_frame_id) == ("odom", "base")
-    seconds = 49 / 25
+    seconds = 50 / 25
     assert vector(last.pose.pose.position) == pytest.approx(
         [1, 2 + 0.5 * seconds, 3 + 0.2 * seconds], abs=1e-6
     )

@@ -19,7 +19,7 @@ def test_it_tells_its_height_and_the_pressure_at_its_altitude(make, read):
     heights = world.mailbox("/pressure_height")
     told = read(world, "/altimeter", 1.0)
     assert len(told) == 11
-    assert [message.point.z for message in heights.drain()] == [120.0] * 10
+    assert [message.point.z for message in heights.drain()] == [120.0] * 11
     assert told[-1].altitude == 520
     assert told[-1].qnh == 1000
     assert told[-1].pressure == pytest.approx(1000 * (1 - 520 / 44330) ** 5.263157)
