@@ -7,6 +7,7 @@ import threading
 
 import numpy as np
 import pytest
+from tests.api.scenes import PENDULUM
 from tests.coded import raises
 
 import cartwheel as cw
@@ -23,19 +24,6 @@ from cartwheel.errors import SimulationError, UnknownNameError
 
 G = 9.8
 STEP = 0.005
-
-PENDULUM = """<model name="pendulum"><pose>0 0 2 0 0 0</pose>
-<link name="base"><inertial><mass>1</mass></inertial></link>
-<joint name="anchor" type="fixed"><parent>world</parent><child>base</child></joint>
-<link name="arm"><inertial><mass>2</mass><pose>0 0 -0.5 0 0 0</pose>
-<inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link>
-<joint name="hinge" type="revolute"><parent>base</parent><child>arm</child>
-<axis><xyz>0 1 0</xyz><limit><lower>-3</lower><upper>3</upper></limit></axis></joint>
-<link name="finger"><pose>0 0 -1 0 0 0</pose><inertial><mass>0.1</mass>
-<inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial></link>
-<joint name="slider" type="prismatic"><parent>arm</parent><child>finger</child>
-<axis><xyz>0 0 1</xyz><limit><lower>-0.1</lower><upper>0.1</upper></limit></axis></joint>
-</model>"""
 
 
 @pytest.fixture

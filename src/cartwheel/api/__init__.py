@@ -3,7 +3,8 @@
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
 from cartwheel.api.contacts import Contact
-from cartwheel.api.joints import Joint, Joints, JointValues
+from cartwheel.api.joints import Gains, Joint, Joints, JointValues
+from cartwheel.api.lights import Light
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
@@ -18,11 +19,13 @@ __all__ = [
     "Acceleration",
     "Built",
     "Contact",
+    "Gains",
     "Goal",
     "Hold",
     "Joint",
     "JointValues",
     "Joints",
+    "Light",
     "Link",
     "Model",
     "Picture",

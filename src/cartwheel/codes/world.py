@@ -122,3 +122,6 @@ CONDITION_INVALID = Code(
 STATE_MISMATCH = Code(
     "CW635", "state-mismatch", "error", "a saved state does not fit the world that restores it"
 )
+PROPERTY_ABSENT = Code(
+    "CW636", "property-absent", "error", "a link or joint does not have the property to set"
+)

@@ -157,8 +157,8 @@ class Material:
     """Whether a mesh's colours take precedence over `diffuse`: rviz's rule for URDF colours."""
     specular: float = 0.1
     emissive: Rgba = (0.0, 0.0, 0.0, 1.0)
-    texture: Path | None = None
-    """Multiplied by `diffuse`, if that is set."""
+    texture: Path | bytes | None = None
+    """A file or its contents. Multiplied by `diffuse`, if that is set."""
     texture_scale: tuple[float, float] = (1.0, 1.0)
     """The part of a surface covered by one copy of the texture, across and along, about its centre.
     """
@@ -342,6 +342,9 @@ class Light:
     """Angle of full brightness, rad."""
     spot_falloff: float = 0.0
     """Exponent of the decrease in brightness from the inner to the outer angle; 0 for none."""
+    intensity: float = 1.0
+    """Factor on `diffuse`."""
+    on: bool = True
     cast_shadows: bool = True
     origin: Origin
 

@@ -152,10 +152,7 @@ class Engine:
         if self.model is not None:
             _carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
-        try:
-            self._directions = Directions(model, alignments)
-        except SimulationError as error:
-            self.report(error.diagnostic("warning"))
+        self.align(alignments)
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
         self.visuals.bind(model, data, compile_visuals)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
@@ -178,6 +175,13 @@ class Engine:
         for name in ("_located", "_refreshed"):
             if saved[name] == now.removesuffix(changes.to_bytes(8)) + before:
                 setattr(self, name, now)
+
+    def align(self, alignments: Sequence[Alignment]) -> None:
+        """Sets the friction directions of the model."""
+        try:
+            self._directions = Directions(self.model, alignments)
+        except SimulationError as error:
+            self.report(error.diagnostic("warning"))
 
     def note_change(self) -> None:
         """Makes the next `refresh` compute a forward pass, after a change of the model.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import zlib
 from collections.abc import Callable, Collection, Iterator
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,13 @@ from cartwheel.world.entry import ModelEntry, scoped
 T = TypeVar("T")
 
 
+class Tuned(Protocol):
+    """A PID controller."""
+
+    gains: Any
+    """A dataclass with the fields ``p``, ``i``, ``d``, ``i_min`` and ``i_max``."""
+
+
 class Part(Requests):
     """A plugin's access to its model in the simulation. Use it only on the simulation's thread.
 
@@ -52,6 +59,8 @@ class Part(Requests):
         """Plugins and their handles."""
         self.topics: set[str] = set()
         """Names of the topics that plugins of the model have advertised or subscribed to."""
+        self.tuned: list[tuple[str, Tuned]] = []
+        """Joints and their PID controllers."""
         self.read_sensors: set[str] = set()
         """Sensors that a plugin of the model publishes, so that no default plugin is needed."""
         self._touched: dict[frozenset[str], dict[int, str]] = {}
@@ -140,6 +149,10 @@ class Part(Requests):
             geoms = self._touched[key] = geoms_of(model, names)
         return contacts_of(model, self._engine.data, geoms)
 
+    def tune(self, joint: str, controller: Tuned) -> None:
+        """States that a PID controller moves a joint, so that users can change its gains."""
+        self.tuned.append((joint, controller))
+
     def made(self, make: Callable[[], T]) -> T:
         """Creates a plugin, which owns everything it requests; all of it is undone if creation
         fails.
@@ -180,6 +193,7 @@ class Part(Requests):
         lists: tuple[list[Any], ...] = (
             self.handles,
             self.tasks,
+            self.tuned,
             entry.drives,
             entry.cameras,
             entry.attachments,

@@ -322,7 +322,10 @@ class Simulation(Models):
             WorldError: The world cannot be built; nothing has changed.
         """
         engine = self.engine
+        gravity = engine.world.gravity
         if adjust(engine, world):
+            if world.gravity != gravity:
+                self._population.drag_again()
             self._population.observe()
             return
         before, engine.world = engine.world, world

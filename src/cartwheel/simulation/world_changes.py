@@ -30,7 +30,8 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
     for index, light in enumerate(world.lights):
         for name, value in shine(light).items():
             getattr(model, f"light_{name}")[index] = value
-    engine.forward()
+    engine.note_change()
+    engine.refresh()
     return True
 
 

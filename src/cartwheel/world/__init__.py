@@ -2,8 +2,16 @@
 
 from cartwheel.world import mujoco_import  # noqa: F401 - before all others
 from cartwheel.world.additions import reports
-from cartwheel.world.build import Build, build, build_visuals
+from cartwheel.world.build import (
+    Build,
+    build,
+    build_visuals,
+    exclude_rotors,
+    extend_at_rest,
+)
+from cartwheel.world.chains import drag_chains
 from cartwheel.world.entry import CameraMount, ModelEntry, Motor
+from cartwheel.world.inertials import Principal, principal_inertial
 from cartwheel.world.unused import unreadable, unused
 
 __all__ = [
@@ -11,8 +19,13 @@ __all__ = [
     "CameraMount",
     "ModelEntry",
     "Motor",
+    "Principal",
     "build",
     "build_visuals",
+    "drag_chains",
+    "exclude_rotors",
+    "extend_at_rest",
+    "principal_inertial",
     "reports",
     "unreadable",
     "unused",

@@ -88,6 +88,8 @@ class BodyBuilder:
         """What was added to the descriptions."""
         self.surfaces: list[contact.BuiltSurface] = []
         """All collision geoms with their contact properties."""
+        self.geoms: dict[str, Any] = {}
+        """These geoms in the spec, by name."""
 
     def add(self, entry: ModelEntry) -> None:
         """Adds the entry's bodies, joints, geoms, motors and cameras.
@@ -232,15 +234,17 @@ class BodyBuilder:
                     **arguments,
                     **pose_arguments(pose),
                 )
+                self.geoms[geom.name] = geom
                 self.surfaces.append(
                     contact.BuiltSurface(
-                        geom=geom,
                         name=part_name(name, number),
+                        body=body.name,
                         model=entry.name,
                         moves=moves,
                         rolls=axle is not None,
                         tread=tread,
                         bottom=bottom,
+                        floor_area=contact.floor_area(geom.type, geom.size),
                         friction=friction,
                         reference=reference,
                         surface=collision.surface,

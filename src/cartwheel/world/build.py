@@ -11,10 +11,12 @@ import numpy as np
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import WorldError
-from cartwheel.world import chains, contact, dragging, joints, pairs
+from cartwheel.world import contact, joints, pairs
 from cartwheel.world.actuation import ROTOR_INERTIA
 from cartwheel.world.additions import Added, Addition
 from cartwheel.world.bodies import BodyBuilder, Shapes
+from cartwheel.world.chains import drag_chains
+from cartwheel.world.contact_rules import contact_rules
 from cartwheel.world.entry import ModelEntry, scoped
 from cartwheel.world.shapes import Assets
 from cartwheel.world.spec import (
@@ -47,6 +49,10 @@ class Build:
     """Friction directions of pairs with direction-dependent friction."""
     bounces: tuple[contact.Bounce, ...] = ()
     """The surfaces with restitution."""
+    surfaces: tuple[contact.BuiltSurface, ...] = ()
+    """The collision geoms, as described."""
+    joined: frozenset[frozenset[str]] = frozenset()
+    """Bodies of different models that are connected by a joint."""
     added: tuple[Added, ...] = ()
     """What was added to the descriptions."""
     xml: str | None = None
@@ -138,21 +144,13 @@ def _built(
     }
     for name in (name for entry in entries for name in entry.attachments):
         joints.add_attachment(spec, name)
-    surfaces, added = dragging.limited(bodies.surfaces, limit="limited-friction" not in without)
-    ranks = contact.priorities(surface.friction[0] for surface in surfaces)
-    for surface in surfaces:
-        surface.geom.priority = ranks[surface.friction[0]]
-    alignments = []
-    soft = "soft-sliding" not in without
-    softened: dict[tuple[str, str], Added] = {}
-    for pair in pairs.stated_pairs(surfaces, joined, soft_sliding=soft):
+    surfaces = tuple(bodies.surfaces)
+    rules = contact_rules(surfaces, joined, without)
+    for surface, priority in zip(rules.surfaces, rules.priorities, strict=True):
+        geom = bodies.geoms[surface.name]
+        geom.friction, geom.priority = list(surface.friction), priority
+    for pair in rules.pairs:
         spec.add_pair(**pair.arguments())
-        if pair.friction_time is not None and pair.friction[0] > 0:
-            sliding = pair.second
-            found = sliding.added("soft-sliding", pair.friction_time)
-            softened[sliding.model, found.element] = found
-        if pair.alignment is not None:
-            alignments.append(pair.alignment)
     try:
         model = compiled(spec)
         # The engine estimates its memory from the degrees of freedom, but pairs of bodies also need
@@ -164,23 +162,23 @@ def _built(
     except (ValueError, mujoco.FatalError) as error:
         raise compile_error(str(error), entries) from None
     _check_contacts(model, entries)
-    # A body without extent has only its velocity as a measure of rest; it must not sleep while
-    # spinning.
-    model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
+    extend_at_rest(model)
     if any(model.body_treeid[model.body(name).id] < 0 for name in _felt(entries)):
         # A body that sleeps on a fixed body would have no contact to report.
         for option in (spec.option, model.opt):
             option.enableflags &= ~mujoco.mjtEnableBit.mjENBL_SLEEP.value
-    _judge_without_rotors(model)
+    exclude_rotors(model)
     divide_floors(model)
-    added = [*bodies.added, *softened.values(), *added]
+    added = [*bodies.added, *rules.added]
     if "chain-drag" not in without:
         added += _drag(spec, model, entries)
     bounces = (contact.bounce(surface.name, surface.surface) for surface in surfaces)
     return Build(
         model=model,
-        alignments=tuple(alignments),
+        alignments=rules.alignments,
         bounces=tuple(each for each in bounces if each is not None),
+        surfaces=surfaces,
+        joined=frozenset(joined),
         added=tuple(added),
         xml=spec.to_xml() if xml else None,
     )
@@ -190,31 +188,12 @@ def _drag(
     spec: mujoco.MjSpec, model: mujoco.MjModel, entries: Iterable[ModelEntry]
 ) -> Iterator[Added]:
     """Adds drag to the hinges of chains."""
-    described = {
-        scoped(entry.name, joint.name): (entry, joint)
-        for entry in entries
-        for joint in entry.description.joints
-    }
-    speeds = {
-        name: joint.axis.velocity
-        for name, (_, joint) in described.items()
-        if joint.axis.velocity is not None and joint.axis.velocity > 0
-    }
-    for index, coefficient in chains.apply(model, speeds).items():
-        name = model.joint(index).name
+    for index, found in drag_chains(model, entries):
         # Only for the XML text: the compiled model already has the value.
-        made = spec.joint(name)
-        made.damping = [made.damping[0], made.damping[1], coefficient]
-        # The second axis of a universal joint has a name of its own.
-        found = described.get(name) or described.get(name.rpartition("::")[0])
-        if found is not None:
-            yield Added(
-                addition="chain-drag",
-                model=found[0].name,
-                element=found[1].name,
-                value=coefficient,
-                origin=found[1].origin,
-            )
+        made = spec.joint(model.joint(index).name)
+        made.damping = [made.damping[0], made.damping[1], found.value]
+        if found.element:
+            yield found
 
 
 def _check_chain(entry: ModelEntry) -> None:
@@ -274,7 +253,16 @@ def _check_contacts(model: mujoco.MjModel, entries: list[ModelEntry]) -> None:
     )
 
 
-def _judge_without_rotors(model: mujoco.MjModel) -> None:
+def extend_at_rest(model: mujoco.MjModel) -> None:
+    """Sets a minimum length, by which the engine judges the speed of a rotating body.
+
+    A body without extent has only its velocity as a measure of rest. It must not sleep while it
+    spins.
+    """
+    model.dof_length[:] = np.maximum(model.dof_length, _SHORTEST)
+
+
+def exclude_rotors(model: mujoco.MjModel) -> None:
     """Excludes motor rotors from the mean inertia, which scales the solver's tolerance.
 
     Their huge inertia would make the solver accept wrong forces.

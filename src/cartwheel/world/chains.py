@@ -11,12 +11,14 @@ the joint. ``docs/physics.md`` shows how small the drag is at speeds that a step
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import mujoco
 import numpy as np
 
 from cartwheel.geometry import Array, from_wxyz, matrix_from_quat
+from cartwheel.world.additions import Added
+from cartwheel.world.entry import ModelEntry, scoped
 
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 _WEIGHTLESS = 1e-5
@@ -80,12 +82,43 @@ def _enough(model: mujoco.MjModel, inertia: float, speed: float, moment: float) 
     return float(min(step * energy, 0.5 * inertia / step))
 
 
-def apply(model: mujoco.MjModel, speeds: Mapping[str, float] | None = None) -> dict[int, float]:
-    """Sets the drag of the model's hinges; returns the same as `drag`."""
-    found = drag(model, speeds)
-    for joint, coefficient in found.items():
-        model.dof_dampingpoly[model.jnt_dofadr[joint], 1] = coefficient
-    return found
+def drag_chains(model: mujoco.MjModel, entries: Iterable[ModelEntry]) -> list[tuple[int, Added]]:
+    """Sets the drag of a model's hinges.
+
+    Args:
+        model: The compiled model.
+        entries: The models in it.
+
+    Returns:
+        Joint indices, and what was added; the element is empty for a hinge of no description.
+    """
+    described = {
+        scoped(entry.name, joint.name): (entry, joint)
+        for entry in entries
+        for joint in entry.description.joints
+    }
+    speeds = {
+        name: joint.axis.velocity
+        for name, (_, joint) in described.items()
+        if joint.axis.velocity is not None and joint.axis.velocity > 0
+    }
+    model.dof_dampingpoly[:, 1] = 0.0
+    made = []
+    for index, coefficient in drag(model, speeds).items():
+        model.dof_dampingpoly[model.jnt_dofadr[index], 1] = coefficient
+        name = model.joint(index).name
+        # The second axis of a universal joint has a name of its own.
+        found = described.get(name) or described.get(name.rpartition("::")[0])
+        entry, joint = found or (None, None)
+        added = Added(
+            addition="chain-drag",
+            model=entry.name if entry is not None else "",
+            element=joint.name if joint is not None else "",
+            value=coefficient,
+            origin=joint.origin if joint is not None else None,
+        )
+        made.append((index, added))
+    return made
 
 
 def _carried(model: mujoco.MjModel) -> tuple[Array, Array]:

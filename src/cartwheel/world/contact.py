@@ -12,9 +12,10 @@ For derivations, see ``docs/physics.md``. In short:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+
+import mujoco
 
 from cartwheel.description.model import Surface
 from cartwheel.errors import Origin
@@ -57,14 +58,17 @@ ALL_BITS = 0xFFFF
 """SDF's default for both bitmasks."""
 FRICTION_IMPEDANCE_RATIO = 100.0
 """Stiffness of friction relative to the normal direction: reduces creep under a constant load."""
+_MESH_AREA = 1.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BuiltSurface:
-    """A collision geom in a spec, with its contact properties."""
+    """A collision geom with its contact properties."""
 
-    geom: Any
     name: str
+    """Name of the geom."""
+    body: str
+    """Name of its body."""
     model: str
     moves: bool
     """Whether there is a joint between the geom and the world."""
@@ -74,6 +78,8 @@ class BuiltSurface:
     """The tread of a wheel that may roll on the ground."""
     bottom: float | None
     """Lowest point in the model, m, for geoms fixed to a free root; otherwise None."""
+    floor_area: float
+    """Area on which others may slide, m²; see `floor_area`."""
     friction: tuple[float, float, float]
     reference: tuple[float, float]
     surface: Surface
@@ -130,6 +136,24 @@ class Bounce:
     """
     threshold: float
     """m/s; slower impacts do not bounce. The smaller value of two surfaces is used."""
+
+
+def floor_area(kind: mujoco.mjtGeom, size: Sequence[float]) -> float:
+    """Area to slide on, m²: for a box, the largest face that may be level.
+
+    Args:
+        kind: The geom's type.
+        size: The geom's size.
+    """
+    kinds = mujoco.mjtGeom
+    if kind in (kinds.mjGEOM_PLANE, kinds.mjGEOM_HFIELD):
+        return math.inf
+    if kind == kinds.mjGEOM_BOX:
+        return float(4 * size[0] * size[1])
+    if kind == kinds.mjGEOM_CYLINDER:
+        return float(math.pi * size[0] ** 2)
+    # Only the compiler knows a mesh's size; it may be a floor.
+    return _MESH_AREA if kind == kinds.mjGEOM_MESH else 0.0
 
 
 def bounce(geom: str, surface: Surface) -> Bounce | None:

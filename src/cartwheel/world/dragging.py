@@ -32,7 +32,7 @@ def limited(
     """The surfaces, with dragged parts marked and the friction of sliding parts limited.
 
     Args:
-        surfaces: Surfaces of all models. The friction of their geoms is changed.
+        surfaces: Surfaces of all models.
         limit: Whether to limit the friction.
 
     Returns:
@@ -71,9 +71,7 @@ def _largest(surface: BuiltSurface) -> float:
 def _limited(surface: BuiltSurface, largest: float) -> BuiltSurface:
     mu1, mu2 = contact.coefficients(surface.surface)
     changed = replace(surface.surface, mu1=min(mu1, largest), mu2=min(mu2, largest))
-    friction = contact.friction(changed)
-    surface.geom.friction = list(friction)
-    return replace(surface, surface=changed, friction=friction)
+    return replace(surface, surface=changed, friction=contact.friction(changed))
 
 
 def _drags(surface: BuiltSurface, treads: Sequence[Tread]) -> bool:

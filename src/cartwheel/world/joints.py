@@ -36,10 +36,8 @@ def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -
     pos = list(joint.pose.position)
     match joint.type:
         case "revolute" | "continuous" | "prismatic":
-            made = _add_axis(body, name, joint, joint.axis)
-            if joint.axis.locks and entry.mimics.get(joint.name, joint.mimic) is not None:
-                # A following joint is limited by its leader.
-                made.limited = mujoco.mjtLimited.mjLIMITED_FALSE
+            follows = joint.name in entry.mimics
+            made = _add_axis(body, name, joint, joint.axis, follows=follows)
             made.type = _KIND.mjJNT_SLIDE if joint.type == "prismatic" else _KIND.mjJNT_HINGE
         case "ball":
             body.add_joint(name=name, type=_KIND.mjJNT_BALL, pos=pos)
@@ -61,6 +59,36 @@ def add_joint(spec: mujoco.MjSpec, entry: ModelEntry, body: Any, joint: Joint) -
             for index in range(3):
                 _slide(body, f"{name}::{'xyz'[index]}", np.eye(3)[index])
             body.add_joint(name=name, type=_KIND.mjJNT_BALL)
+
+
+def axes_of(joint: Joint) -> tuple[tuple[str, Axis], ...]:
+    """The axes with properties of their own, with the suffixes of their joints' names."""
+    match joint.type:
+        case "revolute" | "continuous" | "prismatic" | "screw":
+            return (("", joint.axis),)
+        case "universal":
+            return ("", joint.axis), ("::axis2", joint.axis2 or Axis(xyz=(1.0, 0.0, 0.0)))
+    return ()
+
+
+def limits_of(joint: Joint, axis: Axis, *, follows: bool) -> tuple[float, float] | None:
+    """The range of an axis, rad or m; None is unlimited.
+
+    Args:
+        joint: The joint.
+        axis: One of its axes.
+        follows: Whether it follows another joint, besides a mimic in its description.
+    """
+    if joint.type == "continuous" or (axis.lower is None and axis.upper is None):
+        return None
+    if axis.locks and joint.type in ("revolute", "prismatic") and (follows or joint.mimic):
+        # A following joint is limited by its leader.
+        return None
+    lower = -1e10 if axis.lower is None else axis.lower
+    upper = 1e10 if axis.upper is None else axis.upper
+    # The engine requires a range; equal limits lock a joint, as in ODE.
+    slack = _LOCKED if axis.locks else 0.0
+    return lower - slack, upper + slack
 
 
 def couple(
@@ -163,7 +191,7 @@ def equality_data(*values: float) -> list[float]:
     return [*values, *([0.0] * (mujoco.mjNEQDATA - len(values)))]
 
 
-def _add_axis(body: Any, name: str, joint: Joint, axis: Axis) -> Any:
+def _add_axis(body: Any, name: str, joint: Joint, axis: Axis, *, follows: bool = False) -> Any:
     made = body.add_joint(
         name=name,
         type=_KIND.mjJNT_HINGE,
@@ -177,13 +205,10 @@ def _add_axis(body: Any, name: str, joint: Joint, axis: Axis) -> Any:
     if axis.spring_stiffness:
         made.stiffness = [axis.spring_stiffness, 0, 0]
         made.springref = axis.spring_reference
-    if joint.type != "continuous" and (axis.lower is not None or axis.upper is not None):
-        lower = -1e10 if axis.lower is None else axis.lower
-        upper = 1e10 if axis.upper is None else axis.upper
-        # The engine requires a range; equal limits lock a joint, as in ODE.
-        slack = _LOCKED if axis.locks else 0.0
+    bounds = limits_of(joint, axis, follows=follows)
+    if bounds is not None:
         made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-        made.range = [lower - slack, upper + slack]
+        made.range = list(bounds)
     if axis.effort is not None and axis.effort > 0:
         made.actfrclimited = mujoco.mjtLimited.mjLIMITED_TRUE
         made.actfrcrange = [-axis.effort, axis.effort]

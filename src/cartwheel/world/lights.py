@@ -25,9 +25,15 @@ def shine(light: Light) -> dict[str, tuple[float, float, float]]:
     return {
         "pos": light.pose.position,
         "dir": (x / length, y / length, z / length),
-        "diffuse": light.diffuse[:3],
+        "diffuse": _brightness(light),
         "attenuation": light.attenuation,
     }
+
+
+def _brightness(light: Light) -> tuple[float, float, float]:
+    factor = light.intensity if light.on else 0.0
+    r, g, b = (min(1.0, factor * value) for value in light.diffuse[:3])
+    return r, g, b
 
 
 def add_light(body: Any, name: str, light: Light) -> None:

@@ -11,15 +11,12 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import mujoco
-
 from cartwheel.geometry import Vec3
 from cartwheel.world import contact
 from cartwheel.world.contact import BuiltSurface
 
 MOST_PAIRS = 500
 """Maximum number of explicit pairs; each costs 6 ns per step."""
-_MESH_AREA = 1.0
 _HOLDS = 10.0
 """A coefficient at which nothing slips: Gazebo's ground plane has 100 and 50."""
 _PATCH = 3 * math.pi / 16
@@ -104,7 +101,7 @@ def stated_pairs(
     movers = [each for each in surfaces if each.moves and (special or each.slides)]
     standing = [each for each in surfaces if not each.moves]
     if movers and len(movers) * len(standing) > MOST_PAIRS:
-        standing.sort(key=_floor_area, reverse=True)
+        standing.sort(key=lambda each: each.floor_area, reverse=True)
         standing = standing[: max(1, MOST_PAIRS // len(movers))]
     count = 0
     for mover in movers:
@@ -135,7 +132,7 @@ def _pair(
     joined: Collection[frozenset[str]],
     friction_time: float | None = None,
 ) -> Pair | None:
-    if joined and frozenset(each.geom.parent.name for each in (first, second)) in joined:
+    if joined and frozenset((first.body, second.body)) in joined:
         return None
     if first.model == second.model or not contact.masks_fit(first.surface, second.surface):
         return None
@@ -169,16 +166,3 @@ def _alignment(first: BuiltSurface, second: BuiltSurface, *, across: bool) -> Al
     return Alignment(
         first=first.name, second=second.name, body=body, direction=direction, across=across
     )
-
-
-def _floor_area(surface: BuiltSurface) -> float:
-    """Area to slide on, m²: for a box, the largest face that may be level."""
-    geom, kind = surface.geom, mujoco.mjtGeom
-    if geom.type in (kind.mjGEOM_PLANE, kind.mjGEOM_HFIELD):
-        return math.inf
-    if geom.type == kind.mjGEOM_BOX:
-        return float(4 * geom.size[0] * geom.size[1])
-    if geom.type == kind.mjGEOM_CYLINDER:
-        return float(math.pi * geom.size[0] ** 2)
-    # Only the compiler knows a mesh's size; it may be a floor.
-    return _MESH_AREA if geom.type == kind.mjGEOM_MESH else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import mujoco
@@ -89,6 +90,30 @@ def add_visual(body: Any, visual: Visual, assets: Assets, *, moves: bool) -> Non
     )
 
 
+def plain_colour(visuals: Iterable[Visual]) -> Rgba | None:
+    """The colour of a link's geoms, if all its visuals have the same one.
+
+    Returns:
+        The colour of one of two layers, as in a compiled model; None if the visuals have a texture,
+        emit light, or have no colour of their own.
+    """
+    found: set[Rgba] = set()
+    for visual in visuals:
+        material = visual.material
+        if material.texture is not None or any(material.emissive[:3]):
+            return None
+        if material.diffuse is None or material.yields_to_mesh:
+            return None
+        red, green, blue, alpha = material.diffuse
+        found.add((red, green, blue, _layer(alpha * (1.0 - visual.transparency))))
+    return found.pop() if len(found) == 1 else None
+
+
+def _layer(opacity: float) -> float:
+    """The opacity of one of the two layers in which the engine draws transparent geoms."""
+    return 1.0 - math.sqrt(1.0 - opacity)
+
+
 def _look(material: Material, paint: Paint, opacity: float, assets: Assets) -> dict[str, Any]:
     """A geom's colour and material.
 
@@ -104,8 +129,7 @@ def _look(material: Material, paint: Paint, opacity: float, assets: Assets) -> d
             for glow, lit in zip(material.emissive[:3], colour[:3], strict=True)
         )
         colour = (red, green, blue, colour[3])
-    layer = 1.0 - math.sqrt(1.0 - colour[3] * opacity)
-    look: dict[str, Any] = {"rgba": [*colour[:3], layer]}
+    look: dict[str, Any] = {"rgba": [*colour[:3], _layer(colour[3] * opacity)]}
     if paint.image is not None or emission > 0:
         look["material"] = assets.material(paint.image, emission)
     return look

@@ -29,6 +29,9 @@ class Joint:
     def set_effort(self, command):
         self.applied = command
 
+    def tune(self, pid):
+        self.tuned = pid
+
 
 def test_it_starts_at_the_current_position():
     held = PidJoint(Joint(position=0.4), PidJointConfig(gains=GAINS, quantity="position"))

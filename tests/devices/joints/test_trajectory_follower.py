@@ -25,6 +25,9 @@ class Joint:
     def set_effort(self, command):
         self.applied = command
 
+    def tune(self, pid):
+        self.tuned = pid
+
 
 def line(start_ns, *, end=2.0, seconds=2.0):
     """A trajectory from 0 to `end`."""

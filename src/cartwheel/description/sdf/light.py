@@ -34,16 +34,11 @@ def read_light(node: Node, pose: Pose) -> Light:
     direction = node.vec3_at("direction", (0.0, 0.0, -1.0))
     if not any(direction):
         raise node.fail("the direction of a light must not be 0 0 0")
-    brightness = max(0.0, node.number_at("intensity", 1.0))
-    if not node.boolean_at("light_on", True):
-        brightness = 0.0
-    colour = read_rgba(diffuse) if diffuse is not None else default.diffuse
-    r, g, b = (min(1.0, brightness * value) for value in colour[:3])
     return Light(
         name=require_name(node),
         type=kind,
         pose=pose,
-        diffuse=(r, g, b, colour[3]),
+        diffuse=read_rgba(diffuse) if diffuse is not None else default.diffuse,
         specular=read_rgba(specular) if specular is not None else default.specular,
         direction=direction,
         range=node.number_at("attenuation/range", default.range),
@@ -55,6 +50,8 @@ def read_light(node: Node, pose: Pose) -> Light:
         spot_angle=node.number_at("spot/outer_angle", default.spot_angle),
         spot_inner=node.number_at("spot/inner_angle", default.spot_inner),
         spot_falloff=node.number_at("spot/falloff", default.spot_falloff),
+        intensity=max(0.0, node.number_at("intensity", 1.0)),
+        on=node.boolean_at("light_on", True),
         cast_shadows=node.boolean_at("cast_shadows", kind == "directional"),
         origin=node.origin,
     )

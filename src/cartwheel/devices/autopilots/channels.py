@@ -67,6 +67,8 @@ class Channel(Component):
         elif config.kind != "position" or config.gains is not None:
             self._servo = part.servo(config.joint, max_effort=None, origin=origin)
         self._pid = Pid(config.gains) if config.gains is not None else None
+        if self._pid is not None:
+            part.tune(config.joint, self._pid)
         self._command: float | None = None
 
     def reset(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 
 from cartwheel.devices.elementwise import Number, clamp, remainder
 from cartwheel.devices.joints.limits import (
@@ -68,6 +69,10 @@ class JointActuator:
         self.limits = config.limits
         self.state: JointHandle = part.joint(name, origin=origin)
         self.pids = {config.pid[0]: Pid(config.pid[1])} if config.pid is not None else {}
+        self.tune = partial(part.tune, name)
+        """States that a PID controller commands the joint; see `Part.tune`."""
+        for pid in self.pids.values():
+            self.tune(pid)
         self._commands = config.commands
         self._motor: MotorHandle | None = None
         self._servo: ServoHandle | None = None

@@ -101,6 +101,8 @@ class Gripper(Component):
         self._joint, self._name = joint, name
         self._running = running
         self._pid = Pid(config.gains) if config.gains is not None else None
+        if self._pid is not None:
+            self.part.tune(joint.joint, self._pid)
         self._stall_ns = round(config.stall_timeout * 1e9)
         self._monitor = Periodic(config.monitor_rate)
         self._target = self._position = 0.0

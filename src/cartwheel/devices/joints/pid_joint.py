@@ -35,6 +35,7 @@ class PidJoint:
         self.joint = joint
         self.config = config
         self._pid = Pid(config.gains)
+        joint.tune(self._pid)
         self.target = 0.0
         """rad or m, or rad/s or m/s."""
 
@@ -103,6 +104,7 @@ class PidLoop:
         self._joint, self._state, self._references = joint, state, references
         self._config = config
         self._pid = Pid(config.gains)
+        joint.tune(self._pid)
         self.measured = UNKNOWN
         """Measured value and its rate of change; NaN if unknown."""
 

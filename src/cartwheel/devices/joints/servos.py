@@ -50,6 +50,10 @@ class JointServos(Component):
             (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
             for name in config.joints
         ]
+        gains = config.gains
+        self._pids = [Pid(gains) for _ in self._joints] if gains is not None else []
+        for name, pid in zip(config.joints, self._pids, strict=False):
+            part.tune(name, pid)
         self.subscribe(config.topic, _FLOAT, self._on_command)
         self.reset()
         moves = config.quantity == "position"
@@ -59,9 +63,9 @@ class JointServos(Component):
             self.take_positions(config.joints[:1], self._publish_command)
 
     def reset(self) -> None:
-        gains = self._config.gains
         self._target = self._config.initial
-        self._pids = [Pid(gains) for _ in self._joints] if gains is not None else []
+        for pid in self._pids:
+            pid.reset()
         self._elapsed = Elapsed()
 
     def _on_command(self, message: Any) -> None:
@@ -81,7 +85,7 @@ class JointServos(Component):
         seconds = self._elapsed.seconds(self.part.time_ns)
         for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
             effort = pid.effort(target - joint.position, seconds)
-            servo.command_effort(effort, damping=config.gains.d)
+            servo.command_effort(effort, damping=pid.gains.d)
 
     def _turn(self) -> None:
         if self._config.gains is None:

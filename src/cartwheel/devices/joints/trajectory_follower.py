@@ -43,6 +43,8 @@ class TrajectoryFollower:
         self._joints = list(joints)
         self._config = config
         self._pids = [Pid(gains) for gains in config.gains]
+        for joint, pid in zip(self._joints, self._pids, strict=False):
+            joint.tune(pid)
         self._current = Trajectory.hold(0, [0.0] * len(self._joints))
         self._next: Trajectory | None = None
 

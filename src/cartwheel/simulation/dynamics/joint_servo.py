@@ -68,12 +68,17 @@ class ServoHandle:
         self._grip = model.tendon_frictionloss
         self._tendon = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._strength = float(self._grip[self._tendon])
-        inertia = float(model.dof_M0[int(model.jnt_dofadr[joint])])
-        self._braking = 2 * (_BRAKING * self._strength / max(inertia, 1e-9))
+        self._dof = int(model.jnt_dofadr[joint])
+        self.weigh(model)
         self._commanded_again = self.period <= self._step
         if self._awake or (self.mode == "position" and not self._commanded_again):
             self._rouse()
         self._apply()
+
+    def weigh(self, model: Any) -> None:
+        """Reads the inertia that the joint moves, from a model in which masses have changed."""
+        inertia = float(model.dof_M0[self._dof])
+        self._braking = 2 * (_BRAKING * self._strength / max(inertia, 1e-9))
 
     def release(self) -> None:
         """Lets the joint move freely."""

@@ -60,8 +60,18 @@ class Compiler:
         own = [entry.copy() for entry in entries]
         return Compiled(
             build=build(world, own, without=without, shapes="collisions"),
-            compile_visuals=partial(build_visuals, world, own, without=without),
+            compile_visuals=self.visuals(world, own, without),
         )
+
+    def visuals(
+        self,
+        world: WorldDescription,
+        entries: Sequence[ModelEntry],
+        without: Collection[Addition],
+    ) -> Callable[[], Any]:
+        """A function that compiles the visuals of a world, which is otherwise compiled already."""
+        own = [entry.copy() for entry in entries]
+        return partial(build_visuals, world, own, without=without)
 
     def notes(self, description: RobotDescription) -> Notes:
         """The notes on a description that is part of a compiled world."""

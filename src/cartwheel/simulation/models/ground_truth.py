@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -236,6 +238,29 @@ class GroundTruth:
             if effort:
                 self._forces.effort(model, joint, effort)
         self._apply_forces()
+
+    def gains(self, model: str, joint: str) -> Any:
+        """The gains of a joint's PID controller; None without one.
+
+        Raises:
+            UnknownNameError: The model or joint does not exist, or the joint cannot move.
+        """
+        self.joint(model, joint)
+        tuned = self._population.resident(model).part.tuned
+        return next((each.gains for name, each in reversed(tuned) if name == joint), None)
+
+    def set_gains(self, model: str, joint: str, gains: Mapping[str, float]) -> bool:
+        """Changes gains of a joint's PID controllers; returns whether it has one.
+
+        Raises:
+            UnknownNameError: The model or joint does not exist, or the joint cannot move.
+        """
+        self.joint(model, joint)
+        tuned = self._population.resident(model).part.tuned
+        controllers = [each for name, each in tuned if name == joint]
+        for each in controllers:
+            each.gains = replace(each.gains, **gains)
+        return bool(controllers)
 
     # -- contacts
 

@@ -191,9 +191,7 @@ class Models(Run):
         self.engine.commanded += 1
         joint = self.engine.joint_id(name, entry.description.canonical_link)
         if joint < 0:
-            # A model fixed to the world is recompiled at the new pose.
-            entry.pose = pose
-            self._population.compile()
+            self._population.place(name, pose)
         else:
             self.engine.place(joint, pose @ entry.description.canonical_pose)
         self._population.separate(name)
@@ -223,8 +221,7 @@ class Models(Run):
         if self.moves(name):
             place_model(self.engine, entry, pose, linear, angular)
         elif entry.pose != pose:
-            entry.pose = pose
-            self._population.compile()
+            self._population.place(name, pose)
         self._population.separate(name)
 
     def set_joint_positions(self, name: str, positions: Mapping[str, float]) -> None:
@@ -283,19 +280,13 @@ class Models(Run):
             drives[joint].command(velocity)
 
     def redescribe(self, name: str, description: RobotDescription) -> None:
-        """Changes properties of a model's links or joints.
+        """Changes properties of a model's links or joints, which `reset` keeps.
 
-        The model is recompiled and keeps its state; commands and forces continue.
+        The model keeps its state; commands and forces continue. Only changes that `InPlace` does
+        not support require a compilation.
 
         Raises:
             UnknownNameError: The model does not exist.
             WorldError: The model cannot be built; nothing has changed.
         """
-        entry = self._population.resident(name).entry
-        before = entry.description
-        entry.description = description
-        try:
-            self._population.compile()
-        except BaseException:
-            entry.description = before
-            raise
+        self._population.describe(name, description)

@@ -12,10 +12,13 @@ from cartwheel.geometry import Pose
 from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.dynamics.separation import Separation, overlap
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.handles import JointHandle
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
+from cartwheel.simulation.models.in_place import InPlace
 from cartwheel.simulation.models.placement import with_mimics
 from cartwheel.simulation.models.resident import Attach, Resident, world_resident
 from cartwheel.simulation.models.unique_names import free_name
@@ -58,6 +61,7 @@ class Population:
         self._version = 0
         self._added: tuple[Added, ...] = ()
         """What was added to the descriptions of the compiled models."""
+        self._in_place = InPlace(engine)
 
     def start(self, attach_world: Attach) -> None:
         """Creates the world's plugins and compiles the world without models.
@@ -219,6 +223,7 @@ class Population:
             engine.set_step(step_ns)
         self.residents = residents
         engine.entries = entries
+        self._in_place.bind(built, entries)
         self.watch.bind(engine.model, engine.data)
         self._forces.bind()
         for resident in self.everyone():
@@ -228,6 +233,73 @@ class Population:
         engine.forward()
         self.separation.resume(engine.model, engine.data)
         self.observe()
+
+    def describe(self, name: str, description: RobotDescription) -> None:
+        """Changes the description of a model: without a compilation, if that is possible.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+            WorldError: The model cannot be built; nothing has changed.
+        """
+        resident = self.resident(name)
+        entry, before = resident.entry, resident.entry.description
+        known = {(each.addition, each.element) for each in self._added if each.model == name}
+        entry.description = description
+        try:
+            added = self._in_place.describe(entry, before)
+            if added is None:
+                self.compile()
+                added = [*self._added]
+        except BaseException:
+            entry.description = before
+            raise
+        if self._in_place.recompiles_visuals():
+            self._engine.visuals.replace(
+                self._compiler.visuals(
+                    self._engine.world,
+                    [each.entry for each in self.everyone()],
+                    self._engine.without,
+                )
+            )
+        self._refresh_handles(resident)
+        self.observe()
+        new = [each for each in added if (each.addition, each.element) not in known]
+        self._added = (*self._added, *new)
+        for diagnostic in reports(new, name):
+            self._engine.report(diagnostic)
+
+    def place(self, name: str, pose: Pose) -> None:
+        """Moves a model that is fixed to the world: without a compilation, if that is possible.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+            WorldError: The model cannot be built; nothing has changed.
+        """
+        resident = self.resident(name)
+        entry, before = resident.entry, resident.entry.pose
+        entry.pose = pose
+        if self._in_place.place(entry, self._engine.world.joints):
+            self._refresh_handles(resident)
+            self._engine.refresh()
+            self.observe()
+            return
+        try:
+            self.compile()
+        except BaseException:
+            entry.pose = before
+            raise
+
+    def drag_again(self) -> None:
+        """Computes the drag of chains for a changed gravity."""
+        self._in_place.drag()
+
+    def _refresh_handles(self, resident: Resident) -> None:
+        """Lets handles read the constants of the compiled model again."""
+        for handle in resident.part.handles:
+            if isinstance(handle, JointHandle):
+                handle.bind(self._engine.model, self._engine.data)
+            elif isinstance(handle, ServoHandle):
+                handle.weigh(self._engine.model)
 
     def observe(self) -> None:
         """Creates a new observer and scene version after a change of the models or lights."""
@@ -256,12 +328,10 @@ class Population:
             self._engine.forward()
 
     def return_to_start(self) -> None:
-        """Compiles models that are fixed to the world at their spawn poses again."""
-        moved = [each for each in self.residents.values() if each.entry.pose != each.start]
-        for resident in moved:
-            resident.entry.pose = resident.start
-        if moved:
-            self.compile()
+        """Moves models that are fixed to the world back to their spawn poses."""
+        for name, resident in self.residents.items():
+            if resident.entry.pose != resident.start:
+                self.place(name, resident.start)
 
     def welcome(self, name: str, *, before: Collection[str] = ()) -> None:
         """Reports the diagnostics of a model that was just compiled; see `separate`."""

@@ -63,6 +63,8 @@ class Renderer:
         self._model: Any = None
         self._background: Any = np.zeros(3, dtype=np.uint8)
         self._opaque: Any = None
+        self._painting = -1
+        """`VisualModel.paintings` at which the mask of opaque geoms was made."""
         self._gl: OffscreenContext | None = None
         self._context: Any = None
         self._scene: Any = None
@@ -80,6 +82,9 @@ class Renderer:
             self._drop_scene()
             self._model = model
             self._background = _background(model)
+            self._painting = -1
+        if self._painting != self._visuals.paintings:
+            self._painting = self._visuals.paintings
             self._opaque = _opaque(model)
         return data
 

@@ -11,6 +11,9 @@ from typing import Any
 
 import mujoco
 
+from cartwheel.description.model import Rgba
+from cartwheel.world.visuals import VISUAL_GROUP
+
 _PLACES = ("body_pos", "body_quat")
 _LIGHTS = ("light_pos", "light_dir", "light_diffuse", "light_attenuation")
 
@@ -23,6 +26,10 @@ class VisualModel:
         self._compile: Callable[[], Any] | None = None
         self._model: Any = None
         self._data: Any = None
+        self._paints: dict[str, Rgba] = {}
+        """Colours of bodies that differ from the compiled visuals."""
+        self.paintings = 0
+        """Number of changes of colours."""
 
     def bind(self, model: Any, data: Any, compile_visuals: Callable[[], Any] | None) -> None:
         """Sets the simulated model and its data.
@@ -33,8 +40,27 @@ class VisualModel:
             compile_visuals: Compiles the same bodies with their visuals. None if `model` itself
                 has them.
         """
-        self._physics, self._compile = (model, data), compile_visuals
+        self._physics = (model, data)
+        self.replace(compile_visuals)
+
+    def replace(self, compile_visuals: Callable[[], Any] | None) -> None:
+        """Changes the visuals of the simulated model; see `bind`."""
+        self._compile = compile_visuals
         self._model = self._data = None
+        self._paints = {}
+
+    def paint(self, body: str, rgba: Rgba) -> None:
+        """Gives all visuals of a body one colour, without a texture.
+
+        Args:
+            body: Scoped name of the link.
+            rgba: See `plain_colour`.
+        """
+        self._paints[body] = rgba
+        model = self._physics[0] if self._compile is None else self._model
+        if model is not None:
+            _apply(model, body, rgba)
+            self.paintings += 1
 
     def forget(self) -> None:
         """Frees the compiled visuals, which are compiled again at the next use."""
@@ -52,9 +78,18 @@ class VisualModel:
         if self._model is None:
             self._model = self._compile()
             self._data = mujoco.MjData(self._model)
+            for body, rgba in self._paints.items():
+                _apply(self._model, body, rgba)
         for name in (*_PLACES, *_LIGHTS):
             getattr(self._model, name)[:] = getattr(model, name)
         self._data.qpos[:] = data.qpos
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_camlight(self._model, self._data)
         return self._model, self._data
+
+
+def _apply(model: Any, body: str, rgba: Rgba) -> None:
+    geoms = (model.geom_bodyid == model.body(body).id) & (model.geom_group == VISUAL_GROUP)
+    model.geom_rgba[geoms] = rgba
+    # Without a material, there is no texture.
+    model.geom_matid[geoms] = -1
