@@ -402,6 +402,8 @@ WITHOUT_PLACE: dict[str, Case] = {
     "caster": ("caster-friction", [("<mu1>0.0</mu1>", "<mu1>1.0</mu1>")], None, "Add "),
     "deep": ("wheels-off-ground", [('<box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>',
         '<box size="0.4 0.3 0.25"/>\n      </geometry>\n    </collision>')], None, "Raise the collision"),
+    "scraping": ("body-on-ground", [('<box size="0.4 0.3 0.1"/>\n      </geometry>\n    </collision>',
+        '<box size="0.4 0.3 0.2"/>\n      </geometry>\n    </collision>')], None, "Raise the collision"),
     "unbalanced": ("unbalanced", [('<origin xyz="0 0 0.1"/>\n      <mass value="6"/>', '<origin xyz="0.1 0 0.1"/>\n      <mass value="6"/>')],
         '<robot name="tester">', "caster"),
     "overlap": ("overlapping-collisions", [("  <gazebo>\n", "  <gazebo><self_collide>true</self_collide>"),

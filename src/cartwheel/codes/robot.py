@@ -180,3 +180,9 @@ JOINTS_UNDRIVEN = Code(
     "info",
     "no plugin drives the joints of a robot, so they move freely",
 )
+BODY_ON_GROUND = Code(
+    "CW245",
+    "body-on-ground",
+    "warning",
+    "the body of a robot touches the ground as well as its driven wheels",
+)

@@ -26,6 +26,7 @@ _DRIVING = frozenset(
         robot.WHEEL_FRICTIONLESS,
         robot.WHEEL_WITHOUT_COLLISION,
         robot.WHEELS_OFF_GROUND,
+        robot.BODY_ON_GROUND,
         robot.UNBALANCED,
         robot.EFFORT_ZERO,
         robot.OVERLAPPING_COLLISIONS,

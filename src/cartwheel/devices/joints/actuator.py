@@ -260,9 +260,12 @@ class JointActuator:
             gain = state.lightness * seconds
             effort, damping = limited_effort(limits, command, position, velocity, gain)
         elif damping:
-            command = DampedEffort(effort, damping)
-            gain = state.lightness * seconds
-            effort, damping = saturated(command, limits.effort, velocity, gain)
+            # The same as `saturated` for efforts within the limit, which most are.
+            output, limit = effort - damping * velocity, limits.effort
+            if output > limit or output < -limit:
+                command = DampedEffort(effort, damping)
+                gain = state.lightness * seconds
+                effort, damping = saturated(command, limit, velocity, gain)
         else:
             # The same without an object.
             effort = clamp(effort, -limits.effort, limits.effort)

@@ -23,6 +23,12 @@ _STIFF = 1e6
 _GRAVITY = 9.81
 _EXACT = 1e-5
 """m."""
+_TOUCHING, _DEEP = 1e-4, 5e-4
+"""m; a body that extends further below the wheels raises them from the ground."""
+_WIDE = 0.2
+"""Minimum width of a flat contact, relative to the robot's size."""
+_GLIDES = 0.3
+"""Maximum friction coefficient of parts that are meant to slide."""
 _UP = np.array([0.0, 0.0, 1.0])
 _VERTICAL = 0.99
 """Minimum vertical component of a steering axis."""
@@ -35,6 +41,39 @@ def wheels_off_ground(subject: Subject) -> Iterator[Diagnostic]:
             continue
         found = list(_low_links(robot))
         yield from found or _raised_sides(robot)
+
+
+@rule(robot_codes.BODY_ON_GROUND)
+def body_on_ground(subject: Subject) -> Iterator[Diagnostic]:
+    """Flat bodies at the height of the driven wheels, which carry a part of the weight."""
+    for robot in subject.robots:
+        if robot.description.static or not robot.is_placed:
+            continue
+        joints = wheel_joints(robot)
+        wheels = {name for joint in joints for name in wheel_links(robot, joint)}
+        bases = {robot.rigid_root(joint.parent) for joint in joints}
+        bottom = Surfaces(robot, wheels).lowest(_UP)
+        if bottom is None or len(bases) != 1:
+            continue
+        for name in robot.rigid_groups.get(bases.pop(), []):
+            if name in wheels or not robot.whole(name) or _rolls(robot, robot.links[name]):
+                continue
+            for solid in robot.collisions[name]:
+                points = solid.placed(robot.links[name].pose)
+                low = points[points[:, 2] < bottom[2] + _TOUCHING]
+                flat = len(low) > 0 and float(np.ptp(low[:, :2], axis=0).max())
+                deep = float(bottom[2] - points[:, 2].min())
+                mu = robot.links[name].collisions[0].surface.mu1
+                if flat < _WIDE * robot.size or deep > _DEEP or (mu is not None and mu <= _GLIDES):
+                    continue
+                yield robot_codes.BODY_ON_GROUND.diagnostic(
+                    message=f'the flat underside of link "{name}" is at the height of the lowest '
+                    "points of the driven wheels, so it slides on the ground and brakes the robot",
+                    values={"link": name, "depth": deep, "friction": mu},
+                    origin=robot.links[name].collisions[0].origin,
+                    hint="Raise the collision above the ground, or lower the wheels.",
+                )
+                break
 
 
 def _low_links(robot: Robot) -> Iterator[Diagnostic]:
