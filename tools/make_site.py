@@ -68,6 +68,8 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "how-to/README.md",
             "check.md",
             "python.md",
+            "testing.md",
+            "scenarios.md",
             "python/state.md",
             "python/messages.md",
             "ros1.md",

@@ -100,6 +100,15 @@ MAY_IMPORT = {
         "dialects",
         "api",
     },
+    "testing": {
+        "api",
+        "description",
+        "messages",
+        "graph",
+        "gazebo",
+        "bridges",
+    },
+    "scenarios": {"api", "testing", "description", "messages", "graph"},
     "cli": {
         "description",
         "world",
@@ -119,6 +128,7 @@ MAY_IMPORT = {
         "dialects",
         "corpus",
         "checks",
+        "scenarios",
     },
 }
 

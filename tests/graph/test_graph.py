@@ -15,6 +15,7 @@ from cartwheel.codes.graph import (
 )
 from cartwheel.errors import UnknownNameError
 from cartwheel.graph import Graph, Mailbox, resolve_name
+from cartwheel.graph.holding import hold_back, let_pass
 
 TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
 
@@ -274,3 +275,22 @@ def test_who_mirrors_the_graph_is_told_of_each_change():
     publisher.close()
     graph.withdraw(service)
     assert seen == [1, 2, 3, 4, 5, 6]
+
+
+def test_messages_of_a_topic_can_be_held_back():
+    graph = Graph()
+    received, kept = [], []
+    graph.subscribe("/a", received.append, type_name=TEXT)
+    deliver = hold_back(graph, "/a", kept.append)
+    graph.publish("/a", TEXT, "first")
+    assert kept == ["first"] and not received
+    deliver("first")
+    assert received == ["first"]
+    let_pass(graph, "/a")
+    graph.publish("/a", TEXT, "second")
+    assert received == ["first", "second"] and kept == ["first"]
+
+
+def test_messages_of_an_unknown_topic_cannot_be_held_back():
+    with raises(TOPIC_UNKNOWN):
+        hold_back(Graph(), "/a", print)

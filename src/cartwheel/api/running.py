@@ -47,6 +47,8 @@ class RunningWorld:
         self.session = session
         self.lock = Turns()
         """Held while a thread uses the world."""
+        self.pace: float | None = None
+        """Real-time factor of runs without a `speed`; None is as fast as possible."""
         self._host, self._allow_origin = host, tuple(allow_origin)
         self._driver = Driver(session.simulation, self.lock)
         self._connections: Connections | None = None
@@ -121,7 +123,8 @@ class RunningWorld:
         Args:
             seconds: Simulation time, at least 0. If a client resets the simulation, it starts
                 again.
-            speed: Target real-time factor; None is as fast as possible.
+            speed: Target real-time factor; None is that of `pace`, by default as fast as
+                possible.
 
         Raises:
             CartwheelError: `seconds` or `speed` is out of range.
@@ -138,6 +141,7 @@ class RunningWorld:
 
     def _advance(self, simulation: Simulation, duration_ns: int, speed: float | None) -> None:
         """Runs for a simulation time within `_run`, or until the run is stopped."""
+        speed = self.pace if speed is None else speed
         if self._connections is None and speed is None:
             target = simulation.time_ns + duration_ns
             simulation.advance(target)

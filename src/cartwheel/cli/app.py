@@ -19,6 +19,7 @@ from cartwheel.cli import (
     run,
     service,
     teleop,
+    test,
     topic,
 )
 
@@ -63,6 +64,7 @@ explain.add_to(app)
 corpus.add_to(app)
 info.add_to(app)
 play.add_to(app)
+test.add_to(app)
 model.add_to(app)
 control.add_to(app)
 teleop.add_to(app)

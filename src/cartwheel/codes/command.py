@@ -91,6 +91,40 @@ INTERNAL_FAULT = Code(
 )
 FILE_TOO_DEEP = Code("CW034", "file-too-deep", "error", "a file is nested too deeply")
 NO_PAGE = Code("CW035", "no-page", "error", "the simulation has no web interface")
+SCENARIO_INVALID = Code(
+    "CW036", "scenario-invalid", "error", "a scenario has an unknown key or an invalid value"
+)
+SCENARIO_EXPRESSION = Code(
+    "CW037",
+    "scenario-expression-invalid",
+    "error",
+    "an expression in a scenario cannot be evaluated",
+)
+NO_CASES = Code("CW038", "no-cases", "error", "no scenario, or no case of one, is selected")
+LAUNCH_NOT_ALLOWED = Code(
+    "CW039",
+    "launch-not-allowed",
+    "error",
+    "a scenario starts a program, which requires permission",
+)
+LAUNCH_FAILED = Code(
+    "CW040",
+    "launch-failed",
+    "error",
+    "a program of a scenario cannot be started, or ended before the case",
+)
+COMMAND_LATE = Code(
+    "CW041",
+    "command-late",
+    "warning",
+    "a stack under test in lockstep sent a command too late",
+)
+NO_TEST_ROBOT = Code(
+    "CW042", "no-test-robot", "error", "a test uses the fixture robot, but names no robot"
+)
+RESULTS_INVALID = Code(
+    "CW043", "results-invalid", "error", "the results of an earlier run cannot be read"
+)
 SETTINGS_INVALID = Code(
     "CW050", "settings-invalid", "error", "a settings file contains an unknown or invalid entry"
 )

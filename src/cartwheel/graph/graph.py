@@ -40,7 +40,7 @@ from cartwheel.graph.topic import (
     Subscription,
     Topic,
     TopicInfo,
-    deliver_changed,
+    arrive,
 )
 from cartwheel.graph.transforms import StaticTransforms
 from cartwheel.messages import CdrCache
@@ -201,7 +201,7 @@ class Graph:
         """Publishes one message from any thread, by passing it to the owner's thread."""
         with self._lock:
             topic = self._topic(name, type_name)
-        self.post(lambda: deliver_changed(topic, message, self.cdr))
+        arrive(topic, message, self.post, self.cdr)
 
     def serve(
         self,

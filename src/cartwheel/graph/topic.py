@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+from cartwheel.calls import Post
 from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
 from cartwheel.messages import CdrCache, type_name
@@ -64,6 +65,9 @@ class Topic:
         self.callbacks: tuple[Callback, ...] = ()
         """Callbacks of all subscriptions."""
         self.latched: Any = None
+        self.take: Callback | None = None
+        """Receives messages from other threads instead of the subscribers; see
+        `cartwheel.graph.holding`."""
 
     def info(self) -> TopicInfo:
         """The topic's entry in a listing."""
@@ -93,7 +97,7 @@ class Topic:
     def forget(self) -> None:
         """Clears all references when the graph is closed."""
         self.publishers, self.subscriptions, self.callbacks = (), (), ()
-        self.latched = None
+        self.latched = self.take = None
         self.failed = _raise
 
     def deliver(self, message: Any) -> None:
@@ -107,6 +111,14 @@ class Topic:
             callback(message)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - the callback is foreign code
             self.failed(self, callback, error)
+
+
+def arrive(topic: Topic, message: Any, post: Post, cdr: CdrCache) -> None:
+    """Passes a message from another thread to the owner's thread, or to `Topic.take`."""
+    if topic.take is not None:
+        topic.take(message)
+    else:
+        post(lambda: deliver_changed(topic, message, cdr))
 
 
 def deliver_changed(topic: Topic, message: Any, cdr: CdrCache) -> None:

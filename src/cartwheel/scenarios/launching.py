@@ -1,0 +1,167 @@
+"""Programs under test, which are started for a case and ended with it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Self
+from xmlrpc.client import ServerProxy
+
+from cartwheel.codes.command import LAUNCH_FAILED
+from cartwheel.errors import CartwheelError
+
+_GRACE = 5.0
+"""Wall time between SIGINT, SIGTERM and SIGKILL, s."""
+_OUTPUT = 20_000
+"""Maximum length of the kept output in bytes."""
+_LOOK = 0.02
+_START = 30.0
+"""Wall time within which a ROS master must respond, s."""
+
+
+class Launched:
+    """A program in a process group of its own, which ends with the block.
+
+    Args:
+        command: Program and arguments.
+        folder: Working directory.
+        environment: Additional environment variables.
+
+    Raises:
+        CartwheelError: The program cannot be started.
+    """
+
+    def __init__(
+        self, command: Sequence[str], folder: Path, environment: Mapping[str, str]
+    ) -> None:
+        self.command = list(command)
+        self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
+        try:
+            self._process = subprocess.Popen(  # noqa: S603 - the user allowed it
+                self.command,
+                cwd=folder,
+                env={**os.environ, **environment},
+                stdin=subprocess.DEVNULL,
+                stdout=self._output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._output.close()
+            raise CartwheelError(
+                f'"{self.command[0]}" cannot be started: {error.strerror}',
+                code=LAUNCH_FAILED,
+                values={"command": self.command[0]},
+            ) from None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def check(self) -> None:
+        """Raises an error if the program has failed.
+
+        Raises:
+            CartwheelError: See above.
+        """
+        status = self._process.poll()
+        if status:
+            raise CartwheelError(
+                f'"{self.command[0]}" ended with status {status}',
+                code=LAUNCH_FAILED,
+                hint="See the output of the program in the report.",
+                values={"command": self.command[0], "status": status},
+            )
+
+    @property
+    def output(self) -> str:
+        """The end of the program's output."""
+        if self._output.closed:
+            return ""
+        size = os.fstat(self._output.fileno()).st_size
+        start = max(0, size - _OUTPUT)
+        data = os.pread(self._output.fileno(), _OUTPUT, start)
+        return data.decode(errors="replace")
+
+    def close(self) -> None:
+        """Ends the program and all processes of its group."""
+        if self._output.closed:
+            return
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            if not self._signal(number):
+                break
+            end = time.monotonic() + _GRACE
+            while time.monotonic() < end and self._alive():
+                time.sleep(_LOOK)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_GRACE)
+        self._output.close()
+
+    def _alive(self) -> bool:
+        self._process.poll()
+        return self._signal(0)
+
+    def _signal(self, number: int) -> bool:
+        """Sends a signal to the group; returns whether the group still exists."""
+        try:
+            os.killpg(self._process.pid, number)
+        except (ProcessLookupError, PermissionError):
+            return False
+        return True
+
+
+@contextlib.contextmanager
+def ros_master(folder: Path) -> Iterator[dict[str, str]]:
+    """A ROS master on a free port, in a process group of its own.
+
+    Yields:
+        Environment variables of its nodes.
+
+    Raises:
+        CartwheelError: The master cannot be started.
+    """
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    environment = {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_HOSTNAME": "127.0.0.1"}
+    with Launched(["rosmaster", "--core", "-p", str(port)], folder, environment) as master:
+        end = time.monotonic() + _START
+        while not _reachable(port):
+            master.check()
+            if time.monotonic() > end:
+                raise CartwheelError(
+                    f"the ROS master did not respond within {_START:g} s", code=LAUNCH_FAILED
+                )
+            time.sleep(_LOOK)
+        # Nodes that start before the simulation is connected would otherwise use the wall clock.
+        ServerProxy(environment["ROS_MASTER_URI"]).setParam("/cartwheel", "/use_sim_time", True)
+        yield environment
+
+
+def _reachable(port: int) -> bool:
+    with socket.socket() as probe:
+        probe.settimeout(1.0)
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def ros2_domain(worker: int) -> dict[str, str]:
+    """Environment variables for a ROS 2 domain of a worker's own.
+
+    Domains above 101 use ports that Linux may give to other programs.
+    """
+    return {"ROS_DOMAIN_ID": str(101 - worker % 90)}

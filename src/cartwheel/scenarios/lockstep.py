@@ -1,0 +1,155 @@
+"""Lockstep: simulation time waits for the commands of a stack under test.
+
+Time advances by one period and stops. The messages of the period are sent meanwhile. Time continues
+when one message has arrived on each command topic. Until then, commands are kept back, so they take
+effect at the same simulation time in each run, however fast the stack under test is.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.codes.command import COMMAND_LATE
+from cartwheel.graph.holding import hold_back, let_pass
+
+if TYPE_CHECKING:
+    from cartwheel.api import World
+
+PERIOD = 0.1
+WALL_TIMEOUT = 5.0
+START_TIMEOUT = 60.0
+_RETRY = 1.0
+"""Wall time after which time advances by a period before the first commands, s. Until a stack
+under test has connected all its topics, it may have missed a message."""
+_MOST = 100
+"""Maximum number of commands that are kept back for a topic."""
+_TIME_ERROR = 1e-9
+
+
+class Lockstep:
+    """Runs a connected world in lockstep with a stack under test.
+
+    Args:
+        world: The world.
+        commands: The command topics.
+        period: Simulation time between two messages of a topic, s.
+        wall_timeout: Wall time after which time continues without a message, s.
+        start_timeout: Wall time to wait for the first messages, s.
+        check: Called while the simulation waits; raises an error if the stack has ended.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        commands: Sequence[str],
+        *,
+        period: float = PERIOD,
+        wall_timeout: float = WALL_TIMEOUT,
+        start_timeout: float = START_TIMEOUT,
+        check: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._world = world
+        self._simulation = world.session.simulation
+        self._period, self._wall_timeout = period, wall_timeout
+        self._start_timeout, self._check = start_timeout, check
+        self._lock = threading.Lock()
+        self._boxes: dict[str, deque[Any]] = {name: deque(maxlen=_MOST) for name in commands}
+        self._deliver: dict[str, Callable[[Any], None]] = {}
+        self._due = world.time
+        self._begun = False
+        self.late = 0
+        """Number of periods in which a message was missing."""
+        self.extra = 0
+        """Number of messages that were replaced by a newer one of the same period."""
+        self.missing: Mapping[str, float] = {}
+        """Topics of the first late message, with the simulation time, s."""
+        for name in commands:
+            self._deliver[name] = hold_back(world.graph, name, self._taker(name))
+
+    def close(self) -> None:
+        """Delivers messages at once again."""
+        for name in self._deliver:
+            let_pass(self._world.graph, name)
+
+    def _taker(self, topic: str) -> Callable[[Any], None]:
+        def take(message: Any) -> None:
+            """Called on any thread."""
+            with self._lock:
+                self._boxes[topic].append(message)
+            self._simulation.post(lambda: None)
+
+        return take
+
+    def start(self) -> None:
+        """Waits for the first message on each command topic.
+
+        The stack under test usually sends a command for each message of a sensor. It cannot have
+        received a message that was published before it subscribed. So time advances by one period
+        for each second in which no command arrives.
+        """
+        end = time.monotonic() + self._start_timeout
+        while not self._complete() and (left := end - time.monotonic()) > 0:
+            if not self._wait(min(_RETRY, left)):
+                self._world.run(self._period)
+        self._begun = True
+        self._due = self._world.time
+        self._release()
+
+    def advance(self, seconds: float) -> None:
+        """Advances simulation time, and waits for commands at each end of a period."""
+        if not self._begun:
+            self.start()
+        end = self._world.time + seconds
+        while self._world.time < end - _TIME_ERROR:
+            if self._world.time >= self._due + self._period - _TIME_ERROR:
+                self._due += self._period
+                if not self._wait(self._wall_timeout):
+                    self._note_late()
+                self._release()
+            step = min(end, self._due + self._period) - self._world.time
+            self._world.run(max(step, self._simulation.step_ns * 1e-9))
+
+    def _complete(self) -> bool:
+        with self._lock:
+            return all(self._boxes.values())
+
+    def _wait(self, seconds: float) -> bool:
+        """Waits for a message on each topic, and serves other requests meanwhile."""
+        end = time.monotonic() + seconds
+        while not self._complete():
+            left = end - time.monotonic()
+            if left <= 0:
+                return False
+            self._check()
+            with self._world.used() as simulation:
+                simulation.wait(min(left, 0.5))
+        return True
+
+    def _release(self) -> None:
+        """Delivers the commands of the period."""
+        for topic, box in self._boxes.items():
+            with self._lock:
+                message = box.pop() if box else None
+                self.extra += len(box)
+                box.clear()
+            if message is not None:
+                self._deliver[topic](message)
+
+    def _note_late(self) -> None:
+        self.late += 1
+        with self._lock:
+            missing = [topic for topic, box in self._boxes.items() if not box]
+        now = self._world.time
+        if not self.missing:
+            self.missing = dict.fromkeys(missing, now)
+        self._simulation.report(
+            COMMAND_LATE.diagnostic(
+                f"no message arrived on {', '.join(missing)} within {self._wall_timeout:g} s of "
+                f"wall time, so simulation time continued at {now:.3f} s without it",
+                values={"topics": tuple(missing), "time": now},
+            )
+        )

@@ -1,0 +1,182 @@
+"""The steps of a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.codes.command import SCENARIO_INVALID
+from cartwheel.codes.graph import SERVICE_UNKNOWN
+from cartwheel.errors import CartwheelError, UnknownNameError
+from cartwheel.geometry import Pose
+from cartwheel.graph.action import GoalState
+from cartwheel.messages import from_dict, to_dict
+from cartwheel.scenarios.trial import UNTIL, StepFailedError, Trial
+
+if TYPE_CHECKING:
+    from cartwheel.api import Model
+
+HOLD_RATE = 10.0
+"""Default rate of a ``hold`` step, Hz."""
+_POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+class Steps:
+    """Performs the steps of a case.
+
+    Args:
+        place_of: Returns the path of a file that the scenario names.
+    """
+
+    def __init__(self, place_of: Callable[[str], Any]) -> None:
+        self._place_of = place_of
+        self._held: dict[str, Callable[[], None]] = {}
+
+    def perform(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        """Performs a step.
+
+        Raises:
+            StepFailedError: The step did not succeed.
+            CartwheelError: The step is invalid.
+        """
+        kind = next(name for name in _KINDS if name in step)
+        getattr(self, f"_{kind}")(trial, step)
+
+    def _wait(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        trial.advance(step["wait"])
+
+    def _until(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        trial.until(step["until"], step.get("timeout", UNTIL))
+
+    def _publish(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        trial.world.publish(step["publish"], step.get("message"))
+
+    def _hold(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        topic, message = step["hold"], step.get("message") or {}
+        self._end_hold(topic)
+        hold = trial.world.topic(topic).hold(message, rate=step.get("rate", HOLD_RATE))
+        self._held[topic] = hold.stop
+        trial.ends.append(lambda: self._end_hold(topic))
+
+    def _end_hold(self, topic: str) -> None:
+        self._held.pop(topic, lambda: None)()
+
+    def _release(self, trial: Trial, step: Mapping[str, Any]) -> None:  # noqa: ARG002
+        topic = step["release"]
+        if topic not in self._held:
+            raise UnknownNameError("hold", topic, self._held, code=SCENARIO_INVALID)
+        self._end_hold(topic)
+
+    def _call(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        graph, name = trial.world.graph, step["call"]
+        kind = graph.service(name).type
+        future = graph.call(name, from_dict(f"{kind}_Request", step.get("request") or {}))
+        trial.advance(UNTIL, future.done)
+        if not future.done():
+            if trial.decided:
+                return
+            raise StepFailedError(f"a response of {name}", f"none within {UNTIL:g} s", {})
+        response = to_dict(future.result())
+        for field, wanted in (step.get("response") or {}).items():
+            if field not in response:
+                raise UnknownNameError("field", field, response, code=SCENARIO_INVALID)
+            if response[field] != wanted:
+                raise StepFailedError(
+                    f"{name} responds {field}: {wanted}",
+                    f"it responded {field}: {response[field]}",
+                    {"field": field, "value": str(response[field])},
+                )
+
+    def _send_goal(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        name = step["send_goal"]
+        actions = {each.name: each for each in trial.world.graph.actions()}
+        if name not in actions:
+            raise UnknownNameError("action", name, actions, code=SERVICE_UNKNOWN)
+        action = actions[name]
+        goal = action.submit(from_dict(f"{action.type}_Goal", step.get("goal") or {}))
+        if goal is None or not step.get("wait", True):
+            return
+        timeout = step.get("timeout", UNTIL)
+        trial.advance(timeout, lambda: goal.done)
+        if goal.state is not GoalState.SUCCEEDED and not trial.decided:
+            state = goal.state.name.lower()
+            raise StepFailedError(
+                f"the goal of {name} succeeds within {timeout:g} s",
+                f"its state is {state}{f': {goal.text}' if goal.text else ''}",
+                {"state": state},
+            )
+
+    def _push(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        model, link = _part(trial, step["push"])
+        given = {name: step[name] for name in ("force", "torque", "at", "seconds") if name in step}
+        if link is None:
+            model.push(**given)
+        else:
+            model.link(link).push(**given)
+
+    def _set(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        model, link = _part(trial, step["set"])
+        if link is not None:
+            _only(step, set())
+        _only(step, {*_POSE, "joints", "velocity"})
+        if any(name in step for name in _POSE):
+            model.pose = _changed(model.pose, step)
+        for name, position in step.get("joints", {}).items():
+            model.joints.positions[name] = position
+        if "velocity" in step:
+            from cartwheel.api import Twist
+
+            model.velocity = Twist(tuple(step["velocity"]), (0.0, 0.0, 0.0))
+
+    def _spawn(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        options = spawn_options(step)
+        trial.world.spawn(self._place_of(step["spawn"]), **options)
+
+    def _delete(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        trial.world.model(step["delete"]).delete()
+
+
+_KINDS = (
+    "publish", "hold", "release", "wait", "until", "call", "send_goal", "push", "set", "spawn",
+    "delete",
+)  # fmt: skip
+
+
+def spawn_options(value: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of `World.spawn` for a robot or a step, except the file and controllers."""
+    from cartwheel.scenarios.cases import xacro_value
+
+    names = (*_POSE, "name", "namespace", "frame_prefix")
+    options = {name: value[name] for name in names if name in value}
+    if "arguments" in value:
+        given = value["arguments"].items()
+        options["arguments"] = {name: xacro_value(each) for name, each in given}
+    return options
+
+
+def _part(trial: Trial, name: str) -> tuple[Model, str | None]:
+    """A model, or the link of a model."""
+    model, _, link = name.partition("::")
+    return trial.world.model(model), link or None
+
+
+def _changed(pose: Pose, step: Mapping[str, Any]) -> Pose:
+    old = dict(zip(_POSE, (*pose.position, *pose.rpy), strict=True))
+    new = {name: step.get(name, value) for name, value in old.items()}
+    return Pose.from_xyz_rpy(
+        (new["x"], new["y"], new["z"]), (new["roll"], new["pitch"], new["yaw"])
+    )
+
+
+def _only(step: Mapping[str, Any], allowed: set[str]) -> None:
+    given = set(step) - {"set"}
+    wrong = sorted(given - allowed)
+    if wrong or not given:
+        raise CartwheelError(
+            f'"{wrong[0]}" cannot be set for "{step["set"]}"'
+            if wrong
+            else f'"set: {step["set"]}" changes nothing',
+            code=SCENARIO_INVALID,
+            hint=f"Use {', '.join(sorted(allowed))}.",
+            values={"name": wrong[0] if wrong else ""},
+        )

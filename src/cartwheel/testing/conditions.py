@@ -1,0 +1,384 @@
+"""Conditions on the state of a world, with the values that explain why one is not met."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cartwheel.api import World
+    from cartwheel.geometry import Pose
+
+Range = tuple[float, float]
+_AXES = ("x", "y", "z")
+
+
+class Condition(ABC):
+    """A condition on a world. `begin` starts it, and `holds` evaluates it at the current time."""
+
+    every_step = False
+    """Whether the condition must be evaluated at each time step, because it may hold briefly."""
+
+    def __init__(self) -> None:
+        self._world: World | None = None
+
+    @property
+    def world(self) -> World:
+        """The world, between `begin` and `close`."""
+        assert self._world is not None
+        return self._world
+
+    def begin(self, world: World) -> None:
+        """Starts the condition.
+
+        Raises:
+            UnknownNameError: A model, joint or topic does not exist.
+        """
+        self._world = world
+
+    def close(self) -> None:
+        """Ends the condition. Its texts and values remain."""
+        self._world = None
+
+    @abstractmethod
+    def holds(self) -> bool:
+        """Whether the condition is met now."""
+
+    @property
+    @abstractmethod
+    def expected(self) -> str:
+        """What is expected, as a phrase."""
+
+    @property
+    @abstractmethod
+    def actual(self) -> str:
+        """What was observed, as a phrase."""
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        """The observed values, for programs."""
+        return {}
+
+
+class Reaches(Condition):
+    """A model reaches a position, and a yaw if one is given.
+
+    Args:
+        model: Name of the model.
+        target: x, y and z in m; None is not compared.
+        within: Maximum distance from the target, m.
+        yaw: Target of the yaw, rad; None is not compared.
+        yaw_within: Maximum difference of the yaw, rad.
+    """
+
+    def __init__(
+        self,
+        model: str,
+        target: Sequence[float | None],
+        *,
+        within: float = 0.1,
+        yaw: float | None = None,
+        yaw_within: float = 0.1,
+    ) -> None:
+        super().__init__()
+        self.model, self.within = model, within
+        self.target = tuple(target) + (None,) * (3 - len(target))
+        self.yaw, self.yaw_within = yaw, yaw_within
+        self.closest, self.closest_time = math.inf, 0.0
+        self._closest_yaw: float | None = None
+        self._last: Pose | None = None
+
+    def holds(self) -> bool:
+        pose = self.world.model(self.model).pose
+        self._last = pose
+        distance = math.sqrt(
+            sum(
+                (at - to) ** 2
+                for at, to in zip(pose.position, self.target, strict=True)
+                if to is not None
+            )
+        )
+        turn = 0.0 if self.yaw is None else abs(angle_between(pose.yaw, self.yaw))
+        # Among poses at the target, the one with the best yaw is the closest.
+        best = (max(self.closest, self.within), self._closest_yaw or 0.0)
+        if self._closest_yaw is None or (max(distance, self.within), turn) < best:
+            self.closest, self._closest_yaw = distance, turn
+            self.closest_time = self.world.time
+        return distance <= self.within and turn <= self.yaw_within
+
+    @property
+    def expected(self) -> str:
+        place = ", ".join(
+            f"{axis} = {to:g} m"
+            for axis, to in zip(_AXES, self.target, strict=True)
+            if to is not None
+        )
+        parts = [f"{place} within {self.within:g} m"] if place else []
+        if self.yaw is not None:
+            parts.append(f"yaw = {self.yaw:g} rad within {self.yaw_within:g} rad")
+        return f"{self.model} reaches {' and '.join(parts)}"
+
+    @property
+    def actual(self) -> str:
+        if self._last is None:
+            return "no time passed"
+        x, y, z = self._last.position
+        turn = (
+            "" if self.yaw is None else f" with a yaw error of {self._closest_yaw or 0.0:.3g} rad"
+        )
+        return (
+            f"the closest approach was {self.closest:.3g} m{turn} at {self.closest_time:.3f} s; "
+            f"the last pose was x = {x:.3f}, y = {y:.3f}, z = {z:.3f} m, "
+            f"yaw = {self._last.yaw:.3f} rad"
+        )
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        pose = self._last
+        return {
+            "closest": self.closest,
+            "closest_time": self.closest_time,
+            "yaw_error": self._closest_yaw if self.yaw is not None else None,
+            "x": pose.x if pose else None,
+            "y": pose.y if pose else None,
+            "yaw": pose.yaw if pose else None,
+        }
+
+
+class StaysWithin(Condition):
+    """A model stays within limits.
+
+    Args:
+        model: Name of the model.
+        limits: Minimum and maximum of ``x``, ``y`` and ``z``, m.
+        tilt: Maximum angle between the model's z axis and the vertical, rad.
+        speed: Maximum speed, m/s.
+    """
+
+    def __init__(
+        self,
+        model: str,
+        limits: Mapping[str, Sequence[float]],
+        *,
+        tilt: float | None = None,
+        speed: float | None = None,
+    ) -> None:
+        super().__init__()
+        self.model, self.limits, self.tilt, self.speed = model, dict(limits), tilt, speed
+        self._seen: dict[str, Range] = {}
+        self._broken: tuple[str, float, float] | None = None
+        self._before: tuple[float, Pose] | None = None
+
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        world.model(self.model)
+
+    def holds(self) -> bool:
+        pose, now = self.world.model(self.model).pose, self.world.time
+        found = dict(zip(_AXES, pose.position, strict=True))
+        bounds: dict[str, Sequence[float]] = dict(self.limits)
+        if self.tilt is not None:
+            found["tilt"], bounds["tilt"] = tilt_of(pose), (0.0, self.tilt)
+        if self.speed is not None and self._before is not None and now > self._before[0]:
+            moved = math.dist(pose.position, self._before[1].position)
+            found["speed"], bounds["speed"] = moved / (now - self._before[0]), (0.0, self.speed)
+        self._before = (now, pose)
+        good = True
+        for name, (low, high) in bounds.items():
+            if name not in found:
+                continue
+            value = found[name]
+            least, most = self._seen.get(name, (value, value))
+            self._seen[name] = (min(least, value), max(most, value))
+            if not low <= value <= high:
+                good = False
+                if self._broken is None:
+                    self._broken = (name, value, now)
+        return good
+
+    @property
+    def expected(self) -> str:
+        parts = [f"{low:g} ≤ {name} ≤ {high:g} m" for name, (low, high) in self.limits.items()]
+        if self.tilt is not None:
+            parts.append(f"tilt ≤ {self.tilt:g} rad")
+        if self.speed is not None:
+            parts.append(f"speed ≤ {self.speed:g} m/s")
+        return f"{self.model} stays within {', '.join(parts)}"
+
+    @property
+    def actual(self) -> str:
+        seen = ", ".join(f"{name} {low:.3f} to {high:.3f}" for name, (low, high) in
+                         self._seen.items())  # fmt: skip
+        if self._broken is None:
+            return f"observed: {seen}" if seen else "no time passed"
+        name, value, time = self._broken
+        return f"{name} was {value:.3f} at {time:.3f} s; observed: {seen}"
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        if self._broken is None:
+            return {}
+        name, value, time = self._broken
+        return {"coordinate": name, "value": value, "time": time}
+
+
+class Moves(Condition):
+    """A model moves away from its pose at `begin`.
+
+    Args:
+        model: Name of the model.
+        distance: Minimum distance, m.
+    """
+
+    def __init__(self, model: str, distance: float = 0.1) -> None:
+        super().__init__()
+        self.model, self.distance = model, distance
+        self.moved = 0.0
+        self._start: Pose | None = None
+
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        self._start = world.model(self.model).pose
+
+    def holds(self) -> bool:
+        assert self._start is not None
+        now = self.world.model(self.model).pose.position
+        self.moved = max(self.moved, math.dist(now, self._start.position))
+        return self.moved >= self.distance
+
+    @property
+    def expected(self) -> str:
+        return f"{self.model} moves by at least {self.distance:g} m"
+
+    @property
+    def actual(self) -> str:
+        return f"it moved by {self.moved:.3g} m"
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        return {"moved": self.moved}
+
+
+class Publishes(Condition):
+    """Messages are published on a topic, at a rate if one is given.
+
+    Args:
+        topic: The topic.
+        rate: Messages per second of simulation time; None if one message is sufficient.
+        tolerance: Relative tolerance of the rate.
+    """
+
+    def __init__(self, topic: str, rate: float | None = None, *, tolerance: float = 0.1) -> None:
+        super().__init__()
+        self.topic, self.rate, self.tolerance = topic, rate, tolerance
+        self.count = 0
+        self.passed = 0.0
+        """Time since `begin`, s."""
+        self._since = self._last = 0.0
+        self.longest_gap = 0.0
+        self._end: Callable[[], None] = lambda: None
+
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        self._since = self._last = world.time
+        self.count, self.longest_gap = 0, 0.0
+        world.graph.topic(self.topic)
+        self._end = world.graph.subscribe(self.topic, self._take).close
+
+    def _take(self, _: object) -> None:
+        now = self.world.time
+        if self.count:
+            self.longest_gap = max(self.longest_gap, now - self._last)
+        self.count += 1
+        self._last = now
+
+    def close(self) -> None:
+        self._end()
+        self._end = lambda: None
+        super().close()
+
+    @property
+    def measured(self) -> float:
+        """Messages per second of simulation time."""
+        return self.count / self.passed if self.passed > 0 else 0.0
+
+    def holds(self) -> bool:
+        self.passed = self.world.time - self._since
+        if self.rate is None:
+            return self.count > 0
+        # The first and last message may be just outside of the time.
+        slack = self.rate * self.passed * self.tolerance + 1.0
+        return self.count > 0 and abs(self.count - self.rate * self.passed) <= slack
+
+    @property
+    def expected(self) -> str:
+        rate = "" if self.rate is None else f" at {self.rate:g} Hz ± {100 * self.tolerance:g} %"
+        return f"messages on {self.topic}{rate}"
+
+    @property
+    def actual(self) -> str:
+        if not self.count:
+            return f"no message in {self.passed:.3f} s"
+        return (
+            f"{self.count} messages in {self.passed:.3f} s, which is {self.measured:.4g} Hz; "
+            f"the longest gap was {self.longest_gap:.3g} s"
+        )
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        return {"count": self.count, "rate": self.measured, "longest_gap": self.longest_gap}
+
+
+class JointAt(Condition):
+    """A joint has a position.
+
+    Args:
+        model: Name of the model.
+        joint: Name of the joint.
+        position: Target, rad or m.
+        within: Tolerance, rad or m.
+    """
+
+    def __init__(self, model: str, joint: str, position: float, *, within: float = 0.05) -> None:
+        super().__init__()
+        self.model, self.joint, self.position, self.within = model, joint, position, within
+        self.closest, self.closest_time, self.last = math.inf, 0.0, math.nan
+
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        self.last = world.model(self.model).joint(self.joint)
+
+    def holds(self) -> bool:
+        self.last = self.world.model(self.model).joint(self.joint)
+        error = abs(self.last - self.position)
+        if error < self.closest:
+            self.closest, self.closest_time = error, self.world.time
+        return error <= self.within
+
+    @property
+    def expected(self) -> str:
+        return f"{self.model}::{self.joint} is at {self.position:g} within {self.within:g}"
+
+    @property
+    def actual(self) -> str:
+        return (
+            f"it is at {self.last:.4g}; the closest approach was {self.closest:.3g} "
+            f"at {self.closest_time:.3f} s"
+        )
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        return {"position": self.last, "closest": self.closest, "closest_time": self.closest_time}
+
+
+def angle_between(a: float, b: float) -> float:
+    """The difference of two angles, -π to π rad."""
+    return math.remainder(a - b, math.tau)
+
+
+def tilt_of(pose: Pose) -> float:
+    """Angle between a pose's z axis and the vertical, rad."""
+    x, y, _, _ = pose.orientation
+    return math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))

@@ -1,0 +1,297 @@
+"""Functions for tests that run a world until a condition is met, and state what differed.
+
+Each function runs the world of the model. If the condition is not met, it raises an `UnmetError`,
+which is an `AssertionError`, with the expected and the actual values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from cartwheel.testing.conditions import (
+    Condition,
+    JointAt,
+    Moves,
+    Publishes,
+    Reaches,
+    StaysWithin,
+)
+from cartwheel.testing.seeing import Sees
+from cartwheel.testing.touching import Touches
+from cartwheel.testing.watching import Watch, When, run
+
+if TYPE_CHECKING:
+    from cartwheel.api import Model, World
+    from cartwheel.geometry import Pose
+
+Limits = tuple[float, float]
+
+
+class UnmetError(AssertionError):
+    """A condition that was not met.
+
+    Attributes:
+        expected: What was expected, as a phrase.
+        actual: What was observed, as a phrase.
+        values: The observed values by name, in SI units.
+        time: Simulation time, s.
+    """
+
+    def __init__(self, condition: Condition, time: float) -> None:
+        self.expected, self.actual = condition.expected, condition.actual
+        self.values: Mapping[str, float | str | None] = dict(condition.values)
+        self.time = time
+        super().__init__(
+            f"at {time:.3f} s of simulation time\n"
+            f"  expected: {self.expected}\n  actual:   {self.actual}"
+        )
+
+
+def reaches(
+    robot: Model,
+    target: Pose | Sequence[float | None],
+    *,
+    within: float = 0.1,
+    timeout: float = 10.0,
+    yaw: float | None = None,
+    yaw_within: float = 0.1,
+) -> float:
+    """Runs the world until a model reaches a position.
+
+    Args:
+        robot: The model.
+        target: x and y, or x, y and z, in m; None for a coordinate that is not compared. Of a pose,
+            position and yaw are compared.
+        within: Maximum distance from the target, m.
+        timeout: Maximum simulation time, s.
+        yaw: Target of the yaw, rad.
+        yaw_within: Maximum difference of the yaw, rad.
+
+    Returns:
+        The simulation time of the world, s.
+
+    Raises:
+        UnmetError: The model did not reach the position. `values` contains the closest approach and
+            its time.
+    """
+    from cartwheel.geometry import Pose
+
+    if isinstance(target, Pose):
+        yaw = target.yaw if yaw is None else yaw
+        target = target.position
+    __tracebackhide__ = True
+    condition = Reaches(robot.name, target, within=within, yaw=yaw, yaw_within=yaw_within)
+    return _until(_world(robot), condition, timeout)
+
+
+def stays_within(
+    robot: Model,
+    *,
+    x: Limits | None = None,
+    y: Limits | None = None,
+    z: Limits | None = None,
+    tilt: float | None = None,
+    speed: float | None = None,
+    seconds: float = 5.0,
+) -> None:
+    """Runs the world for a time, in which a model must stay within limits.
+
+    Args:
+        robot: The model.
+        x: Minimum and maximum, m.
+        y: Minimum and maximum, m.
+        z: Minimum and maximum, m.
+        tilt: Maximum angle between the model's z axis and the vertical, rad.
+        speed: Maximum speed, m/s.
+        seconds: Simulation time, s.
+
+    Raises:
+        UnmetError: The model left the limits. `values` contains the coordinate, its value and the
+            time.
+    """
+    __tracebackhide__ = True
+    limits = {name: each for name, each in (("x", x), ("y", y), ("z", z)) if each is not None}
+    condition = StaysWithin(robot.name, limits, tilt=tilt, speed=speed)
+    _always(_world(robot), condition, seconds)
+
+
+def moves(robot: Model, *, distance: float = 0.1, timeout: float = 5.0) -> float:
+    """Runs the world until a model has moved.
+
+    Args:
+        robot: The model.
+        distance: Minimum distance from its current position, m.
+        timeout: Maximum simulation time, s.
+
+    Returns:
+        The simulation time of the world, s.
+
+    Raises:
+        UnmetError: The model did not move far enough. `values` contains the distance.
+    """
+    __tracebackhide__ = True
+    return _until(_world(robot), Moves(robot.name, distance), timeout)
+
+
+def publishes(
+    world: World | Model,
+    topic: str,
+    *,
+    rate: float | None = None,
+    tolerance: float = 0.1,
+    seconds: float = 2.0,
+) -> float:
+    """Runs the world and counts the messages on a topic.
+
+    Args:
+        world: The world, or one of its models.
+        topic: The topic.
+        rate: Messages per second of simulation time. Without a rate, the run ends with the first
+            message.
+        tolerance: Relative tolerance of the rate.
+        seconds: Simulation time, s.
+
+    Returns:
+        The measured rate, Hz.
+
+    Raises:
+        UnmetError: There was no message, or the rate differs. `values` contains the rate, the
+            number of messages and the longest gap in s.
+        UnknownNameError: The topic does not exist.
+    """
+    __tracebackhide__ = True
+    condition = Publishes(topic, rate, tolerance=tolerance)
+    _check(_world(world), condition, "once" if rate is None else "end", seconds)
+    return condition.measured
+
+
+def sees(
+    world: World | Model,
+    topic: str,
+    *,
+    range: float | None = None,
+    within: float = 0.05,
+    color: Sequence[float] | None = None,
+    share: float = 0.01,
+    model: str | None = None,
+    timeout: float = 2.0,
+) -> float:
+    """Runs the world until a sensor sees an object.
+
+    Args:
+        world: The world, or one of its models.
+        topic: A topic with images, depth images, laser scans, ranges or images of logical cameras.
+        range: Shortest distance that the sensor measures, m.
+        within: Tolerance of the range, m.
+        color: Red, green and blue from 0 to 1, for images.
+        share: Minimum share of the image's pixels that have the colour.
+        model: Name of the detected model, for logical cameras.
+        timeout: Maximum simulation time, s.
+
+    Returns:
+        The simulation time of the world, s.
+
+    Raises:
+        UnmetError: The sensor did not see it. `values` contains the most similar range or share.
+        UnknownNameError: The topic does not exist.
+        GraphError: Messages of the topic's type contain no view.
+    """
+    __tracebackhide__ = True
+    condition = Sees(topic, range=range, within=within, color=color, share=share, model=model)
+    return _until(_world(world), condition, timeout)
+
+
+def touches(robot: Model, other: Model | str | None = None, *, timeout: float = 5.0) -> float:
+    """Runs the world until a model touches another one.
+
+    Args:
+        robot: The model.
+        other: The other model, or a pattern such as ``wall*``; None for any model but the ground
+            plane.
+        timeout: Maximum simulation time, s.
+
+    Returns:
+        The simulation time of the world, s.
+
+    Raises:
+        UnmetError: They did not touch.
+        UnknownNameError: No model has this name.
+    """
+    __tracebackhide__ = True
+    return _until(_world(robot), Touches(robot.name, _name(other)), timeout)
+
+
+def touches_nothing(
+    robot: Model, other: Model | str | None = None, *, seconds: float = 5.0
+) -> None:
+    """Runs the world for a time, in which a model must not touch another one.
+
+    Args:
+        robot: The model.
+        other: As for `touches`.
+        seconds: Simulation time, s.
+
+    Raises:
+        UnmetError: They touched. `values` contains the links, the force in N and the time.
+        UnknownNameError: No model has this name.
+    """
+    __tracebackhide__ = True
+    _always(_world(robot), Touches(robot.name, _name(other), inverted=True), seconds)
+
+
+def joint_reaches(
+    robot: Model, joint: str, position: float, *, within: float = 0.05, timeout: float = 10.0
+) -> float:
+    """Runs the world until a joint reaches a position.
+
+    Args:
+        robot: The model.
+        joint: Name of the joint.
+        position: Target, rad or m.
+        within: Tolerance, rad or m.
+        timeout: Maximum simulation time, s.
+
+    Returns:
+        The simulation time of the world, s.
+
+    Raises:
+        UnmetError: The joint did not reach the position. `values` contains the closest approach.
+        UnknownNameError: The joint does not exist.
+    """
+    __tracebackhide__ = True
+    return _until(_world(robot), JointAt(robot.name, joint, position, within=within), timeout)
+
+
+def _until(world: World, condition: Condition, timeout: float) -> float:
+    __tracebackhide__ = True
+    _check(world, condition, "once", timeout)
+    return world.time
+
+
+def _always(world: World, condition: Condition, seconds: float) -> None:
+    __tracebackhide__ = True
+    _check(world, condition, "always", seconds)
+
+
+def _check(world: World, condition: Condition, when: When, seconds: float) -> None:
+    __tracebackhide__ = True
+    watch = Watch(condition, when)
+    try:
+        watch.begin(world)
+        run(world, [watch], seconds, until=lambda: watch.met is not None)
+        watch.end(world)
+    finally:
+        condition.close()
+    if not watch.met:
+        raise UnmetError(condition, world.time)
+
+
+def _name(other: Model | str | None) -> str | None:
+    return other if other is None or isinstance(other, str) else other.name
+
+
+def _world(model: World | Model) -> World:
+    from cartwheel.api import World
+
+    return model if isinstance(model, World) else model._world

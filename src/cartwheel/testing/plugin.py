@@ -1,0 +1,94 @@
+"""The plugin for pytest: fixtures, marks and options.
+
+pytest imports this module in each run in which Cartwheel is installed, so it imports only pytest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from cartwheel.api import Model, World
+    from cartwheel.testing.bench import Bench
+
+_MARKS = (
+    "world(name, **options): the world of the fixture `world`: a bundled world or a file. The "
+    "options are those of cartwheel.build.",
+    "robot(file, **options): a robot in the fixture `world`. The options are those of World.spawn. "
+    "The fixture `robot` is the first one.",
+    "seed(number): the seed of the fixture `world`.",
+    "cartwheel(world=, robot=, seed=, record=, **options): world, robots and seed in one mark. "
+    "`record` selects topics, such as `record='/odom'`.",
+)
+_BENCH: pytest.StashKey[Bench] = pytest.StashKey()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Adds the options."""
+    group = parser.getgroup("cartwheel")
+    group.addoption(
+        "--cartwheel-view",
+        action="store_true",
+        help="show the world of each test in the browser, in real time",
+    )
+    group.addoption(
+        "--cartwheel-artifacts",
+        metavar="DIR",
+        help="folder for recordings and pictures of failed tests (default: cartwheel-failures)",
+    )
+    group.addoption(
+        "--cartwheel-record",
+        metavar="SECONDS|all|off",
+        help="what the recording of a failed test contains: the last seconds (default: 10)",
+    )
+    group.addoption(
+        "--cartwheel-robot", metavar="FILE", help="robot of tests without a mark `robot`"
+    )
+    parser.addini("cartwheel_robot", "robot of tests without a mark `robot`")
+    parser.addini("cartwheel_world", "world of tests without a mark `world`", default="empty")
+    parser.addini("cartwheel_artifacts", "folder for recordings and pictures of failed tests")
+    parser.addini("cartwheel_record", "as --cartwheel-record", default="10")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Registers the marks."""
+    for mark in _MARKS:
+        config.addinivalue_line("markers", mark)
+    if config.option.cartwheel_view and getattr(config.option, "numprocesses", None):
+        raise pytest.UsageError("--cartwheel-view cannot be used with -n")
+
+
+@pytest.fixture
+def world(request: pytest.FixtureRequest) -> Iterator[World]:
+    """A world for the test, made from files that were read once. It is closed after the test."""
+    from cartwheel.testing.bench import Bench
+
+    bench = Bench(request)
+    request.node.stash[_BENCH] = bench
+    try:
+        yield bench.world
+    finally:
+        bench.close()
+
+
+@pytest.fixture
+def robot(request: pytest.FixtureRequest, world: World) -> Model:  # noqa: ARG001 - it is made first
+    """The first robot of the marks, or the robot of the option or ini file."""
+    bench: Bench = request.node.stash[_BENCH]
+    return bench.robot
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[Any]
+) -> Generator[None, Any, None]:
+    """Adds what is known about the world to the report of a failed test."""
+    outcome = yield
+    bench = item.stash.get(_BENCH, None)
+    if bench is not None and call.excinfo is not None and call.when != "teardown":
+        report = outcome.get_result()
+        if report.failed:
+            report.sections += bench.sections()

@@ -1,0 +1,170 @@
+"""Conditions on the messages of sensors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
+from cartwheel.errors import GraphError
+from cartwheel.testing.conditions import Condition
+
+if TYPE_CHECKING:
+    from cartwheel.api import World
+
+_COLOR_DISTANCE = 0.25
+"""Maximum difference of each of red, green and blue, from 0 to 1: shading changes colours."""
+_CHANNELS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0), "rgba8": (0, 1, 2), "bgra8": (2, 1, 0)}
+_DEPTHS = {"32FC1": (np.float32, 1.0), "16UC1": (np.uint16, 1e-3)}
+"""Type and unit in m of the values of depth images."""
+_KINDS = (
+    "sensor_msgs/msg/Image",
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/Range",
+    "ros_gz_interfaces/msg/LogicalCameraImage",
+)
+
+
+class Sees(Condition):
+    """A sensor sees an object.
+
+    Args:
+        topic: A topic with images, depth images, laser scans, ranges or images of logical cameras.
+        range: Shortest measured distance, m; None if any distance is sufficient.
+        within: Tolerance of the range, m.
+        color: Red, green and blue from 0 to 1, for images.
+        share: Minimum share of the image's pixels that have the colour.
+        model: Name of the detected model, for logical cameras.
+    """
+
+    def __init__(
+        self,
+        topic: str,
+        *,
+        range: float | None = None,
+        within: float = 0.05,
+        color: Sequence[float] | None = None,
+        share: float = 0.01,
+        model: str | None = None,
+    ) -> None:
+        super().__init__()
+        self.topic, self.range, self.within = topic, range, within
+        self.color = None if color is None else tuple(color[:3])
+        self.share, self.model = share, model
+        self.nearest: float | None = None
+        self.seen_share: float | None = None
+        self.seen_models: tuple[str, ...] = ()
+        self.count = 0
+        self._met = False
+        self._latest: Any = None
+        self._best = math.inf
+        self._end: Callable[[], None] = lambda: None
+
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        kind = world.graph.topic(self.topic).type
+        if kind not in _KINDS:
+            raise GraphError(
+                f'the topic "{self.topic}" has the type {kind}, which contains no view',
+                code=TOPIC_TYPE_MISMATCH,
+                hint=f"Use a topic of one of these types: {', '.join(_KINDS)}.",
+                values={"topic": self.topic, "type": kind},
+            )
+        self.count = 0
+        self._end = world.graph.subscribe(self.topic, self._take).close
+
+    def _take(self, message: Any) -> None:
+        self._latest = message
+
+    def close(self) -> None:
+        self._end()
+        self._end = lambda: None
+        self._latest = None
+        super().close()
+
+    def holds(self) -> bool:
+        message, self._latest = self._latest, None
+        if message is not None:
+            self.count += 1
+            self._met = self._evaluate(message)
+        return self._met
+
+    def _evaluate(self, message: Any) -> bool:
+        kind = message.__msgtype__.rpartition("/")[2]
+        if kind == "LogicalCameraImage":
+            self.seen_models = tuple(each.name for each in message.model)
+            return self.model in self.seen_models if self.model else bool(self.seen_models)
+        if kind == "Image" and message.encoding in _CHANNELS:
+            return self._evaluate_color(message)
+        distance = _nearest(message, kind)
+        if distance is None:
+            return False
+        if self.range is None:
+            self.nearest = distance
+            return True
+        if abs(distance - self.range) < self._best:
+            self._best, self.nearest = abs(distance - self.range), distance
+        return abs(distance - self.range) <= self.within
+
+    def _evaluate_color(self, message: Any) -> bool:
+        size = len(message.encoding.rstrip("0123456789"))
+        rows: Any = np.asarray(message.data).reshape(message.height, message.step)
+        pixels = rows[:, : message.width * size].reshape(message.height, message.width, size)
+        red_first = pixels[:, :, _CHANNELS[message.encoding]]
+        if self.color is None:
+            # An image of one colour shows nothing.
+            return bool((red_first != red_first[0, 0]).any())
+        near = np.abs(red_first / 255.0 - np.array(self.color)) <= _COLOR_DISTANCE
+        share = float(near.all(axis=2).mean())
+        self.seen_share = max(self.seen_share or 0.0, share)
+        return share >= self.share
+
+    @property
+    def expected(self) -> str:
+        if self.color is not None:
+            color = ", ".join(f"{each:g}" for each in self.color)
+            return (
+                f"{self.topic} shows the colour ({color}) in {100 * self.share:g} % of its pixels"
+            )
+        if self.model is not None:
+            return f"{self.topic} shows {self.model}"
+        if self.range is not None:
+            return f"{self.topic} measures {self.range:g} m within {self.within:g} m"
+        return f"{self.topic} shows an object"
+
+    @property
+    def actual(self) -> str:
+        if not self.count:
+            return "no message arrived"
+        if self.seen_share is not None:
+            return f"at most {100 * self.seen_share:.3g} % of the pixels had the colour"
+        if self.model is not None:
+            return f"it showed {', '.join(self.seen_models) or 'no model'}"
+        if self.nearest is not None:
+            return f"the most similar distance was {self.nearest:.3f} m"
+        return f"{self.count} messages contained no object"
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        return {"count": self.count, "range": self.nearest, "share": self.seen_share}
+
+
+def _nearest(message: Any, kind: str) -> float | None:
+    """The shortest distance in a message, m; None if nothing is in range."""
+    if kind == "LaserScan":
+        values = np.asarray(message.ranges, dtype=float)
+        values = values[(values >= message.range_min) & (values <= message.range_max)]
+    elif kind == "Range":
+        good = message.min_range <= message.range < message.max_range
+        values = np.array([message.range] if good else [], dtype=float)
+    elif message.encoding in _DEPTHS:
+        dtype, unit = _DEPTHS[message.encoding]
+        values = np.frombuffer(np.asarray(message.data).tobytes(), dtype=dtype).astype(float) * unit
+        values = values[values > 0]
+    else:
+        return None
+    values = values[np.isfinite(values)]
+    return float(values.min()) if values.size else None

@@ -1,0 +1,133 @@
+"""Evaluation of conditions while a world runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from cartwheel.testing.conditions import Condition, Publishes, StaysWithin
+from cartwheel.testing.touching import Touches
+
+if TYPE_CHECKING:
+    from cartwheel.api import World
+
+When = Literal["once", "always", "end"]
+SAMPLING = 0.02
+"""Interval of simulation time in which conditions are evaluated, s."""
+_TIME_ERROR = 1e-9
+"""Accuracy of times in s, which are sums of floating-point numbers."""
+
+
+@dataclass(eq=False)
+class Watch:
+    """A condition, and when it must be met.
+
+    Attributes:
+        when: ``once`` by the timeout, ``always``, or at the ``end``.
+        timeout: Simulation time from the start, s; None is the end.
+        after: Simulation time from the start at which the condition begins, s.
+    """
+
+    condition: Condition
+    when: When
+    timeout: float | None = None
+    after: float = 0.0
+    met: bool | None = field(default=None, init=False)
+    """None while it is undecided."""
+    time: float | None = field(default=None, init=False)
+    """Simulation time from the start at which it was decided, s."""
+    begun: bool = field(default=False, init=False)
+    """Whether the time `after` has come."""
+    _start: float = field(default=0.0, init=False)
+
+    def begin(self, world: World) -> None:
+        """Starts the watch; see `Condition.begin` for the errors."""
+        self._start = world.time
+        self.condition.begin(world)
+        if self.after <= 0:
+            self.begun = True
+            self.look(world)
+
+    def look(self, world: World) -> None:
+        """Evaluates the condition."""
+        now = world.time - self._start
+        if self.met is not None or now < self.after - _TIME_ERROR:
+            return
+        if not self.begun:
+            self.begun = True
+            # Rates and distances are measured from this time on.
+            self.condition.close()
+            self.condition.begin(world)
+        holds = self.condition.holds()
+        if self.when == "once":
+            if holds:
+                self._decide(True, now)
+            elif self.timeout is not None and now >= self.timeout - _TIME_ERROR:
+                self._decide(False, now)
+        elif self.when == "always" and not holds and not isinstance(self.condition, Publishes):
+            # A rate is only defined after some time.
+            self._decide(False, now)
+
+    def end(self, world: World) -> None:
+        """Decides the condition at the end."""
+        if self.met is None:
+            holds = self.begun and self.condition.holds()
+            self._decide(holds or (self.when == "always" and self.begun), world.time - self._start)
+        self.condition.close()
+
+    def _decide(self, met: bool, now: float) -> None:
+        self.met, self.time = met, now
+
+    @property
+    def open(self) -> bool:
+        """Whether time must continue to decide the condition."""
+        return self.met is None and self.when == "once"
+
+
+def default_when(condition: Condition) -> When:
+    """When a condition must be met if nothing is stated."""
+    if isinstance(condition, StaysWithin):
+        return "always"
+    if isinstance(condition, Touches):
+        return "always" if condition.inverted else "once"
+    if isinstance(condition, Publishes) and condition.rate is not None:
+        return "end"
+    return "once"
+
+
+def interval(world: World, watches: Iterable[Watch], sampling: float = SAMPLING) -> float:
+    """Interval of simulation time in which conditions are evaluated, s."""
+    if any(watch.condition.every_step and watch.met is None for watch in watches):
+        return world.session.simulation.step_ns * 1e-9
+    return sampling
+
+
+def run(
+    world: World,
+    watches: list[Watch],
+    seconds: float,
+    *,
+    until: Callable[[], bool] = lambda: False,
+    sampling: float = SAMPLING,
+    advance: Callable[[float], None] | None = None,
+    looked: Callable[[], None] = lambda: None,
+) -> None:
+    """Runs a world and evaluates conditions.
+
+    Args:
+        world: The world.
+        watches: The conditions.
+        seconds: Maximum simulation time, s.
+        until: Whether to end earlier; called after each evaluation.
+        sampling: Interval in which conditions are evaluated, s.
+        advance: Runs the world for a time; `World.run` by default.
+        looked: Called after each evaluation.
+    """
+    advance = advance or world.run
+    end = world.time + seconds
+    while world.time < end - _TIME_ERROR and not until():
+        advance(min(interval(world, watches, sampling), end - world.time))
+        for watch in watches:
+            watch.look(world)
+        looked()

@@ -1,0 +1,160 @@
+"""Steps and conditions, each met and unmet."""
+
+from __future__ import annotations
+
+import pytest
+
+from cartwheel.codes.command import SCENARIO_INVALID
+from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_UNKNOWN
+
+from .conftest import CART, DRIVE
+
+GO = f"steps: [{{publish: {DRIVE}, message: {{linear: {{x: 0.5}}}}}}]\n"
+POST = (
+    "world: post\nrobots: [{robot: rosbots.xacro, name: cart}]\n"
+    f"steps: [{{publish: {DRIVE}, message: {{linear: {{x: 1.0}}}}}}]\n"
+)
+
+MET = [
+    f"{CART}{GO}expect: [{{reaches: cart, x: 1, y: 0, yaw: 0}}]",
+    f"{CART}{GO}duration: 2\nexpect: [{{stays_within: cart, x: [-0.1, 1], tilt: 0.1, speed: 0.6}}]",
+    f"{CART}{GO}expect: [{{moves: cart, distance: 0.5, timeout: 3}}]",
+    f"{CART}duration: 2\nexpect: [{{publishes: /imu/data, rate: 30}}, {{publishes: /clock}}]",
+    f"{POST}expect: [{{touches: [cart, post], timeout: 15}}]",
+    f"{CART}{GO}duration: 1\nexpect: [{{no_contact: cart}}]",
+    f"{CART}duration: 1\nexpect: [{{joint: cart::wheel_left_joint, position: 0}}]",
+    f"{CART}{GO}duration: 1\nexpect: [{{expression: \"x('cart') > 0.3 and time <= 1.1\"}}]",
+    f"{CART}duration: 1\nexpect: [{{expression: \"count('/imu/data') in range(28, 33)\"}}]",
+    f"{CART}duration: 1\nexpect: [{{expression: \"field('/odom', 'header.stamp.sec') < 2\"}}]",
+    # After the acceleration.
+    f"{CART}{GO}duration: 2\nexpect: [{{publishes: /odom, rate: 100, after: 1}}]",
+]
+UNMET = [
+    (f"{CART}{GO}expect: [{{reaches: cart, x: -1, timeout: 2}}]", "closest", 1.0, 0.05),
+    (f"{CART}{GO}duration: 2\nexpect: [{{stays_within: cart, x: [-1, 0.5]}}]", "value", 0.5, 0.02),
+    (f"{CART}expect: [{{moves: cart, timeout: 1}}]", "moved", 0.0, 0.01),
+    (f"{CART}duration: 2\nexpect: [{{publishes: /imu/data, rate: 60}}]", "rate", 30.0, 1.0),
+    (f"{CART}{GO}expect: [{{touches: [cart, ground_plane], when: end}},"
+     " {joint: cart::wheel_left_joint, position: -3, timeout: 1}]", "position", None, None),
+    (f"{POST}duration: 15\nexpect: [{{no_contact: cart}}]", "other", "post::link", None),
+    (f"{CART}{GO}duration: 1\nexpect: [{{expression: x('cart') > 3}}]", "x('cart')", 0.375, 0.05),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", MET, ids=range(len(MET)))
+def test_a_condition_that_is_met_passes(run, text):
+    outcome = run(text)
+    assert outcome.status == "passed", outcome.findings[0].text
+
+
+@pytest.mark.parametrize(("text", "name", "value", "within"), UNMET, ids=range(len(UNMET)))
+def test_a_condition_that_is_not_met_states_the_value(run, text, name, value, within):
+    outcome = run(text)
+    assert outcome.status == "failed"
+    finding = outcome.findings[-1]
+    assert finding.line and finding.time is not None and name in finding.values
+    if within is not None:
+        assert finding.values[name] == pytest.approx(value, abs=within)
+    elif value is not None:
+        assert finding.values[name] == value
+
+
+def test_a_case_ends_when_a_condition_has_failed(run):
+    outcome = run(f"{CART}{GO}duration: 50\nexpect: [{{stays_within: cart, x: [-1, 0.5]}}]")
+    assert outcome.status == "failed" and outcome.time < 2
+
+
+def test_steps_change_the_world(run):
+    outcome = run(
+        CART
+        + f"""
+steps:
+  - hold: {DRIVE}
+    message: {{linear: {{x: 0.4}}}}
+    rate: 20
+  - until: {{reaches: cart, x: 0.5, y: 0}}
+    timeout: 5
+  - release: {DRIVE}
+  - publish: {DRIVE}
+  - wait: 1
+  - set: cart
+    x: 3
+    y: 1
+    yaw: 1.57
+  - set: cart
+    joints: {{wheel_left_joint: 0.5}}
+  - spawn: object.urdf
+    name: post
+    x: 5
+  - push: post
+    force: [0, 0, 0.1]
+    seconds: 0.1
+  - wait: 0.5
+  - call: /cart/camera1/set_camera_info
+    request: {{camera_info: {{width: 3}}}}
+    response: {{success: false}}
+  - delete: post
+expect:
+  - {{reaches: cart, x: 3, y: 1, yaw: 1.57}}
+  - {{expression: "joint('cart', 'wheel_left_joint') > 0.3"}}
+"""
+    )
+    assert outcome.status == "passed", outcome.findings[0].text
+
+
+def test_a_step_that_fails_has_a_line(run):
+    outcome = run(
+        f"{CART}steps:\n  - wait: 0.1\n  - until: {{moves: cart}}\n    timeout: 1\n"
+        "expect: [{expression: 'True'}]"
+    )
+    (finding,) = outcome.findings
+    assert (outcome.status, finding.kind, finding.line) == ("failed", "step", 4)
+    assert finding.time == pytest.approx(1.1, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("steps", "code"),
+    [
+        ("{publish: /cmd_val}", TOPIC_UNKNOWN),
+        ("{call: /nothing}", SERVICE_UNKNOWN),
+        ("{send_goal: /nothing}", SERVICE_UNKNOWN),
+        ("{release: /cmd_vel}", SCENARIO_INVALID),
+        ("{set: cart}", SCENARIO_INVALID),
+    ],
+)
+def test_an_invalid_step_is_an_error(run, steps, code):
+    outcome = run(f"{CART}steps:\n  - {steps}\nexpect: [{{expression: 'True'}}]")
+    assert outcome.status == "error"
+    assert (outcome.findings[0].code, outcome.findings[0].line) == (code.number, 3)
+
+
+def test_the_same_case_gives_the_same_result(scenario, tmp_path):
+    from cartwheel.scenarios import Options, Runner, cases_of, digests
+
+    loaded = scenario(
+        "robots: [{robot: rosbots.xacro, name: cart, x: '${start}'}]\nseeds: 3\n"
+        f"parameters: {{start: {{uniform: [0, 1]}}}}\n{GO}duration: 2\nexpect: [{{moves: cart}}]"
+    )
+    cases = list(digests(loaded, cases_of(loaded)))
+    options = Options(folder=tmp_path, record="none", pictures="none")
+    forward = Runner([loaded], options)
+    backward = Runner([loaded], options)
+    first = {case.id: forward.run(case).trajectories for case in cases}
+    second = {case.id: backward.run(case).trajectories for case in reversed(cases)}
+    assert first == second
+    assert len({str(each) for each in first.values()}) == 3
+
+
+def test_a_failed_case_has_a_recording_and_a_picture(run, tmp_path):
+    text = f"{CART}{GO}expect: [{{reaches: cart, x: -1, timeout: 1}}]"
+    outcome = run(text, record="failures", pictures="failures")
+    assert outcome.recording and outcome.picture
+    assert (tmp_path / "out" / outcome.recording).stat().st_size > 1000
+    assert (tmp_path / "out" / outcome.picture).stat().st_size > 1000
+
+
+def test_a_file_that_cannot_be_used_is_an_error_of_the_case(run):
+    from cartwheel.errors import CartwheelError
+
+    with pytest.raises(CartwheelError):
+        run("robots: [{robot: missing.urdf}]\nexpect: [{moves: a}]")

@@ -1,0 +1,152 @@
+"""Functions that check behaviour: what they return, and the values of a failure."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import cartwheel as cw
+from cartwheel.testing import (
+    UnmetError,
+    joint_reaches,
+    moves,
+    publishes,
+    reaches,
+    sees,
+    stays_within,
+    touches,
+    touches_nothing,
+)
+
+DRIVE = "/part2_cmr/cmd_vel"
+
+
+@pytest.fixture
+def cart():
+    with cw.World("post") as world:
+        yield world.spawn("rosbots.xacro", name="cart")
+
+
+def test_reaches_returns_the_time(cart):
+    cart.publish(DRIVE, linear_x=0.5)
+    time = reaches(cart, (1.0, 0.0), within=0.1)
+    # The cart accelerates at 1 m/s² to 0.5 m/s, so it is at 0.9 m after 0.9 / 0.5 + 0.25 s. The
+    # position is compared every 0.02 s.
+    assert time == pytest.approx(2.05, abs=0.08)
+
+
+def test_reaches_states_the_closest_approach(cart):
+    cart.publish(DRIVE, linear_x=0.5)
+    with pytest.raises(UnmetError) as raised:
+        reaches(cart, (0.5, 0.3), within=0.1, timeout=3)
+    values = raised.value.values
+    assert values["closest"] == pytest.approx(0.3, abs=0.01)
+    # At 0.5 m after 0.5 / 0.5 + 0.25 s.
+    assert values["closest_time"] == pytest.approx(1.25, abs=0.1)
+    assert raised.value.time == pytest.approx(3.0)
+    assert isinstance(raised.value, AssertionError)
+
+
+def test_reaches_compares_the_yaw(cart):
+    cart.publish(DRIVE, angular_z=1.0)
+    reaches(cart, (None, None), yaw=math.pi, yaw_within=0.05)
+    with pytest.raises(UnmetError) as raised:
+        reaches(cart, cw.Pose.from_xyz_rpy((1, 0, 0), (0, 0, 1)), timeout=0.1)
+    assert raised.value.values["yaw_error"] == pytest.approx(math.pi - 1.1, abs=0.15)
+
+
+def test_stays_within_states_the_coordinate(cart):
+    stays_within(cart, x=(-0.1, 0.1), y=(-0.1, 0.1), z=(-0.1, 0.1), tilt=0.05, seconds=1)
+    cart.publish(DRIVE, linear_x=0.5)
+    with pytest.raises(UnmetError) as raised:
+        stays_within(cart, x=(-0.1, 0.1), tilt=0.3)
+    assert raised.value.values["coordinate"] == "x"
+    assert raised.value.values["value"] == pytest.approx(0.1, abs=0.02)
+
+
+def test_stays_within_compares_speed_and_tilt(cart):
+    cart.publish(DRIVE, linear_x=0.5)
+    with pytest.raises(UnmetError) as raised:
+        stays_within(cart, speed=0.3)
+    assert raised.value.values["coordinate"] == "speed"
+    cart.pose = cw.Pose.from_xyz_rpy((0, 0, 1), (1.0, 0, 0))
+    with pytest.raises(UnmetError) as raised:
+        stays_within(cart, tilt=0.5)
+    assert raised.value.values["value"] == pytest.approx(1.0, abs=0.1)
+
+
+def test_moves_states_the_distance(cart):
+    with pytest.raises(UnmetError) as raised:
+        moves(cart, timeout=0.5)
+    assert raised.value.values["moved"] < 0.01
+    cart.publish(DRIVE, linear_x=0.5)
+    assert moves(cart) < 2
+
+
+def test_publishes_measures_the_rate(cart):
+    assert publishes(cart, "/imu/data", rate=30) == pytest.approx(30, abs=1)
+    publishes(cart._world, "/odom")
+    with pytest.raises(UnmetError) as raised:
+        publishes(cart, "/imu/data", rate=50)
+    assert raised.value.values["rate"] == pytest.approx(30, abs=1)
+    with pytest.raises(UnmetError) as raised:
+        publishes(cart, DRIVE, seconds=0.1)
+    assert raised.value.values["count"] == 0
+
+
+def test_an_unknown_topic_is_an_error(cart):
+    with pytest.raises(cw.CartwheelError) as raised:
+        publishes(cart, "/odmo")
+    assert raised.value.values["meant"] == "/odom"
+
+
+def test_touches(cart):
+    touches_nothing(cart, seconds=0.2)
+    with pytest.raises(UnmetError):
+        touches(cart, timeout=0.2)
+    cart.publish(DRIVE, linear_x=1.0)
+    touches(cart, "post", timeout=15)
+    with pytest.raises(UnmetError) as raised:
+        touches_nothing(cart, cart._world.model("post"))
+    assert str(raised.value.values["other"]).startswith("post::")
+    with pytest.raises(cw.CartwheelError):
+        touches(cart, "wall*")
+
+
+def test_joint_reaches(cart):
+    cart.publish(DRIVE, linear_x=0.5)
+    joint_reaches(cart, "wheel_left_joint", 1.0, within=0.1)
+    with pytest.raises(UnmetError) as raised:
+        joint_reaches(cart, "wheel_left_joint", -5.0, timeout=0.2)
+    assert raised.value.values["position"] > 0.9
+
+
+def test_sees_a_colour_and_a_distance():
+    with cw.World("walls") as world:
+        cart = world.spawn("rosbots.xacro")
+        # The camera faces a yellow box and orange cones.
+        sees(cart, "/rosbots/camera1/image_raw", color=(1.0, 0.4, 0.0), share=0.0005)
+        sees(cart, "/rosbots/camera1/image_raw")
+        with pytest.raises(UnmetError) as raised:
+            sees(cart, "/rosbots/camera1/image_raw", color=(1.0, 0.0, 1.0), timeout=0.2)
+        assert raised.value.values["share"] == 0
+        with pytest.raises(cw.CartwheelError):
+            sees(cart, "/odom")
+
+
+def test_sees_a_range(make):
+    laser = make.sdf(
+        '<model name="laser"><static>true</static><pose>0 0 0.5 0 0 0</pose><link name="link">'
+        '<sensor name="scan" type="ray"><update_rate>20</update_rate><ray><scan><horizontal>'
+        "<samples>11</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal>"
+        "</scan><range><min>0.1</min><max>10</max></range></ray>"
+        '<plugin name="p" filename="libgazebo_ros_laser.so"><topicName>/scan</topicName>'
+        "<frameName>link</frameName></plugin></sensor></link></model>"
+    )
+    box = make.box("box", (0.2, 2, 2), static=True, pose=cw.Pose((2.1, 0, 0.5)))
+    world = make.world(laser, box)
+    sees(world, "/scan", range=2.0, within=0.01)
+    with pytest.raises(UnmetError) as raised:
+        sees(world, "/scan", range=3.0, timeout=0.2)
+    assert raised.value.values["range"] == pytest.approx(2.0, abs=0.01)

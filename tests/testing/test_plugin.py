@@ -1,0 +1,222 @@
+"""The plugin in runs of pytest of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+PASSING = """
+import pytest
+
+@pytest.mark.robot("rosbots.xacro", name="cart", x=1.0)
+@pytest.mark.world("walls")
+@pytest.mark.seed(3)
+def test_marks(robot, world):
+    assert robot.name == "cart" and robot.pose.x == pytest.approx(1.0)
+    assert "wall_south_1" in world.models
+
+@pytest.mark.cartwheel(world="walls", robots=["rosbots.xacro", {"robot": "object.urdf", "x": 3}])
+def test_one_mark(robot, world):
+    assert robot.name == "rosbots" and world.models[-1] == "my_object"
+
+def test_empty(world):
+    assert world.models == ("ground_plane",)
+"""
+FAILING = """
+import pytest
+from cartwheel.testing import reaches
+
+@pytest.mark.robot("rosbots.xacro")
+@pytest.mark.parametrize("speed", [0.2])
+def test_fails(robot, speed):
+    robot.publish("/part2_cmr/cmd_vel", linear_x=speed)
+    reaches(robot, (5, 0), timeout=1)
+"""
+Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def pytester_run(tmp_path: Path) -> Run:
+    """Writes a test file and runs pytest in its folder."""
+
+    def run(text: str, *arguments: str, ini: str = "") -> subprocess.CompletedProcess[str]:
+        (tmp_path / "test_it.py").write_text(textwrap.dedent(text))
+        (tmp_path / "pytest.ini").write_text(f"[pytest]\naddopts = --strict-markers\n{ini}\n")
+        environment = {**os.environ, "PYTEST_ADDOPTS": "", "COLUMNS": "200"}
+        return subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+
+    return run
+
+
+def test_marks_select_world_robots_and_seed(pytester_run):
+    done = pytester_run(PASSING)
+    assert done.returncode == 0, done.stdout
+    assert "3 passed" in done.stdout
+
+
+def test_ini_and_options_name_a_robot(pytester_run):
+    test = "def test_it(robot, world):\n    assert ('post' in world.models) is {}\n"
+    ini = "cartwheel_robot = rosbots.xacro\ncartwheel_world = post"
+    assert pytester_run(test.format(True), ini=ini).returncode == 0
+    assert pytester_run(test.format(False), "--cartwheel-robot=rosbots.xacro").returncode == 0
+
+
+def test_files_beside_the_test_are_found(pytester_run, tmp_path):
+    (tmp_path / "my.urdf").write_text(
+        '<robot name="mine"><link name="base"><inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    done = pytester_run(
+        'import pytest\n@pytest.mark.robot("my.urdf")\ndef test_it(robot):\n'
+        '    assert robot.name == "mine"\n',
+        "--rootdir=/",
+    )
+    assert done.returncode == 0, done.stdout
+
+
+def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
+    done = pytester_run(FAILING, "--cartwheel-artifacts=out")
+    assert done.returncode == 1
+    for text in (
+        "cartwheel: world", "cartwheel: last messages", "cartwheel: artifacts", "/odom at 1.000",
+        "test_it.py::test_fails[0.2]", "--cartwheel-view",
+    ):  # fmt: skip
+        assert text in done.stdout
+    (recording,) = (tmp_path / "out").glob("*.mcap")
+    (picture,) = (tmp_path / "out").glob("*.png")
+    assert picture.stat().st_size > 1000 and (tmp_path / "out/.gitignore").exists()
+    info = subprocess.run(
+        [sys.executable, "-m", "cartwheel.cli.main", "info", str(recording)],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert "/odom" in info.stdout and "/robot_description" in info.stdout
+
+
+def test_the_recording_contains_the_last_seconds(pytester_run, tmp_path):
+    from cartwheel.bridges.recording.opening import open_recording
+    from cartwheel.bridges.recording.reading import span_of
+
+    spans = {}
+    for seconds in ("0.5", "all"):
+        pytester_run(FAILING, "--cartwheel-artifacts=out", f"--cartwheel-record={seconds}")
+        (file,) = (tmp_path / "out").glob("*.mcap")
+        recording = open_recording(file)
+        begin, end = span_of(recording) or (0, 0)
+        spans[seconds] = (end - begin) / 1e9
+        recording.close()
+    # Messages are published at 100 Hz.
+    assert spans["0.5"] == pytest.approx(0.5, abs=0.03)
+    assert spans["all"] == pytest.approx(1.0, abs=0.03)
+
+
+def test_nothing_is_recorded_when_off(pytester_run, tmp_path):
+    done = pytester_run(FAILING, "--cartwheel-artifacts=out", "--cartwheel-record=off")
+    assert done.returncode == 1 and not list((tmp_path / "out").glob("*.mcap"))
+
+
+def test_it_works_with_xdist(pytester_run, tmp_path):
+    done = pytester_run(PASSING + FAILING, "-n", "2", "--cartwheel-artifacts=out")
+    assert "1 failed, 3 passed" in done.stdout
+    assert "cartwheel: artifacts" in done.stdout
+    assert len(list((tmp_path / "out").glob("*.mcap"))) == 1
+
+
+def test_view_is_refused_with_xdist(pytester_run):
+    assert pytester_run(PASSING, "-n", "2", "--cartwheel-view").returncode == 4
+
+
+def test_view_shows_the_world_in_real_time(pytester_run):
+    done = pytester_run(
+        """
+        import time, urllib.request
+        import pytest
+
+        @pytest.mark.robot("rosbots.xacro")
+        def test_it(robot, world):
+            begin = time.monotonic()
+            world.run(seconds=1)
+            assert time.monotonic() - begin > 0.9
+            assert urllib.request.urlopen(world.show(), timeout=60).status == 200
+        """,
+        "--cartwheel-view",
+    )
+    assert done.returncode == 0, done.stdout
+    assert "test_it.py::test_it: http://" in done.stdout
+
+
+def test_a_test_without_a_robot_is_an_error(pytester_run):
+    done = pytester_run("def test_it(robot): pass")
+    assert done.returncode == 1 and "1 error" in done.stdout
+
+
+def test_a_world_is_built_once_and_closed_after_each_test(pytester_run):
+    done = pytester_run(
+        """
+        import pytest
+        from cartwheel.testing import bench
+
+        worlds, calls = [], []
+        original = bench.build
+
+        @pytest.fixture(autouse=True, scope="module")
+        def counting():
+            bench.build = lambda *a, **k: calls.append(1) or original(*a, **k)
+            yield
+            bench.build = original
+
+        @pytest.mark.parametrize("number", range(3))
+        @pytest.mark.robot("rosbots.xacro")
+        def test_it(robot, world, number):
+            worlds.append(world)
+            assert number == 1
+
+        def test_after():
+            assert len(calls) == 1 and len(worlds) == 3
+            assert all(each.session.simulation.closed for each in worlds)
+        """
+    )
+    assert "2 failed, 2 passed" in done.stdout, done.stdout
+
+
+def test_other_runs_import_nothing_of_the_simulation(pytester_run):
+    done = pytester_run(
+        """
+        import sys
+
+        def test_it():
+            heavy = {"numpy", "mujoco", "cartwheel.api", "cartwheel.testing.bench", "yaml"}
+            assert not heavy & set(sys.modules)
+        """
+    )
+    assert done.returncode == 0, done.stdout
+
+
+def test_fixtures_of_a_project_replace_those_of_the_plugin(pytester_run):
+    done = pytester_run(
+        """
+        import pytest
+
+        @pytest.fixture
+        def world():
+            return "mine"
+
+        def test_it(world):
+            assert world == "mine"
+            assert 0
+        """
+    )
+    assert "cartwheel:" not in done.stdout and done.returncode == 1
