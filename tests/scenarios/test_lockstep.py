@@ -1,0 +1,83 @@
+"""Lockstep: the time at which commands take effect, and late commands."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+from pathlib import Path
+
+import pytest
+
+import cartwheel as cw
+from cartwheel.messages import from_dict
+from cartwheel.scenarios import Options, Runner, cases_of, digests, load_scenario
+from cartwheel.scenarios.lockstep import Lockstep
+
+DRIVE = "/part2_cmr/cmd_vel"
+TWIST = "geometry_msgs/msg/Twist"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "scenarios" / "lockstep_ros1.yaml"
+
+
+class Stack:
+    """A stack under test in a thread: it commands a speed for each message of odometry."""
+
+    def __init__(self, world: cw.World, *, every: int = 10) -> None:
+        self._graph, self._every, self._count = world.graph, every, 0
+        self.silent = False
+        world.subscribe("/odom", self._take)
+
+    def _take(self, message) -> None:
+        self._count += 1
+        if self._count % self._every or self.silent:
+            return
+        speed = 0.5 - 0.2 * message.pose.pose.position.x
+        twist = from_dict(TWIST, {"linear": {"x": speed}})
+        delay = 0.001 * (self._count % 7)
+        threading.Timer(delay, lambda: self._graph.publish(DRIVE, TWIST, twist)).start()
+
+
+def drive() -> tuple[list[float], int]:
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro")
+        Stack(world)
+        lockstep = Lockstep(world, [DRIVE], period=0.1, wall_timeout=30.0)
+        lockstep.start()
+        xs = []
+        for _ in range(20):
+            lockstep.advance(0.1)
+            xs.append(cart.pose.x)
+        lockstep.close()
+        return xs, lockstep.late
+
+
+def test_runs_in_lockstep_are_equal():
+    first, late = drive()
+    assert late == 0 and first[-1] > 0.3
+    assert drive() == (first, 0)
+
+
+def test_time_continues_after_a_late_command():
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        stack = Stack(world)
+        lockstep = Lockstep(world, [DRIVE], period=0.1, wall_timeout=0.2)
+        lockstep.start()
+        stack.silent = True
+        begin = world.time
+        lockstep.advance(0.5)
+        assert world.time - begin == pytest.approx(0.5)
+        assert lockstep.late >= 3 and list(lockstep.missing) == [DRIVE]
+        lockstep.close()
+
+
+@pytest.mark.skipif(shutil.which("rostopic") is None, reason="ROS 1 is not installed")
+def test_a_node_of_ros_1_drives_in_lockstep(tmp_path):
+    scenario = load_scenario(EXAMPLE)
+    options = Options(folder=tmp_path, record="none", pictures="none", allow_launch=True)
+    (case,) = digests(scenario, cases_of(scenario))
+    runner = Runner([scenario], options)
+    outcomes = [runner.run(case) for _ in range(2)]
+    assert [each.status for each in outcomes] == ["passed", "passed"], outcomes[0].findings
+    first, second = (each.trajectories["cart"] for each in outcomes)
+    # Times are rounded to 0.1 ms, and positions to 0.1 mm.
+    assert first == second
