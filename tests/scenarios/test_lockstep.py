@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import sys
 import threading
 from pathlib import Path
 
@@ -15,7 +17,7 @@ from cartwheel.scenarios.lockstep import Lockstep
 
 DRIVE = "/part2_cmr/cmd_vel"
 TWIST = "geometry_msgs/msg/Twist"
-EXAMPLE = Path(__file__).parents[2] / "examples" / "scenarios" / "lockstep_ros1.yaml"
+FOLDER = Path(__file__).parents[2] / "examples" / "scenarios"
 
 
 class Stack:
@@ -70,12 +72,25 @@ def test_time_continues_after_a_late_command():
         lockstep.close()
 
 
-@pytest.mark.skipif(shutil.which("rostopic") is None, reason="ROS 1 is not installed")
-def test_a_node_of_ros_1_drives_in_lockstep(tmp_path):
-    scenario = load_scenario(EXAMPLE)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(
+            "ros1",
+            marks=pytest.mark.skipif(
+                shutil.which("rostopic") is None, reason="ROS 1 is not installed"
+            ),
+        ),
+        "ros2",
+    ],
+)
+def test_an_example_drives_in_lockstep(name, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    scenario = load_scenario(FOLDER / f"lockstep_{name}.yaml")
     options = Options(folder=tmp_path, record="none", pictures="none", allow_launch=True)
     (case,) = digests(scenario, cases_of(scenario))
-    runner = Runner([scenario], options)
+    # Other tests that run at the same time have other domains.
+    runner = Runner([scenario], options, worker=os.getpid() % 80)
     outcomes = [runner.run(case) for _ in range(2)]
     assert [each.status for each in outcomes] == ["passed", "passed"], outcomes[0].findings
     first, second = (each.trajectories["cart"] for each in outcomes)
