@@ -12,7 +12,7 @@ from cartwheel.saving import State, restore, save
 
 
 class SavingWorld(MessagingWorld):
-    """The part of `World` that saves and restores its state."""
+    """The part of `World` that saves, restores and resets its state."""
 
     def save(self) -> State:
         """Saves the state: physics, plugins, controllers, commands and noise.
@@ -49,6 +49,19 @@ class SavingWorld(MessagingWorld):
             if self._running:
                 raise _nested("restores")
             restore(self.session, state)
+
+    def reset(self, seed: int | None = None) -> None:
+        """Resets simulation time and all models to their initial state.
+
+        Args:
+            seed: New seed for all noise, as for `World`; None for the same seed.
+
+        Raises:
+            CartwheelError: The seed is not an integer of at least 0.
+            SimulationError: The world is closed.
+        """
+        with self.used(change=True) as simulation:
+            simulation.reset(seed=seed)
 
     def _left_out(self) -> Iterator[str]:
         if self._connections is not None:

@@ -250,11 +250,6 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             self.session.simulation.pose(name)
         return Model(self, name)
 
-    def reset(self) -> None:
-        """Resets simulation time and all models to their initial state."""
-        with self.used(change=True) as simulation:
-            simulation.reset()
-
 
 def _files(
     controllers: str | Path | Sequence[str | Path] | None,

@@ -93,6 +93,7 @@ class _Drift:
         self._deviation = deviation
         self._kept, self._added = gauss_markov_step(deviation, frequency, self._period_ns)
         self.restart()
+        part.on_seed.append(self.restart)
 
     def restart(self) -> None:
         """Starts a new drift at the current time."""
@@ -149,12 +150,9 @@ class VectorNoise:
         self._rounds = self._precision > 0
         self.variance = self._stddev**2
         """Variance of the white noise, shape (n,)."""
-        random = part.random(f"{name} bias")
-        bias = random.normal(
-            [noise.bias_mean for noise in noises], [noise.bias_stddev for noise in noises]
-        )
-        # The sign of the bias is random.
-        self._fixed = self._mean + np.where(random.random(len(noises)) < 0.5, bias, -bias)
+        self._bias = [noise.bias_mean for noise in noises], [noise.bias_stddev for noise in noises]
+        self._draw()
+        part.on_seed.append(self._draw)
         time = np.array([noise.dynamic_bias_correlation_time for noise in noises])
         walk = np.where(time > 0, [noise.dynamic_bias_stddev for noise in noises], 0.0)
         self._drift = _Drift(
@@ -166,8 +164,19 @@ class VectorNoise:
             settled=False,
         )
         self._none = not (
-            self._stddev.any() or self._fixed.any() or walk.any() or self._precision.any()
+            self._stddev.any()
+            or self._mean.any()
+            or any(map(any, self._bias))
+            or walk.any()
+            or self._precision.any()
         )
+
+    def _draw(self) -> None:
+        """Draws the constant bias."""
+        random = self._part.random(f"{self._name} bias")
+        bias = random.normal(*self._bias)
+        # The sign of the bias is random.
+        self._fixed = self._mean + np.where(random.random(len(bias)) < 0.5, bias, -bias)
 
     @property
     def offset(self) -> Array:
@@ -209,6 +218,8 @@ class DriftingErrorConfig:
     """Standard deviation of the noise."""
     scale: Sequence[float]
     """Factor on the true value."""
+    bias: float = 0.0
+    """Standard deviation of a further constant error of each quantity, which is drawn once."""
 
 
 class DriftingError:
@@ -224,9 +235,10 @@ class DriftingError:
 
     def __init__(self, part: Part, config: DriftingErrorConfig) -> None:
         self._part, self._name = part, config.name
-        self._offset, self._noise, self._scale = (
-            np.array(values) for values in (config.offset, config.noise, config.scale)
-        )
+        self._config = config
+        self._noise, self._scale = np.array(config.noise), np.array(config.scale)
+        self._draw()
+        part.on_seed.append(self._draw)
         self._drift = _Drift(
             part,
             config.name,
@@ -237,6 +249,13 @@ class DriftingError:
         )
         self.variance = self._noise**2
         """Variance of the noise, without drift, shape (n,)."""
+
+    def _draw(self) -> None:
+        """Draws the constant error."""
+        self._offset = np.array(self._config.offset)
+        if self._config.bias:
+            random = self._part.random(f"{self._name} bias")
+            self._offset = self._offset + random.normal(0.0, self._config.bias, len(self._offset))
 
     def restart(self) -> None:
         """Starts a new drift at the current time."""

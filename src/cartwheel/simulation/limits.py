@@ -149,3 +149,13 @@ def check_steps(count: int) -> None:
             code=world_codes.STEP_COUNT_INVALID,
             values={"value": count if isinstance(count, int) else repr(count)[:60]},
         )
+
+
+def check_seed(seed: int | None) -> None:
+    """Checks the seed for all noise.
+
+    Raises:
+        CartwheelError: The seed is not an integer of at least 0, or None.
+    """
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
+        raise _out_of_range("the seed", "an integer of at least 0", seed)

@@ -61,6 +61,8 @@ class Part(Requests):
         """Names of the topics that plugins of the model have advertised or subscribed to."""
         self.tuned: list[tuple[str, Tuned]] = []
         """Joints and their PID controllers."""
+        self.on_seed: list[Callable[[], None]] = []
+        """Called after a reset with a new seed, to draw random constants again; see `random`."""
         self.read_sensors: set[str] = set()
         """Sensors that a plugin of the model publishes, so that no default plugin is needed."""
         self._touched: dict[frozenset[str], dict[int, str]] = {}
@@ -194,6 +196,7 @@ class Part(Requests):
             self.handles,
             self.tasks,
             self.tuned,
+            self.on_seed,
             entry.drives,
             entry.cameras,
             entry.attachments,

@@ -14,7 +14,7 @@ from cartwheel.simulation.alarms import Alarms
 from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
-from cartwheel.simulation.limits import check_steps
+from cartwheel.simulation.limits import check_seed, check_steps
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.ground_truth import GroundTruth
 from cartwheel.simulation.models.models import Models
@@ -268,15 +268,25 @@ class Simulation(Models):
         """Updates poses and contacts to the current state, for reading between steps."""
         self.engine.refresh()
 
-    def reset(self, *, keep_time: bool = False) -> None:
+    def reset(self, *, keep_time: bool = False, seed: int | None = None) -> None:
         """Resets every model to its spawn pose, and time to zero.
 
         Args:
             keep_time: Do not reset time; forces on links and joints also continue.
+            seed: New seed for all noise; None for the same seed.
+
+        Raises:
+            CartwheelError: The seed is not an integer of at least 0; nothing has changed.
         """
+        check_seed(seed)
         population = self._population
         population.return_to_start()
         self.engine.rewind(keep_time=keep_time)
+        if seed is not None:
+            self.engine.seed = seed
+            for resident in population.everyone():
+                for draw in resident.part.on_seed:
+                    draw()
         population.take_positions(population.residents.values())
         population.watch.forget()
         population.separation.forget()

@@ -137,6 +137,7 @@ class Resident:
         self.drives.clear()
         self.part.handles.clear()
         self.part.tasks.clear()
+        self.part.on_seed.clear()
         self.part.owned.clear()
 
 

@@ -132,7 +132,8 @@ class RotorsImu(Plugin[RotorsImuParameters]):
         return DriftingErrorConfig(
             name=name,
             rate=0.0,
-            offset=part.random(f"{name} bias").normal(0.0, bias, 3).tolist(),
+            offset=[0.0] * 3,
+            bias=bias,
             drift=[walk * math.sqrt(time / 2)] * 3,
             frequency=[1 / time] * 3,
             noise=[density / math.sqrt(seconds)] * 3,
