@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel.codes.world import STATE_MISMATCH
 from cartwheel.component import Component
+from cartwheel.description.model import RobotDescription
 from cartwheel.errors import SimulationError
 from cartwheel.saving.changes import mismatch
 from cartwheel.saving.models import SavedModel, replace_entry
@@ -39,10 +40,11 @@ def restore(session: Session, state: State) -> None:
     saved = session.originals.get(state)
     before = engine.model
     changed = _restore_world(session, state)
-    residents = _restore_models(session, state)
-    changed |= list(residents) != list(population.residents)
-    for model in state._models:
-        resident = residents[model.entry.name]
+    residents, replaced = _restore_models(session, state)
+    changed |= replaced
+    for model in (state._house, *state._models):
+        name = model.entry.name
+        resident = residents[name] if name else population.house
         _restore_plugins(resident, model)
         changed |= replace_entry(resident.entry, model.entry)
         resident.start = model.start
@@ -83,9 +85,11 @@ def _check(session: Session, state: State) -> None:
             hint="Save the state again with these versions.",
             values={"saved": saved, "now": now},
         )
-    name = session.simulation.world.name
+    name, without = session.simulation.world.name, session.simulation.engine.without
     if state._world.name != name:
         raise mismatch(f'the state is of world "{state._world.name}", and this is world "{name}"')
+    if state._without != tuple(sorted(without)):
+        raise mismatch("different physics is omitted")
 
 
 def _restore_world(session: Session, state: State) -> bool:
@@ -98,8 +102,12 @@ def _restore_world(session: Session, state: State) -> bool:
     return True
 
 
-def _restore_models(session: Session, state: State) -> dict[str, Resident]:
-    """Closes models that are not in the state, and creates those that are missing."""
+def _restore_models(session: Session, state: State) -> tuple[dict[str, Resident], bool]:
+    """Closes models that are not in the state, and creates those that are missing.
+
+    Returns:
+        The models in the order of the state, and whether they have changed.
+    """
     simulation = session.simulation
     population = simulation.population
     wanted = {model.entry.name: model for model in state._models}
@@ -110,6 +118,8 @@ def _restore_models(session: Session, state: State) -> dict[str, Resident]:
             simulation.forces.drop(name)
             resident.close()
             del live[name]
+    changed = len(live) != len(population.residents)
+    population.residents = dict(live)
     residents = {}
     for name, model in wanted.items():
         residents[name] = (
@@ -125,7 +135,7 @@ def _restore_models(session: Session, state: State) -> dict[str, Resident]:
                 package_path=model.package_path,
             )
         )
-    return residents
+    return residents, changed or list(residents) != list(live)
 
 
 def _same(resident: Resident, model: SavedModel) -> bool:
@@ -134,10 +144,27 @@ def _same(resident: Resident, model: SavedModel) -> bool:
         index for index, plugin in enumerate(resident.created) if plugin in resident.behaviours
     }
     part = resident.part
-    return alive.issuperset(model.plugins) and (part.namespace, part.frame_prefix) == (
-        model.namespace,
-        model.frame_prefix,
+    return (
+        alive.issuperset(model.plugins)
+        and part.namespace == model.namespace
+        and part.frame_prefix == model.frame_prefix
+        and _similar(resident.entry.description, model.entry.description)
     )
+
+
+def _similar(description: RobotDescription, other: RobotDescription) -> bool:
+    """Whether two descriptions are of the same robot, whose properties may have been changed."""
+    if description == other:
+        return True
+    one, two = (
+        (
+            each.origin,
+            [link.name for link in each.links],
+            [(joint.name, joint.type) for joint in each.joints],
+        )
+        for each in (description, other)
+    )
+    return one == two
 
 
 def _restore_plugins(resident: Resident, model: SavedModel) -> None:

@@ -33,7 +33,9 @@ class State:
         *,
         version: tuple[str, str],
         world: WorldDescription,
+        house: SavedModel,
         models: tuple[SavedModel, ...],
+        without: tuple[str, ...],
         time_ns: int,
         roots: dict[str, Any],
         nodes: list[Node],
@@ -43,7 +45,9 @@ class State:
     ) -> None:
         self._version = version
         self._world = world
+        self._house = house
         self._models = models
+        self._without = without
         self._time_ns = time_ns
         self._roots = roots
         self._nodes = nodes
@@ -105,10 +109,12 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
     state = State(
         version=version(),
         world=replace(simulation.world, models=()),
+        house=describe(simulation.population.house),
         models=tuple(
             describe(each, *session.spawned.get(name, ((), ())))
             for name, each in simulation.population.residents.items()
         ),
+        without=tuple(sorted(simulation.engine.without)),
         time_ns=simulation.time_ns,
         roots=roots,
         nodes=writer.nodes,
