@@ -72,6 +72,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "scenarios.md",
             "python/state.md",
             "python/messages.md",
+            "python/save-restore.md",
             "ros1.md",
             "ros2.md",
             "foxglove.md",

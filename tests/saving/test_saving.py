@@ -210,6 +210,28 @@ def test_after_a_fork():
         assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
+def test_timed_actions_and_held_messages(world):
+    cart = world.model("rosbots")
+    times = []
+    world.topic("/part2_cmr/cmd_vel").hold({"linear": {"x": 0.3}}, rate=7.0)
+    world.on(0.5, lambda: times.append(world.time))
+    cancelled = world.on(0.6, lambda: times.append(world.time))
+    world.run(0.25)
+    state = world.save()
+    assert "action at 0.5 s" in state.left_out
+    world.run(0.5)
+    expected = bits(world)
+    assert times == [0.5, 0.6]
+    world.on(0.8, lambda: times.append(world.time))
+    cancelled.cancel()
+    world.restore(state)
+    world.run(0.5)
+    assert bits(world) == expected
+    world.run(0.3)
+    assert times == [0.5, 0.6, 0.5]
+    assert cart.pose.x > 0.1
+
+
 def test_what_is_left_out_is_listed(world, tmp_path):
     assert world.save().left_out == ()
     world.subscribe("/odom", lambda _: None)

@@ -66,6 +66,7 @@ def restore(session: Session, state: State) -> None:
         raise mismatch("its links or joints differ")
     physics.restore(engine.model, engine.data)
     engine.restore(state._engine)
+    simulation.alarms.restore(() if saved is None else saved.alarms)
     population.gather_tasks()
     if engine.model is not before:
         population.observe()

@@ -120,7 +120,7 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
         nodes=writer.nodes,
         engine=simulation.engine.save(),
         physics=Physics(simulation.model, simulation.data),
-        left_out=(*left_out, *_subscribers(session), *writer.left_out),
+        left_out=(*left_out, *_of_program(session), *writer.left_out),
     )
     session.originals[state] = Saved(writer, simulation)
     return state
@@ -131,6 +131,7 @@ class Saved:
 
     def __init__(self, writer: Writer, simulation: Simulation) -> None:
         self.originals = writer.originals
+        self.alarms = simulation.alarms.save()
         self.residents: dict[str, Resident] = dict(simulation.population.residents)
 
 
@@ -167,9 +168,11 @@ def _objects_of(resident: Resident) -> Iterator[tuple[str, Any]]:
     yield f"{name} drives", resident.drives
 
 
-def _subscribers(session: Session) -> Iterator[str]:
-    """Yields the subscribers that the program has added."""
+def _of_program(session: Session) -> Iterator[str]:
+    """Yields the subscribers and timed actions that the program has added."""
     for topic in session.graph.topics():
         for node in topic.subscribers:
             if node == "cartwheel":
                 yield f"subscriber of {topic.name}"
+    for alarm in session.simulation.alarms.pending:
+        yield f"action at {alarm.time_ns / NANOSECONDS:g} s"

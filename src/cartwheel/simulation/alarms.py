@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from cartwheel.simulation.clock import NEVER
@@ -38,6 +38,18 @@ class Alarm:
     def restart(self, now_ns: int) -> None:
         """Starts the periods again at a time."""
         self.time_ns = self._start_ns = now_ns
+
+    @property
+    def times(self) -> tuple[int, int]:
+        """The next time, and the time from which the periods are counted."""
+        return self.time_ns, self._start_ns
+
+    def resume(self, time_ns: int, start_ns: int) -> bool:
+        """Makes the action pending again at saved `times`; returns False if it was cancelled."""
+        if self.action is _nothing:
+            return False
+        self.time_ns, self._start_ns, self.pending = time_ns, start_ns, True
+        return True
 
     def pass_by(self, now_ns: int) -> None:
         """Moves to the next time after `now_ns`; a single action has none."""
@@ -108,6 +120,26 @@ class Alarms:
                 break
         self.active = bool(queue)
         return engine.step + engine.steps_until(queue[0][0]) if queue else NEVER
+
+    def save(self) -> tuple[tuple[Alarm, int, int], ...]:
+        """The pending actions with their times, for `restore`."""
+        return tuple((alarm, *alarm.times) for alarm in self.pending)
+
+    def restore(self, saved: Sequence[tuple[Alarm, int, int]]) -> None:
+        """Makes saved actions pending again, unless they were cancelled, after time was set.
+
+        Other actions are treated as by `restart`.
+        """
+        self.restart()
+        known = {id(alarm) for alarm, *_ in saved}
+        others = [alarm for alarm in self.pending if id(alarm) not in known]
+        self._queue.clear()
+        for alarm, *times in saved:
+            if alarm.resume(*times):
+                self.add(alarm)
+        for alarm in others:
+            self.add(alarm)
+        self.active = bool(self._queue)
 
     def restart(self) -> None:
         """Removes single actions and starts all periods again, after time was set."""
