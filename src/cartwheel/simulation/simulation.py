@@ -283,10 +283,7 @@ class Simulation(Models):
         population.return_to_start()
         self.engine.rewind(keep_time=keep_time)
         if seed is not None:
-            self.engine.seed = seed
-            for resident in population.everyone():
-                for draw in resident.part.on_seed:
-                    draw()
+            population.reseed(seed)
         population.take_positions(population.residents.values())
         population.watch.forget()
         population.separation.forget()
