@@ -9,6 +9,7 @@ from cartwheel.api.messaging import MessagingWorld
 from cartwheel.codes.world import RUN_NESTED
 from cartwheel.errors import SimulationError
 from cartwheel.saving import State, restore, save
+from cartwheel.simulation.limits import check_seed
 
 
 class SavingWorld(MessagingWorld):
@@ -60,6 +61,7 @@ class SavingWorld(MessagingWorld):
             CartwheelError: The seed is not an integer of at least 0.
             SimulationError: The world is closed.
         """
+        check_seed(seed)
         with self.used(change=True) as simulation:
             simulation.reset(seed=seed)
 

@@ -14,11 +14,11 @@ from cartwheel.simulation.alarms import Alarms
 from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
-from cartwheel.simulation.limits import check_seed, check_steps
+from cartwheel.simulation.limits import check_steps
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.ground_truth import GroundTruth
 from cartwheel.simulation.models.models import Models
-from cartwheel.simulation.models.resident import Attach
+from cartwheel.simulation.models.resident import Attach, reseed
 from cartwheel.simulation.snapshot import RunState, Snapshot
 from cartwheel.simulation.world_changes import adjust
 from cartwheel.world.additions import omitted
@@ -273,17 +273,13 @@ class Simulation(Models):
 
         Args:
             keep_time: Do not reset time; forces on links and joints also continue.
-            seed: New seed for all noise; None for the same seed.
-
-        Raises:
-            CartwheelError: The seed is not an integer of at least 0; nothing has changed.
+            seed: New seed for all noise, at least 0; None for the same seed.
         """
-        check_seed(seed)
         population = self._population
         population.return_to_start()
         self.engine.rewind(keep_time=keep_time)
         if seed is not None:
-            population.reseed(seed)
+            reseed(self.engine, population.everyone(), seed)
         population.take_positions(population.residents.values())
         population.watch.forget()
         population.separation.forget()

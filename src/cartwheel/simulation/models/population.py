@@ -327,13 +327,6 @@ class Population:
         if stated:
             self._engine.forward()
 
-    def reseed(self, seed: int) -> None:
-        """Sets the seed for all noise, and draws random constants again."""
-        self._engine.seed = seed
-        for resident in self.everyone():
-            for draw in resident.part.on_seed:
-                draw()
-
     def return_to_start(self) -> None:
         """Moves models that are fixed to the world back to their spawn poses."""
         for name, resident in self.residents.items():

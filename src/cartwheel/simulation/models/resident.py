@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Protocol
 
@@ -139,6 +139,14 @@ class Resident:
         self.part.tasks.clear()
         self.part.on_seed.clear()
         self.part.owned.clear()
+
+
+def reseed(engine: Engine, residents: Iterable[Resident], seed: int) -> None:
+    """Sets the seed for all noise, and draws random constants again."""
+    engine.seed = seed
+    for resident in residents:
+        for draw in resident.part.on_seed:
+            draw()
 
 
 def world_resident(engine: Engine) -> Resident:
