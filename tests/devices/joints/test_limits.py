@@ -64,7 +64,10 @@ def test_beyond_a_limit_an_effort_only_moves_the_joint_back(effort, position, ve
 
 
 def test_an_effort_that_slows_a_joint_that_is_too_fast_is_limited_as_well():
-    assert limited_effort(HARD, DampedEffort(2.0, 10.0), 0.0, 4.0) == DampedEffort(-10.0, 0.0)
+    """-10 N m, with the damping: a constant effort would reverse this light joint."""
+    effort, damping = limited_effort(HARD, DampedEffort(2.0, 10.0), 0.0, 4.0, gain=0.5)
+    assert damping == 10.0
+    assert effort - damping * 4.0 == pytest.approx(-10.0)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -77,11 +80,11 @@ def test_a_limited_effort_is_constant_until_the_joint_is_fast_enough(sign):
     assert saturated(command, 10.0, sign * 4.0) == (sign * -10.0, 0.0)
 
 
-def test_a_limited_effort_on_a_light_joint_is_the_mean_of_the_period():
-    """The damping slows the joint implicitly: v' = (v + g e) / (1 + g d), with g = 0.5."""
-    effort, damping = saturated(DampedEffort(50.0, 20.0), 10.0, 4.5, gain=0.5)
-    assert damping == 0.0
-    assert 4.5 + 0.5 * effort == pytest.approx((4.5 + 0.5 * 50.0) / (1.0 + 0.5 * 20.0))
+def test_a_limited_effort_on_a_light_joint_keeps_the_damping():
+    # 10 N m would accelerate the joint to 5 rad/s in one period, beyond the commanded 2.5 rad/s.
+    effort, damping = saturated(DampedEffort(50.0, 20.0), 10.0, 1.0, gain=0.5)
+    assert damping == 20.0
+    assert effort - damping * 1.0 == pytest.approx(10.0)
 
 
 def test_near_a_soft_limit_an_effort_is_a_damper_toward_the_velocity_bound():

@@ -9,6 +9,9 @@ from cartwheel.description.model import Joint, SoftLimits
 from cartwheel.devices.elementwise import Number, anywhere, clamp, maximum, where
 from cartwheel.devices.joints.pid import DampedEffort
 
+_INSIDE = 1 - 1e-6
+"""Part of a limit: MuJoCo does not integrate the damping of an actuator at its limit implicitly."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointLimits:
@@ -71,10 +74,10 @@ def saturated(
 ) -> DampedEffort:
     """Returns an effort whose value at the joint's velocity is within a limit.
 
-    A limited effort is constant during a control period, so that a joint under load reaches the
-    velocity at which the commanded effort is within the limit. It is the mean effort of the period,
-    during which the damping slows a light joint: the effort at its beginning would throw the joint
-    beyond this velocity.
+    While the effort is limited, it is constant, so that a joint under load reaches the velocity at
+    which the commanded effort is within the limit. If the joint is so light that it would reach
+    this velocity within one control period, the damping remains: a constant effort would exceed the
+    velocity, and the next effort would return the joint beyond it.
 
     Args:
         command: The commanded effort.
@@ -84,11 +87,15 @@ def saturated(
     """
     effort, damping = command
     output = effort - damping * velocity
-    over = output != clamp(output, -limit, limit)
+    clamped = clamp(output, -limit, limit)
+    over = output != clamped
     if not anywhere(over):
         return command
-    mean = clamp(output / (1.0 + gain * damping), -limit, limit)
-    return DampedEffort(where(over, mean, effort), where(over, 0.0, damping))
+    light = clamp(effort - damping * (velocity + gain * clamped), -limit, limit) != clamped
+    return DampedEffort(
+        where(over, where(light, _INSIDE * clamped + damping * velocity, clamped), effort),
+        where(over, where(light, damping, 0.0), damping),
+    )
 
 
 def limited_effort(
