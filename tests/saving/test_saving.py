@@ -112,6 +112,44 @@ def test_gravity_and_the_compiled_model(world):
     assert run(world) == expected
 
 
+def change(world):
+    """Changes properties without a compilation."""
+    cart = world.model("rosbots")
+    base = cart.link("base_link")
+    base.mass = base.mass + 5.0
+    base.center_of_mass = (0.03, 0.0, 0.0)
+    base.color = (1.0, 0.2, 0.2)
+    for wheel in ("wheel_left_link", "wheel_right_link"):
+        cart.link(wheel).friction = 0.1
+    cart.joints["wheel_left_joint"].damping = 0.5
+    cart.joints.friction = {"wheel_left_joint": 0.2, "wheel_right_joint": 0.2}
+    world.gravity = (0.0, 0.0, -3.0)
+    world.light("sun").intensity = 0.3
+    world.model("ground_plane").pose = cw.Pose((0.0, 0.0, -0.1))
+
+
+def test_properties_that_were_changed(built, world):
+    world.run(0.2)
+    before = world.save()
+    expected = run(world)
+    change(world)
+    world.run(0.2)
+    after = world.save()
+    changed = run(world)
+    assert changed != expected
+    for _ in range(2):
+        world.restore(before)
+        assert world.gravity == (0.0, 0.0, -9.8)
+        assert world.model("ground_plane").pose.z == 0.0
+        assert run(world) == expected
+        world.restore(pickle.loads(pickle.dumps(after)))
+        assert world.gravity == (0.0, 0.0, -3.0)
+        assert world.model("rosbots").link("base_link").color == (1.0, 0.2, 0.2, 1.0)
+        assert run(world) == changed
+    assert restored(built, after) == changed
+    assert restored(built, before) == expected
+
+
 def test_a_step_length_that_was_changed(world):
     simulation = world.session.simulation
     state = world.save()
