@@ -73,3 +73,19 @@ def test_threads_convert_a_type_to_the_same_class() -> None:
         for thread in threads:
             thread.join(60)
         assert len(found) == 4 and len(set(map(id, found))) == 1
+
+
+def test_a_type_that_was_removed_can_be_defined_anew() -> None:
+    @dataclasses.dataclass
+    class Old:
+        a: int
+
+    @dataclasses.dataclass
+    class New:
+        b: int
+
+    classes = Classes({"x/msg/X": Old}, module=__name__)
+    assert classes["x/msg/X"](a=1).a == 1
+    classes.pop("x/msg/X")
+    classes.update({"x/msg/X": New})
+    assert classes["x/msg/X"](b=2).b == 2

@@ -37,6 +37,11 @@ class Classes(dict[str, Any]):
             made = self._converted.setdefault(name, made)
         return made
 
+    def pop(self, name: str, *default: Any) -> Any:
+        """Removes a type, which may then be defined anew."""
+        self._converted.pop(name, None)
+        return super().pop(name, *default)
+
 
 def _convert(given: Any, module: str) -> Any:
     """Creates the class of a type from a dataclass of rosbags, with its constants.
