@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import io
 import re
+import sys
 import urllib.request
 from pathlib import Path
 
@@ -159,6 +160,8 @@ def test_a_shell_displays_image_messages() -> None:
     from IPython.core.interactiveshell import InteractiveShell
     from PIL import Image
 
+    # A shell replaces the main module, which processes that are spawned later read.
+    main = sys.modules["__main__"]
     shell = InteractiveShell()
     try:
         shell.extension_manager.load_extension("cartwheel")
@@ -171,6 +174,7 @@ def test_a_shell_displays_image_messages() -> None:
         assert "encoding='rgb8'" in shown["text/plain"] and len(shown["text/plain"]) < 1000
         assert list(plain) == ["text/plain"]
     finally:
+        sys.modules["__main__"] = main
         # It would run again at exit, and find nothing.
         atexit.unregister(shell.atexit_operations)
         shell.atexit_operations()

@@ -283,12 +283,12 @@ def test_info_lists_a_recording(tmp_path: Path) -> None:
     said = run_program("info", "a.mcap", folder=tmp_path)
     assert "MCAP" in said and "robot_description.xml" in said
     lines = {line.split()[0]: line.split() for line in said.splitlines() if line.startswith("/")}
-    assert lines["/clock"][1:] == ["rosgraph_msgs/Clock", "100", "100", "Hz"]
+    assert lines["/clock"][1:] == ["rosgraph_msgs/Clock", "101", "100", "Hz"]
     assert lines["/robot_description"][1:] == ["std_msgs/String", "1", "latched"]
     found = json.loads(run_program("info", "a.mcap", "--json", folder=tmp_path))
-    assert found["complete"] and found["messages"] == 131
-    assert found["end_ns"] == 990_000_000
-    assert {t["name"]: t["messages"] for t in found["topics"]}["/imu/data"] == 30
+    assert found["complete"] and found["messages"] == 133
+    assert found["end_ns"] == 1_000_000_000
+    assert {t["name"]: t["messages"] for t in found["topics"]}["/imu/data"] == 31
 
 
 @pytest.mark.parametrize("content", [b"", b"hello", b"\x89MCAP0\r\n", b"#ROSBAG V1.2\n"])

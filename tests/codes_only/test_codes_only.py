@@ -10,6 +10,7 @@ ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "cartwheel"
 REPRESENTATIVE = {
     "api": "tests/api/test_api.py",
+    "arrays": "tests/arrays/test_arrays.py",
     "assembly": "tests/assembly/test_assets.py",
     "bridges": "tests/bridges/test_apart_link.py",
     "checks": "tests/checks/test_checks.py",
@@ -25,7 +26,10 @@ REPRESENTATIVE = {
     "graph": "tests/graph/test_graph.py",
     "messages": "tests/messages/ros1/test_ros1.py",
     "playback": "tests/playback/test_player.py::test_an_empty_recording_is_told",
+    "saving": "tests/saving/test_saving.py::test_not_while_it_runs_and_not_when_closed",
+    "scenarios": "tests/scenarios/test_schema.py",
     "simulation": "tests/simulation/dynamics/test_separation.py",
+    "testing": "tests/testing/test_matchers.py",
     "viewer": "tests/viewer/test_port.py",
     "world": "tests/world/test_chains.py",
 }

@@ -110,7 +110,7 @@ def test(  # noqa: PLR0917 - typer passes them by name
     ] = False,
     package_path: arguments.PackagePath = None,
 ) -> None:
-    """Run scenarios: robots in a world, what happens, and what is expected.
+    """Run scenarios with robots and check expectations.
 
     The exit status is 0 if all cases pass, 1 if a case fails, 2 if a scenario or an option is
     invalid, and 130 after Ctrl-C.
