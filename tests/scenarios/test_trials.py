@@ -102,6 +102,83 @@ expect:
     assert outcome.status == "passed", outcome.findings[0].text
 
 
+def test_steps_change_properties(run):
+    outcome = run(
+        CART
+        + """
+steps:
+  - spawn: object.urdf
+    name: box
+    x: 5
+    z: 10
+  - set: box
+    velocity: [1, 0, 0]
+  - set_gravity: [0, 0, -2]
+  - wait: 1
+  - set: box::my_object_link
+    mass: 3
+    friction: 0.2
+    color: [1, 0, 0]
+    gravity: false
+  - set_light: sun
+    intensity: 0.5
+  - set: cart
+    damping: {wheel_left_joint: 0.01}
+    joint_friction: {wheel_left_joint: 0.02}
+  - push: box
+    force: [30, 0, 0]
+    seconds: 0.1
+  - wait: 1
+expect:
+  - {expression: "abs(x('box') - 7.95) < 0.02", when: end}
+  - {expression: "abs(z('box') - 7) < 0.02", when: end}
+"""
+    )
+    assert outcome.status == "passed", outcome.findings[0].text
+
+
+@pytest.mark.parametrize(
+    ("condition", "status"),
+    [
+        ("{reaches: box, x: 2, y: 0, timeout: 1}", "passed"),
+        ("{no_contact: [box, cart]}", "passed"),
+        ("{expression: \"x('box') > 1\", when: once}", "passed"),
+        ("{reaches: boks, x: 2, y: 0, timeout: 1}", "error"),
+        ("{expression: \"x('boks') > 1\", when: once}", "error"),
+        ("{no_contact: [boks, cart]}", "error"),
+    ],
+)
+def test_conditions_wait_for_models_that_steps_spawn(run, condition, status):
+    steps = "steps: [{wait: 0.2}, {spawn: object.urdf, name: box, x: 2}]\n"
+    outcome = run(f"{CART}{steps}duration: 1.5\nexpect: [{condition}]")
+    assert outcome.status == status, [each.text for each in outcome.findings]
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "{set: cart, mass: 1}", "{set: 'cart::base_link', x: 1}", "{set: 'cart::base_link'}",
+        "{set_light: sun}", "{set: 'cart::base_link', mass: 0}",
+        "{set: cart, damping: {no_joint: 1}}", "{set_light: no_light, enabled: true}",
+    ],
+)  # fmt: skip
+def test_a_property_that_cannot_be_set_is_an_error(run, step):
+    outcome = run(f"{CART}steps:\n  - {step}\nexpect: [{{expression: 'True'}}]")
+    assert (outcome.status, outcome.findings[0].line) == ("error", 3)
+
+
+def test_a_case_that_is_shown_runs_in_real_time(scenario, tmp_path):
+    from cartwheel.scenarios import Options, Runner, cases_of, digests
+
+    loaded = scenario(f"{CART}duration: 1\nexpect: [{{expression: 'True'}}]")
+    (case,) = digests(loaded, cases_of(loaded))
+    told: list[str] = []
+    options = Options(folder=tmp_path / "out", view=True)
+    outcome = Runner([loaded], options, announce=told.append).run(case)
+    assert outcome.status == "passed" and outcome.wall > 0.9
+    assert told[0].startswith("http://127.0.0.1:")
+
+
 def test_a_step_that_fails_has_a_line(run):
     outcome = run(
         f"{CART}steps:\n  - wait: 0.1\n  - until: {{moves: cart}}\n    timeout: 1\n"

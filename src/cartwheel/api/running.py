@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Self
 
+from cartwheel.api.values import scalar
 from cartwheel.assembly.driver import Driver, uninterrupted
 from cartwheel.assembly.turns import Turns
 from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     from cartwheel.assembly.ros1 import Ros1Connection
     from cartwheel.assembly.ros2 import Ros2Connection
     from cartwheel.simulation import Simulation
+
+_LOOK = 0.05
+"""Interval of wall time in which `RunningWorld.wait_for_browser` looks for browsers, s."""
 
 
 class RunningWorld:
@@ -282,6 +287,26 @@ class RunningWorld:
         """
         with self.used():
             return self._connected().show(port)
+
+    def wait_for_browser(self, timeout: float = 60.0) -> bool:
+        """Waits until a browser shows the web interface, which `show` starts.
+
+        Args:
+            timeout: Maximum wall time, s.
+
+        Returns:
+            Whether a browser shows it.
+        """
+        end = time.monotonic() + scalar(timeout, "timeout", least=0.0)
+        while self._browsers() == 0:
+            if time.monotonic() >= end:
+                return False
+            time.sleep(_LOOK)
+        return True
+
+    def _browsers(self) -> int:
+        with self.used():
+            return 0 if self._connections is None else self._connections.browsers
 
     def _connected(self, *, ros1: bool = False) -> Connections:
         if self._connections is None:

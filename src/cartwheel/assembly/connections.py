@@ -123,6 +123,11 @@ class Connections:
         assert self._viewer is not None
         return self._viewer.show(port, on_owner=on_owner)
 
+    @property
+    def browsers(self) -> int:
+        """The number of browsers that show the simulation."""
+        return 0 if self._viewer is None else self._viewer.browsers
+
     def update(self) -> None:
         """See `Assembly.update`."""
         if self.forked:

@@ -48,7 +48,7 @@ class ViewerOnDemand:
         self._lock = threading.Lock()
         self._viewer: Viewer | None = None
         self._url: str | None = None
-        server.offer_page(PageOffer(show=self.show, browsers=self._browsers))
+        server.offer_page(PageOffer(show=self.show, browsers=lambda: self.browsers))
 
     def show(self, port: int | None = None, *, on_owner: bool = False) -> str:
         """The URL. The viewer is ready when this method returns.
@@ -88,9 +88,11 @@ class ViewerOnDemand:
             if self._viewer is not None:
                 self._viewer.close()
 
+    @property
+    def browsers(self) -> int:
+        """The number of connected browsers."""
+        return 0 if self._viewer is None else self._viewer.browsers
+
     def _start(self, viewer: Viewer) -> None:
         viewer.start(self._pacer)
         self._pacer.show()
-
-    def _browsers(self) -> int:
-        return 0 if self._viewer is None else self._viewer.browsers

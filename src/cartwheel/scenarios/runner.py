@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import sys
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 Kept = Literal["failures", "all", "none"]
 _MOST_BUILT = 8
 """Maximum number of built worlds that a process keeps."""
+PATIENCE = 30.0
+"""Wall time for which a case that is shown waits for a browser, s."""
 _LARGE = ("Image", "CompressedImage", "PointCloud", "PointCloud2")
 """Messages that recordings omit by default."""
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -165,12 +168,12 @@ class Runner:
                 )
             own = self._own_network(stack, launch, connections)
             stack.enter_context(_environment(own))
-        if options.view:
-            connections["viewer"] = True
         world = stack.enter_context(
             self._build(scenario, value).world(seed=case.seed, **connections)
         )
         _place(world, value)
+        if options.view:
+            self._show(world)
         program = None
         if launch:
             command = [str(place_of(scenario, launch["command"][0])), *launch["command"][1:]]
@@ -217,6 +220,13 @@ class Runner:
                 )  # fmt: skip
         if picture and (options.pictures == "all" or outcome.status != "passed"):
             outcome.picture = self._picture(world, case)
+
+    def _show(self, world: World) -> None:
+        """Shows the case in real time, from the beginning if somebody opens the page."""
+        self._announce(world.show())
+        world.pace = 1.0
+        if sys.stderr.isatty():
+            world.wait_for_browser(PATIENCE)
 
     def _own_network(
         self, stack: contextlib.ExitStack, launch: Mapping[str, Any], connections: Mapping[str, Any]

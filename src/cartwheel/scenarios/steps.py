@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.codes.command import SCENARIO_INVALID
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 HOLD_RATE = 10.0
 """Default rate of a ``hold`` step, Hz."""
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+_LINK = ("mass", "center_of_mass", "friction", "gravity", "color")
+_LIGHT = {"enabled": "on", "intensity": "intensity", "color": "color"}
+"""Keys of a step, and properties of `cartwheel.api.Light`. YAML reads the key ``on`` as true."""
 
 
 class Steps:
@@ -117,16 +120,34 @@ class Steps:
     def _set(self, trial: Trial, step: Mapping[str, Any]) -> None:
         model, link = _part(trial, step["set"])
         if link is not None:
-            _only(step, set())
-        _only(step, {*_POSE, "joints", "velocity"})
+            _only(step, "set", _LINK)
+            for name in _LINK:
+                if name in step:
+                    setattr(model.link(link), name, step[name])
+            return
+        _only(step, "set", (*_POSE, "joints", "velocity", "damping", "joint_friction"))
         if any(name in step for name in _POSE):
             model.pose = _changed(model.pose, step)
         for name, position in step.get("joints", {}).items():
             model.joints.positions[name] = position
+        for name, damping in step.get("damping", {}).items():
+            model.joints[name].damping = damping
+        for name, friction in step.get("joint_friction", {}).items():
+            model.joints[name].friction = friction
         if "velocity" in step:
             from cartwheel.api import Twist
 
             model.velocity = Twist(tuple(step["velocity"]), (0.0, 0.0, 0.0))
+
+    def _set_gravity(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        trial.world.gravity = tuple(step["set_gravity"])
+
+    def _set_light(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        light = trial.world.light(step["set_light"])
+        _only(step, "set_light", tuple(_LIGHT))
+        for key, name in _LIGHT.items():
+            if key in step:
+                setattr(light, name, step[key])
 
     def _spawn(self, trial: Trial, step: Mapping[str, Any]) -> None:
         options = spawn_options(step)
@@ -137,8 +158,8 @@ class Steps:
 
 
 _KINDS = (
-    "publish", "hold", "release", "wait", "until", "call", "send_goal", "push", "set", "spawn",
-    "delete",
+    "publish", "hold", "release", "wait", "until", "call", "send_goal", "push", "set",
+    "set_gravity", "set_light", "spawn", "delete",
 )  # fmt: skip
 
 
@@ -168,15 +189,15 @@ def _changed(pose: Pose, step: Mapping[str, Any]) -> Pose:
     )
 
 
-def _only(step: Mapping[str, Any], allowed: set[str]) -> None:
-    given = set(step) - {"set"}
-    wrong = sorted(given - allowed)
+def _only(step: Mapping[str, Any], kind: str, allowed: Sequence[str]) -> None:
+    given = set(step) - {kind}
+    wrong = sorted(given - set(allowed))
     if wrong or not given:
         raise CartwheelError(
-            f'"{wrong[0]}" cannot be set for "{step["set"]}"'
+            f'"{wrong[0]}" cannot be set for "{step[kind]}"'
             if wrong
-            else f'"set: {step["set"]}" changes nothing',
+            else f'"{kind}: {step[kind]}" changes nothing',
             code=SCENARIO_INVALID,
-            hint=f"Use {', '.join(sorted(allowed))}.",
+            hint=f"Use {', '.join(allowed)}.",
             values={"name": wrong[0] if wrong else ""},
         )

@@ -84,6 +84,7 @@ class Trial:
             for index, each in enumerate(self.value["expect"]):
                 key = ("expect", index)
                 watch = watch_of(each)
+                watch.patient = any("spawn" in step for step in self.value.get("steps", ()))
                 self._watches.append(watch)
                 watch.begin(self.world)
             self._note()

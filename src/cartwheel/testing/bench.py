@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shlex
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,6 +29,8 @@ _FOLDER = "cartwheel-failures"
 _BUILD_OPTIONS = ("strict", "lenient", "bridge", "plugins", "package_path", "without", "visuals")
 _MOST_TOPICS = 30
 _MOST_LINES = 12
+_PATIENCE = 30.0
+"""Wall time for which a test waits for a browser, s."""
 """Maximum number of topics, and of lines for each message, in a report."""
 _UNINFORMATIVE = ("dynamic_reconfigure/", "rosgraph_msgs/", "sensor_msgs/msg/CameraInfo")
 """Types of messages that the report omits."""
@@ -128,6 +131,8 @@ class Bench:
             if reporter is not None:
                 reporter.ensure_newline()
                 reporter.write_line(f"{self._node.nodeid}: {url}")
+            if sys.stderr.isatty():
+                self.world.wait_for_browser(_PATIENCE)
         if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
             import webbrowser
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from cartwheel.errors import UnknownNameError
 from cartwheel.testing.conditions import Condition, Publishes, StaysWithin
 from cartwheel.testing.touching import Touches
 
@@ -27,12 +28,14 @@ class Watch:
         when: ``once`` by the timeout, ``always``, or at the ``end``.
         timeout: Simulation time from the start, s; None is the end.
         after: Simulation time from the start at which the condition begins, s.
+        patient: Whether models, joints and topics of the condition may be added later.
     """
 
     condition: Condition
     when: When
     timeout: float | None = None
     after: float = 0.0
+    patient: bool = False
     met: bool | None = field(default=None, init=False)
     """None while it is undecided."""
     time: float | None = field(default=None, init=False)
@@ -40,26 +43,43 @@ class Watch:
     begun: bool = field(default=False, init=False)
     """Whether the time `after` has come."""
     _start: float = field(default=0.0, init=False)
+    _missing: UnknownNameError | None = field(default=None, init=False)
+    """What does not exist yet."""
+    _known: bool = field(default=False, init=False)
 
     def begin(self, world: World) -> None:
         """Starts the watch; see `Condition.begin` for the errors."""
         self._start = world.time
-        self.condition.begin(world)
+        try:
+            self.condition.begin(world)
+        except UnknownNameError as error:
+            self._wait_for(error)
         if self.after <= 0:
             self.begun = True
             self.look(world)
 
     def look(self, world: World) -> None:
-        """Evaluates the condition."""
+        """Evaluates the condition.
+
+        Raises:
+            UnknownNameError: A model, joint or topic does not exist, or not by the timeout.
+        """
         now = world.time - self._start
         if self.met is not None or now < self.after - _TIME_ERROR:
             return
-        if not self.begun:
-            self.begun = True
-            # Rates and distances are measured from this time on.
-            self.condition.close()
-            self.condition.begin(world)
-        holds = self.condition.holds()
+        try:
+            if not self.begun or self._missing is not None:
+                self.begun = True
+                # Rates and distances are measured from this time on.
+                self.condition.close()
+                self.condition.begin(world)
+            holds = self.condition.holds()
+        except UnknownNameError as error:
+            if self.timeout is not None and now >= self.timeout - _TIME_ERROR:
+                raise
+            self._wait_for(error)
+            return
+        self._missing, self._known = None, True
         if self.when == "once":
             if holds:
                 self._decide(True, now)
@@ -70,11 +90,23 @@ class Watch:
             self._decide(False, now)
 
     def end(self, world: World) -> None:
-        """Decides the condition at the end."""
+        """Decides the condition at the end.
+
+        Raises:
+            UnknownNameError: A model, joint or topic does not exist.
+        """
+        if self._missing is not None:
+            raise self._missing
         if self.met is None:
             holds = self.begun and self.condition.holds()
             self._decide(holds or (self.when == "always" and self.begun), world.time - self._start)
         self.condition.close()
+
+    def _wait_for(self, error: UnknownNameError) -> None:
+        """Waits for what does not exist, if it may be added."""
+        if not self.patient or self._known:
+            raise error
+        self._missing = error
 
     def _decide(self, met: bool, now: float) -> None:
         self.met, self.time = met, now

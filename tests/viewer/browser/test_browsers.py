@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 from tests.viewer.browsing import browsing
-from tests.viewer.conftest import TWIST, eventually
+from tests.viewer.conftest import TWIST, eventually, new_page
 
+import cartwheel as cw
 from cartwheel.messages import from_dict
 from cartwheel.viewer.panels.camera import CameraPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
@@ -176,3 +177,15 @@ def test_what_a_browser_holds_in_the_air_falls_when_it_is_gone(fresh):
         )
         eventually(lambda: fresh.pose("post").z > 0.9, what="the post in the air")
     eventually(lambda: fresh.pose("post").z < 0.05, what="the fall")
+
+
+def test_a_program_waits_for_a_browser(browser):
+    with cw.World("empty") as world:
+        url = world.show(port=0)
+        assert not world.wait_for_browser(timeout=0)
+        page = new_page(browser)
+        try:
+            page.goto(url)
+            assert world.wait_for_browser(timeout=60)
+        finally:
+            page.close()
