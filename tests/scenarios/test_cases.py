@@ -110,3 +110,38 @@ def test_a_digest_changes_with_files_parameters_and_seed(scenario, tmp_path):
     first = made()
     assert len(set(first)) == 4 and made() == first
     assert not set(made(mass=2)) & set(first)
+
+
+ROBOT = """<robot name="box"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><visual><geometry>
+<mesh filename="box.obj"/></geometry></visual></link></robot>"""
+WORLD = """<sdf version="1.7"><world name="w">
+<include><uri>model://wall</uri></include></world></sdf>"""
+WALL = """<sdf version="1.7"><model name="wall"><static>true</static>
+<link name="l"/></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    "file", ["box.urdf", "box.obj", "box.mtl", "a.yaml", "later.urdf", "w.world", "wall/model.sdf"]
+)
+def test_a_digest_changes_with_each_file(scenario, tmp_path, file):
+    (tmp_path / "wall").mkdir()
+    for name, text in {
+        "box.urdf": ROBOT, "box.obj": "mtllib box.mtl\nv 0 0 0\n", "box.mtl": "newmtl a\n",
+        "a.yaml": "{}", "later.urdf": ROBOT, "w.world": WORLD, "wall/model.sdf": WALL,
+        "wall/model.config": "<model><sdf>model.sdf</sdf></model>",
+    }.items():  # fmt: skip
+        (tmp_path / name).write_text(text)
+    loaded = scenario(
+        "world: w.world\nrobots: [{robot: box.urdf, controllers: a.yaml}]\n"
+        f"steps: [{{spawn: later.urdf, name: b}}]\n{EXPECT}"
+    )
+
+    def digest() -> str:
+        (case,) = digests(loaded, cases_of(loaded), [tmp_path])
+        return case.digest
+
+    before = digest()
+    assert digest() == before
+    (tmp_path / file).write_text((tmp_path / file).read_text() + "\n")
+    assert digest() != before

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import itertools
 import json
@@ -12,9 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import cartwheel
-from cartwheel.description.loading import open_description
+from cartwheel.errors import CartwheelError
 from cartwheel.scenarios.document import Document, read
 from cartwheel.scenarios.expressions import substituted
+from cartwheel.scenarios.fingerprints import Fingerprints
 from cartwheel.scenarios.schema import validate
 
 MOST_CASES = 100_000
@@ -148,22 +150,33 @@ def digests(
     Raises:
         DescriptionError: The file of a world or robot cannot be used.
     """
-    texts: dict[tuple[str, str], str] = {}
+    prints = Fingerprints(package_path)
+    known: dict[tuple[str, str], list[str]] = {}
 
-    def text_of(file: str, arguments: Mapping[str, Any]) -> str:
+    def of_description(file: str, arguments: Mapping[str, Any]) -> list[str]:
         key = (file, json.dumps(arguments, sort_keys=True))
-        if key not in texts:
+        if key not in known:
             given = {name: xacro_value(each) for name, each in arguments.items()}
-            texts[key] = open_description(place_of(scenario, file), given, package_path, None).text
-        return texts[key]
+            known[key] = prints.of_description(place_of(scenario, file), given)
+        return known[key]
 
     for case in cases:
         value = resolved(scenario, case)
         parts = {key: each for key, each in value.items() if key not in ("parameters", "seeds")}
-        named: list[tuple[str, Mapping[str, Any]]] = [(value.get("world", "empty"), {})]
-        named += [(each["robot"], each.get("arguments", {})) for each in value.get("robots", ())]
-        texts_used = [text_of(file, arguments) for file, arguments in named]
-        whole = [cartwheel.__version__, case.id, case.seed, parts, texts_used]
+        files = [of_description(value.get("world", "empty"), {})]
+        others: list[str] = []
+        for each in value.get("robots", ()):
+            files.append(of_description(each["robot"], each.get("arguments", {})))
+            named = each.get("controllers", ())
+            others += [named] if isinstance(named, str) else named
+        for each in value.get("steps", ()):
+            if "spawn" in each:
+                # The step reports a file that cannot be used.
+                with contextlib.suppress(CartwheelError):
+                    files.append(of_description(each["spawn"], each.get("arguments", {})))
+        others += value.get("launch", {}).get("command", ())[:1]
+        files.append([prints.of_file(Path(place_of(scenario, each))) for each in others])
+        whole = [cartwheel.__version__, case.id, case.seed, parts, files]
         data = json.dumps(whole, sort_keys=True, default=str).encode(errors="surrogatepass")
         yield Case(
             case.id,
