@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import secrets
 import signal
 import socket
 import subprocess
@@ -22,13 +23,19 @@ _GRACE = 5.0
 """Wall time between SIGINT, SIGTERM and SIGKILL, s."""
 _OUTPUT = 20_000
 """Maximum length of the kept output in bytes."""
-_LOOK = 0.02
+_LOOK = 0.05
+_MARK = "CARTWHEEL_LAUNCHED"
+"""Environment variable of launched programs."""
+_PROCESSES = Path("/proc")
 _START = 30.0
 """Wall time within which a ROS master must respond, s."""
 
 
 class Launched:
-    """A program in a process group of its own, which ends with the block.
+    """A program that ends with the block, and with it all processes that it started.
+
+    roslaunch and others start processes in groups of their own. These are found by an environment
+    variable, which they inherit.
 
     Args:
         command: Program and arguments.
@@ -43,12 +50,13 @@ class Launched:
         self, command: Sequence[str], folder: Path, environment: Mapping[str, str]
     ) -> None:
         self.command = list(command)
+        self._mark = f"{_MARK}={secrets.token_hex(16)}"
         self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         try:
             self._process = subprocess.Popen(  # noqa: S603 - the user allowed it
                 self.command,
                 cwd=folder,
-                env={**os.environ, **environment},
+                env={**os.environ, **environment, _MARK: self._mark.partition("=")[2]},
                 stdin=subprocess.DEVNULL,
                 stdout=self._output,
                 stderr=subprocess.STDOUT,
@@ -99,30 +107,44 @@ class Launched:
         return data.decode(errors="replace")
 
     def close(self) -> None:
-        """Ends the program and all processes of its group."""
+        """Ends the program and all processes that it started."""
         if self._output.closed:
             return
+        # On SIGINT, programs that start others end these in their own order.
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             if not self._signal(number):
                 break
             end = time.monotonic() + _GRACE
-            while time.monotonic() < end and self._alive():
+            while time.monotonic() < end and self._signal(0):
                 time.sleep(_LOOK)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_GRACE)
         self._output.close()
 
-    def _alive(self) -> bool:
-        self._process.poll()
-        return self._signal(0)
-
     def _signal(self, number: int) -> bool:
-        """Sends a signal to the group; returns whether the group still exists."""
-        try:
+        """Sends a signal to all processes; returns whether one still exists."""
+        self._process.poll()
+        found = False
+        with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, number)
-        except (ProcessLookupError, PermissionError):
-            return False
-        return True
+            found = True
+        for process in self._strays():
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                # The program itself is responsible for them as long as it can be.
+                os.kill(process, 0 if number == signal.SIGINT and found else number)
+                found = True
+        return found
+
+    def _strays(self) -> Iterator[int]:
+        """Processes with the mark in other process groups. Requires Linux's ``/proc``."""
+        mark = self._mark.encode()
+        for entry in _PROCESSES.glob("[0-9]*/environ"):
+            with contextlib.suppress(OSError):
+                process = int(entry.parent.name)
+                if mark in entry.read_bytes().split(b"\0") and (
+                    os.getpgid(process) != self._process.pid
+                ):
+                    yield process
 
 
 @contextlib.contextmanager

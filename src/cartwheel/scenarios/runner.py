@@ -234,6 +234,7 @@ class Runner:
         """Environment variables for a ROS network of the case's own."""
         environment: dict[str, str] = {}
         if launch.get("master", bool(connections.get("ros1"))):
+            self._options.folder.mkdir(parents=True, exist_ok=True)
             environment |= stack.enter_context(ros_master(self._options.folder))
         if connections.get("ros2"):
             environment |= ros2_domain(self._worker)
