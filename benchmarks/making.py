@@ -22,6 +22,7 @@ _PUBLISHED = {
     "waffle": "turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle.urdf.xacro",
     "mir": "mir_robot/mir_description/urdf/mir.urdf.xacro",
     "husky": "husky/husky_description/urdf/husky.urdf.xacro",
+    "rrbot": "gazebo_ros_demos/rrbot_description/urdf/rrbot.xacro",
 }
 _SPACING = 2.0
 """Distance between carts, m."""
@@ -41,11 +42,12 @@ def figures(effort: Effort) -> Iterator[Figure]:
 
 def _robot(name: str, robot: RobotDescription, effort: Effort) -> Iterator[Figure]:
     """A world with one robot: by hand, with its visuals, from `cartwheel.build`, and reset."""
-    built = cw.build("empty", robot)
+    given = {"robot": robot, "controllers": "auto"}
+    built = cw.build("empty", given)
 
     def by_hand() -> cw.World:
         world = cw.World("empty")
-        world.spawn(robot)
+        world.spawn(**given)
         return world
 
     def seen() -> cw.World:

@@ -11,6 +11,7 @@ from typing import Any, Literal
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, CONTROLLERS_NOT_NAMED
 from cartwheel.component import Shared
 from cartwheel.description.files.package_files import SimulationPackages
+from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.plugin_files import PluginFiles
@@ -52,6 +53,7 @@ class Session:
         package_path: Folders to search for the packages of message types first.
         without: Physics that Cartwheel adds to descriptions, to be omitted; see `Simulation`.
         compiler: Compiles the models; None for one of its own.
+        readings: Stores what is read of controller files; None: they are read for each model.
 
     Raises:
         CartwheelError: The world or a configuration file cannot be used.
@@ -70,6 +72,7 @@ class Session:
         package_path: Sequence[Path] = (),
         without: Sequence[str] = (),
         compiler: Compiler | None = None,
+        readings: Readings | None = None,
     ) -> None:
         self.allow_path = tuple(allow_path)
         self._packages = SimulationPackages(package_path)
@@ -85,6 +88,7 @@ class Session:
         for path in plugins:
             self._packages.add(path)
         self._packages.add(world.origin.file)
+        self.shared.get(ControllerFiles).readings = readings
         with finding_with(self.types):
             for path in plugins:
                 self.shared.get(PluginFiles).load(path)
@@ -160,11 +164,19 @@ class Session:
         if self._packages.add(description.origin.file, package_path):
             self.types.forget_missing()
         with self.spawning():
-            if controllers is None and lacks_controllers(description):
-                self.simulation.engine.report(_no_controllers(description))
+            known = self.shared.get(ControllerFiles).known
+            if controllers is None and known(
+                description, "lacking", lambda: lacks_controllers(description)
+            ):
+                found = known(description, "suggested", lambda: suggested(description))
+                self.simulation.engine.report(_no_controllers(description, found))
             names: tuple[str, ...] = ()
             if controllers == "auto":
-                selected = selection_near(description, package_path)
+                selected = known(
+                    description,
+                    ("selection", *package_path),
+                    lambda: selection_near(description, package_path),
+                )
                 controllers, names = selected.files, selected.names
             files = tuple(Path(file) for file in controllers or ())
             spawned = self._spawn(
@@ -334,9 +346,14 @@ class Session:
         self._clock.publish(message)
 
 
-def _no_controllers(robot: RobotDescription) -> Diagnostic:
-    """The warning for a robot with a controller manager without controllers."""
-    files = tuple(str(file) for file in suggested(robot))
+def _no_controllers(robot: RobotDescription, found: Sequence[Path]) -> Diagnostic:
+    """The warning for a robot with a controller manager without controllers.
+
+    Args:
+        robot: The robot.
+        found: Files that could be meant.
+    """
+    files = tuple(str(file) for file in found)
     listed = f": {', '.join(files)}" if files else ""
     return CONTROLLERS_NOT_NAMED.diagnostic(
         f'robot "{robot.name}" has a controller manager, but no controllers are named, so nothing '

@@ -9,6 +9,7 @@ from typing import Any
 from cartwheel import description as descriptions
 from cartwheel.api.messaging import several
 from cartwheel.api.world import World
+from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic
 from cartwheel.simulation.models.compilations import SharedCompiler
@@ -34,6 +35,7 @@ class Built:
         self._robots = tuple(robots)
         self._options = dict(options)
         self._compiler = SharedCompiler()
+        self._readings = Readings()
         self._models: tuple[str, ...] = ()
         self._diagnostics: tuple[Diagnostic, ...] = ()
 
@@ -59,7 +61,12 @@ class Built:
             TypeError: An option is one of those of `build`, or `World` does not have it.
         """
         made = World(
-            self._description, seed=seed, _compiler=self._compiler, **self._options, **options
+            self._description,
+            seed=seed,
+            _compiler=self._compiler,
+            _readings=self._readings,
+            **self._options,
+            **options,
         )
         try:
             with made.spawning():
@@ -75,7 +82,7 @@ class Built:
             self._models, self._diagnostics = world.models, world.diagnostics
             if visuals:
                 world.session.simulation.engine.visuals.current()
-        self._compiler.complete = True
+        self._compiler.complete = self._readings.complete = True
 
 
 def build(

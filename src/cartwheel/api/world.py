@@ -15,6 +15,7 @@ from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings import SurroundingWorld
 from cartwheel.codes.command import OPTIONS_CONFLICT
+from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose
@@ -85,6 +86,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         allow_origin: str | Sequence[str] = (),
         without: str | Sequence[str] = (),
         _compiler: Compiler | None = None,
+        _readings: Readings | None = None,
     ) -> None:
         connections = plan = None
         files = several(record)
@@ -124,6 +126,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 package_path=[Path(folder) for folder in several(package_path)],
                 without=several(without),
                 compiler=_compiler,
+                readings=_readings,
             )
             super().__init__(
                 session,

@@ -18,7 +18,6 @@ from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
     controller_entries,
-    read_ros2,
     ros2_file,
 )
 from cartwheel.dialects.ros_control.hardware import Hardware
@@ -90,10 +89,11 @@ class Ros2Control(ControlPlugin):
         config: Ros2ControlParameters = self.config
         part = self.part
         self.namespace = self.namespace.strip("/")
-        own = self.shared.get(ControllerFiles).take()
+        files = self.shared.get(ControllerFiles)
+        own = files.take()
         named = [self._path(text) for text in config.files]
         paths = [*(path for path in named if path is not None), *own]
-        contents = [read_ros2(path, part.description) for path in paths]
+        contents = [files.read_ros2(path, part.description) for path in paths]
         merged = ros2_file(contents, self.namespace, config.manager)
         source = ", ".join(str(path) for path in paths)
         if merged.elsewhere and not merged.manager:
@@ -164,7 +164,8 @@ class Ros2Control(ControlPlugin):
             # A description from a service has no folder. Like its meshes, it uses the current
             # folder.
             path = Path("" if origin.file.startswith("<") else origin.file).parent / path
-        if not path.is_file():
+        files = self.shared.get(ControllerFiles)
+        if not files.known(self.part.description, ("file", path), path.is_file):
             packages = Packages(None if origin.file.startswith("<") else Path(origin.file))
             other = packages.elsewhere(text, origin)
             for diagnostic in packages.moves():

@@ -11,8 +11,6 @@ from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
     ControllerFiles,
-    for_robot,
-    read_parameters,
     ros1_entries,
 )
 from cartwheel.dialects.ros_control.hardware import Hardware
@@ -93,8 +91,9 @@ class Fetch(ControlPlugin):
 
     def _entries(self) -> Iterator[ControllerEntry]:
         """Yields the controllers in the files that start with the robot."""
-        for path in self.shared.get(ControllerFiles).take():
-            content = for_robot(read_parameters(path), path, self.part.description)
+        files = self.shared.get(ControllerFiles)
+        for path in files.take():
+            content = files.read(path, self.part.description)
             gazebo = content.get("gazebo")
             listed = gazebo.get("default_controllers") if isinstance(gazebo, Mapping) else None
             wanted = [str(each).strip("/") for each in listed] if isinstance(listed, list) else None

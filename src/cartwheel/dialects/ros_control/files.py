@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from cartwheel import yaml_text
 from cartwheel.codes import devices
+from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
 from cartwheel.dialects.ros_control.settings import Settings, merge
@@ -20,6 +21,7 @@ from cartwheel.errors import Origin, PluginError
 if TYPE_CHECKING:
     from cartwheel.dialects.ros_control.controller import Controller
 
+T = TypeVar("T")
 _ROS2 = "ros__parameters"
 _EXPONENT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+")
 """Numbers that YAML 1.1 reads as texts if the dot or the sign of the exponent is missing."""
@@ -59,6 +61,8 @@ class ControllerFiles:
         """Names of the controllers to start, if the files contain all of them; empty: all."""
         self.loaded: list[Controller] = []
         """Controllers that managers have loaded from files."""
+        self.readings: Readings | None = None
+        """What was read of files before; None: files are read each time."""
 
     @property
     def started(self) -> list[Controller]:
@@ -76,6 +80,28 @@ class ControllerFiles:
         """Returns the files and clears them, so that only one robot uses them."""
         paths, self.paths = self.paths, ()
         return paths
+
+    def known(self, robot: RobotDescription, question: Hashable, read: Callable[[], T]) -> T:
+        """Returns what `read` returns, or returned before for the same robot; see `Readings.of`."""
+        return read() if self.readings is None else self.readings.of(robot, question, read)
+
+    def read(self, path: Path, robot: RobotDescription) -> dict[str, Any]:
+        """Reads the controllers of a file, by name, and replaces its substitutions.
+
+        Raises:
+            PluginError: See `read_yaml` and `for_robot`.
+        """
+        return self.known(
+            robot, ("ros1", path), lambda: for_robot(read_parameters(path), path, robot)
+        )
+
+    def read_ros2(self, path: Path, robot: RobotDescription) -> dict[str, Any]:
+        """Reads a ROS 2 parameter file and replaces its substitutions.
+
+        Raises:
+            PluginError: See `read_ros2`.
+        """
+        return self.known(robot, ("ros2", path), lambda: read_ros2(path, robot))
 
 
 def read_parameters(path: Path) -> dict[str, Any]:

@@ -14,9 +14,7 @@ from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
     ControllerFiles,
-    for_robot,
     is_ros2,
-    read_parameters,
     ros1_entries,
 )
 from cartwheel.dialects.ros_control.gains import read_gains
@@ -94,10 +92,8 @@ class RosControl(ControlPlugin):
                 values={"hardware": self.tag.filename},
             )
         self.namespace = self.namespace.strip("/")
-        contents = [
-            (str(path), for_robot(read_parameters(path), path, part.description))
-            for path in self.shared.get(ControllerFiles).take()
-        ]
+        files = self.shared.get(ControllerFiles)
+        contents = [(str(path), files.read(path, part.description)) for path in files.take()]
         entries = [entry for path, content in contents for entry in self._load(path, content)]
         rate = 0.0 if config.period == 0 else 1.0 / config.period
         hardware = self._steer_bot() if steered else None
