@@ -10,6 +10,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import cartwheel as cw
 from benchmarks.figure import Effort, Figure
@@ -42,7 +43,7 @@ def figures(effort: Effort) -> Iterator[Figure]:
 
 def _robot(name: str, robot: RobotDescription, effort: Effort) -> Iterator[Figure]:
     """A world with one robot: by hand, with its visuals, from `cartwheel.build`, and reset."""
-    given = {"robot": robot, "controllers": "auto"}
+    given: dict[str, Any] = {"robot": robot, "controllers": "auto"}
     built = cw.build("empty", given)
 
     def by_hand() -> cw.World:
