@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import weakref
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -36,6 +37,18 @@ from cartwheel.simulation.pacing import Pacer
 
 CLOCK_RATE = 100.0
 """Default rate of ``/clock``, Hz of simulation time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spawned:
+    """What spawning a model needs besides its description and its place."""
+
+    controllers: tuple[Path, ...] = ()
+    """Controller files."""
+    controller_names: tuple[str, ...] = ()
+    """The controllers in these files that are started; empty for all."""
+    package_path: tuple[Path, ...] = ()
+    """Folders to search for packages first."""
 
 
 class Session:
@@ -94,8 +107,8 @@ class Session:
                 self.shared.get(PluginFiles).load(path)
         self.strict = strict
         self._spawning = False
-        self.spawned: dict[str, tuple[tuple[Path, ...], tuple[Path, ...]]] = {}
-        """Controller files and package folders of the models that were spawned, by model."""
+        self.spawned: dict[str, Spawned] = {}
+        """How each model was spawned, by its name."""
         self.originals: weakref.WeakKeyDictionary[object, Any] = weakref.WeakKeyDictionary()
         """For each saved state, the objects that were saved; see `cartwheel.saving`."""
         # Without a reference to the session, because the simulation would keep it alive.
@@ -188,7 +201,7 @@ class Session:
                 namespace=namespace,
                 frame_prefix=frame_prefix,
             )
-        self.spawned[spawned] = files, tuple(package_path)
+        self.spawned[spawned] = Spawned(files, names, tuple(package_path))
         return spawned
 
     def _spawn(
@@ -225,22 +238,22 @@ class Session:
         pose: Pose,
         namespace: str,
         frame_prefix: str,
-        controllers: Sequence[Path],
-        package_path: Sequence[Path],
+        how: Spawned,
     ) -> Resident:
         """Creates a model again, to be compiled afterwards; see `spawn` and `Population.admit`."""
-        if self._packages.add(description.origin.file, package_path):
+        if self._packages.add(description.origin.file, how.package_path):
             self.types.forget_missing()
         files = self.shared.get(ControllerFiles)
-        files.paths = tuple(controllers)
+        files.paths, files.names = how.controllers, frozenset(how.controller_names)
         try:
             resident = self.simulation.population.admit(
                 description, name, pose, namespace, frame_prefix
             )
         finally:
             files.take()
+            files.names = frozenset()
         resident.part.spawned = True
-        self.spawned[name] = tuple(controllers), tuple(package_path)
+        self.spawned[name] = how
         return resident
 
     @contextlib.contextmanager

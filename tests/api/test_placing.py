@@ -1,6 +1,7 @@
 """Where a program spawns robots: poses, namespaces, frames and controllers."""
 
 import math
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.codes.graph import GRAPH_NAME_INVALID
 from cartwheel.codes.running import CONTROLLERS_NOT_NAMED, SERVICE_TAKEN
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE
+from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
 
@@ -172,3 +174,30 @@ def test_automatic_controllers_are_built_once(tmp_path: Path) -> None:
     built = cw.build("empty", {"robot": package(tmp_path), "controllers": "auto"})
     with built.world() as world:
         assert "/fast/command" in world.model("arm").topics
+
+
+def test_automatic_controllers_come_back_with_their_robot(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        model = world.spawn(package(tmp_path), controllers="auto")
+        world.publish("/fast/command", data=0.5)
+        world.run(0.5)
+        state, topics, reported = world.save(), model.topics, world.diagnostics
+        world.run(1.0)
+        expected = model.joint("a_joint")
+        # A state of the model that was created again knows its controllers as well.
+        for copied in (False, True, True):
+            if copied:
+                world.restore(state)
+                state = pickle.loads(pickle.dumps(world.save()))
+            model.delete()
+            assert "/fast/command" not in world.topics
+            world.restore(state)
+            assert model.topics == topics
+            listed = world.call("/controller_manager/list_controllers").controller
+            assert {each.name for each in listed} == {"states", "fast"}
+            assert world.diagnostics == reported
+            # Other controllers of the file were not even loaded.
+            loaded = world.session.shared.get(ControllerFiles).loaded
+            assert {each.name for each in loaded} <= {"states", "fast"}
+            world.run(1.0)
+            assert model.joint("a_joint") == expected

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from tests.api.test_placing import package
 from tests.coded import raises
 
 from cartwheel import options
@@ -322,3 +323,12 @@ def test_joints_that_wait_for_controllers_nobody_starts_are_told(program, tmp_pa
     out = program("run", file, "--headless", "--for", 0.1, "--speed", "max").stdout
     assert ("so no joint is driven" in out) == bool(plugin)
     assert plugin in out
+
+
+def test_automatic_controllers_are_those_of_the_launch_file(program, tmp_path):
+    file = package(tmp_path)
+    out = program(
+        *("run", file, "--headless", "--for", 0.1, "--speed", "max", "--controllers", "auto")
+    ).stdout
+    assert "\ncontrol states, fast\n" in out
+    assert "/fast/command" in out and "slow" not in out

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from pathlib import Path
 from typing import Any
 
 from cartwheel.component import Component
 from cartwheel.geometry import Pose
+from cartwheel.session import Spawned
 from cartwheel.simulation.models.resident import Resident
 from cartwheel.world.entry import ModelEntry
 
@@ -21,17 +21,14 @@ class SavedModel:
     start: Pose
     namespace: str
     frame_prefix: str
-    controllers: tuple[Path, ...]
-    package_path: tuple[Path, ...]
+    how: Spawned
     plugins: tuple[int, ...]
     """Indices of its plugins that were not disabled, in the order in which they were created."""
     structures: tuple[Any, ...]
     """For each of these plugins, its `Component.structure`."""
 
 
-def describe(
-    resident: Resident, controllers: Sequence[Path] = (), package_path: Sequence[Path] = ()
-) -> SavedModel:
+def describe(resident: Resident, how: Spawned) -> SavedModel:
     """Returns the description of a model from which it can be created again."""
     alive = [each for each in resident.created if each in resident.behaviours]
     return SavedModel(
@@ -39,8 +36,7 @@ def describe(
         start=resident.start,
         namespace=resident.part.namespace,
         frame_prefix=resident.part.frame_prefix,
-        controllers=tuple(controllers),
-        package_path=tuple(package_path),
+        how=how,
         plugins=tuple(resident.created.index(each) for each in alive),
         structures=tuple(
             each.structure() if isinstance(each, Component) else None for each in alive

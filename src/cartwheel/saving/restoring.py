@@ -132,8 +132,7 @@ def _restore_models(session: Session, state: State) -> tuple[dict[str, Resident]
                 pose=model.start,
                 namespace=model.namespace,
                 frame_prefix=model.frame_prefix,
-                controllers=model.controllers,
-                package_path=model.package_path,
+                how=model.how,
             )
         )
     return residents, changed or list(residents) != list(live)

@@ -12,6 +12,7 @@ from cartwheel.description.model import WorldDescription
 from cartwheel.saving.encoded import Node
 from cartwheel.saving.models import SavedModel, components, describe
 from cartwheel.saving.writing import Writer
+from cartwheel.session import Spawned
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.saved_physics import VERSION, Physics
 
@@ -109,9 +110,9 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
     state = State(
         version=version(),
         world=replace(simulation.world, models=()),
-        house=describe(simulation.population.house),
+        house=describe(simulation.population.house, Spawned()),
         models=tuple(
-            describe(each, *session.spawned.get(name, ((), ())))
+            describe(each, session.spawned.get(name, Spawned()))
             for name, each in simulation.population.residents.items()
         ),
         without=tuple(sorted(simulation.engine.without)),
