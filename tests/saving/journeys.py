@@ -27,16 +27,17 @@ class Journey:
     Args:
         file: A robot, or a world with a robot.
         height: Height at which the robot is spawned, m; None if it is to rest on the ground.
+        seed: Seed of the noise.
     """
 
-    def __init__(self, file: Path, height: float | None = None) -> None:
+    def __init__(self, file: Path, height: float | None = None, seed: int = 0) -> None:
         self.height = height or 0.0
         if file.suffix == ".world":
-            self.world = cw.World(file, lenient=True)
+            self.world = cw.World(file, seed=seed, lenient=True)
         else:
             description = load_robot(file)
             self.height = resting_height(description) if height is None else height
-            self.world = cw.World(lenient=True)
+            self.world = cw.World(seed=seed, lenient=True)
             self.world.spawn(description, z=self.height, controllers=controller_files(description))
         self._sum = hashlib.sha256()
         self._counts: dict[str, int] = {}
@@ -45,6 +46,8 @@ class Journey:
                 self.world.graph.subscribe(
                     topic.name, self._hasher(topic.name), type_name=topic.type, node="test"
                 )
+        # Latched messages are those of before.
+        self.world.session.simulation.drain()
         self._commands = Commands(self.world)
 
     def _hasher(self, topic: str) -> Callable[[Any], None]:

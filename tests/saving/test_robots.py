@@ -44,12 +44,25 @@ def compare(file, elsewhere, times=(1.0, 0.5)):
     return [each for each in state.left_out if not each.startswith("subscriber")]
 
 
-@pytest.mark.parametrize(
-    "name", sorted(each.name for each in ROBOTS.iterdir() if each.suffix in (".urdf", ".world"))
-)
+NAMES = sorted(each.name for each in ROBOTS.iterdir() if each.suffix in (".urdf", ".world"))
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_each_plugin_continues(name, elsewhere):
     left_out = compare(ROBOTS / name, elsewhere)
     assert [each.rpartition("(")[2].rstrip(")") for each in left_out] == CONNECTED.get(name, [])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_reset_plugin_is_that_of_a_new_world(name):
+    new = Journey(ROBOTS / name, seed=3)
+    with new.world:
+        expected = new.go_on()
+    used = Journey(ROBOTS / name, seed=4)
+    with used.world as world:
+        used.set_out()
+        world.reset(seed=3)
+        assert used.go_on() == expected
 
 
 @pytest.mark.skipif(not CORPUS.is_dir(), reason=f"{CORPUS} does not exist")

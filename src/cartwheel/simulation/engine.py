@@ -288,8 +288,13 @@ class Engine:
             values={"contacts": int(self.data.ncon)},
         )
 
-    def rewind(self, *, keep_time: bool = False) -> None:
-        """Resets all joints to their initial state, and time to zero unless `keep_time` is set."""
+    def rewind(self, *, keep_time: bool = False, prepare: Callable[[], None]) -> None:
+        """Resets all joints to their initial state, and time to zero.
+
+        Args:
+            keep_time: Do not reset time.
+            prepare: If time is reset, called before the forces of the initial state are computed.
+        """
         time = self.data.time
         self._changes += 1
         mujoco.mj_resetData(self.model, self.data)
@@ -299,6 +304,7 @@ class Engine:
             self.time_ns = self.step = self.origin_ns = 0
             self.served_ns = -1
             self.rewinds += 1
+            prepare()
         self.forward()
 
     def body_id(self, model: str, link: str) -> int:

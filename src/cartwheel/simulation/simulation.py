@@ -277,7 +277,7 @@ class Simulation(Models):
         """
         population = self._population
         population.return_to_start()
-        self.engine.rewind(keep_time=keep_time)
+        self.engine.rewind(keep_time=keep_time, prepare=population.rewind_servos)
         if seed is not None:
             reseed(self.engine, population.everyone(), seed)
         population.take_positions(population.residents.values())

@@ -12,6 +12,8 @@ from cartwheel.world.entry import ROTOR, Motor, scoped
 
 _OBJ = mujoco.mjtObj
 Mode = Literal["idle", "effort", "velocity", "position"]
+_Command = tuple[Mode, tuple[float, float], float, float, float, float, float]
+"""Mode, law, velocity of the rotor, target, its rate, maximum velocity and effort."""
 
 POSITION_BANDWIDTH = 50.0
 """1/s; a position error decreases to 1/e in 20 ms."""
@@ -49,6 +51,8 @@ class ServoHandle:
         self._turning = 0.0
         self._target = self._rate = 0.0
         self._fastest = self._limit = math.inf
+        self._first: _Command | None = None
+        """The command that it had when the model was spawned."""
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the name in a compiled model."""
@@ -71,6 +75,9 @@ class ServoHandle:
         self._dof = int(model.jnt_dofadr[joint])
         self.weigh(model)
         self._commanded_again = self.period <= self._step
+        if self._first is None:
+            place = (self._target, self._rate, self._fastest, self._limit)
+            self._first = (self.mode, self._law, self._turning, *place)
         if self._awake or (self.mode == "position" and not self._commanded_again):
             self._rouse()
         self._apply()
@@ -79,6 +86,13 @@ class ServoHandle:
         """Reads the inertia that the joint moves, from a model in which masses have changed."""
         inertia = float(model.dof_M0[self._dof])
         self._braking = 2 * (_BRAKING * self._strength / max(inertia, 1e-9))
+
+    def rewind(self) -> None:
+        """Returns to the command that it had when the model was spawned, mostly none."""
+        assert self._first is not None
+        self.mode, self._law, self._turning = self._first[:3]
+        self._target, self._rate, self._fastest, self._limit = self._first[3:]
+        self._apply()
 
     def release(self) -> None:
         """Lets the joint move freely."""

@@ -333,6 +333,13 @@ class Population:
             if resident.entry.pose != resident.start:
                 self.place(name, resident.start)
 
+    def rewind_servos(self) -> None:
+        """Returns all servos to the commands that they had when their models were spawned."""
+        for resident in self.everyone():
+            for handle in resident.part.handles:
+                if isinstance(handle, ServoHandle):
+                    handle.rewind()
+
     def welcome(self, name: str, *, before: Collection[str] = ()) -> None:
         """Reports the diagnostics of a model that was just compiled; see `separate`."""
         resident = self.residents[name]
