@@ -12,7 +12,6 @@ from cartwheel.geometry import Pose
 from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
-from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.dynamics.separation import Separation, overlap
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle
@@ -336,9 +335,7 @@ class Population:
     def rewind_servos(self) -> None:
         """Returns all servos to the commands that they had when their models were spawned."""
         for resident in self.everyone():
-            for handle in resident.part.handles:
-                if isinstance(handle, ServoHandle):
-                    handle.rewind()
+            resident.rewind_servos()
 
     def welcome(self, name: str, *, before: Collection[str] = ()) -> None:
         """Reports the diagnostics of a model that was just compiled; see `separate`."""

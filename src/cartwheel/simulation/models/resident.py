@@ -13,6 +13,7 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.handles import MotorHandle
 from cartwheel.simulation.part import Part
 from cartwheel.world.entry import ModelEntry
@@ -106,6 +107,12 @@ class Resident:
         """Closes all plugins."""
         for behaviour in self.behaviours:
             self._close(behaviour)
+
+    def rewind_servos(self) -> None:
+        """Returns all servos to the commands that they had when the model was spawned."""
+        for handle in self.part.handles:
+            if isinstance(handle, ServoHandle):
+                handle.rewind()
 
     def end(self, plugin: object) -> None:
         """Closes a plugin; does nothing if it does not belong to this model."""
