@@ -12,6 +12,7 @@ from cartwheel.geometry import Pose
 from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.dynamics.separation import Separation, overlap
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle

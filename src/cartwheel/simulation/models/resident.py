@@ -12,8 +12,8 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
-from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import MotorHandle
 from cartwheel.simulation.part import Part
 from cartwheel.world.entry import ModelEntry
