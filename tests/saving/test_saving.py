@@ -17,7 +17,7 @@ from tests.saving.journeys import ROBOTS, Journey
 
 import cartwheel as cw
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, RUN_NESTED, SIMULATION_CLOSED, STATE_MISMATCH
-from cartwheel.messages import service_classes
+from cartwheel.messages import encode_cdr, service_classes
 
 CART = {"robot": "rosbots.xacro", "z": 0.05}
 
@@ -257,6 +257,9 @@ def test_timed_actions_and_held_messages(world):
     world.run(0.25)
     state = world.save()
     assert "action at 0.5 s" in state.left_out
+    world.run(0.1)
+    # The actions are still pending.
+    world.restore(state)
     world.run(0.5)
     expected = bits(world)
     assert times == [0.5, 0.6]
@@ -475,6 +478,42 @@ def test_worlds_that_differ(world, make):
         other.restore(pickle.loads(pickle.dumps(state)))
         assert other.models == state.models
         assert run(other) == expected
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_world_that_cannot_restore_a_state_is_unchanged(kept, tmp_path):
+    (tmp_path / "plugin.py").write_text(PLUGIN)
+    (tmp_path / "thing.urdf").write_text(ROBOT.format("libcounter.so"))
+    with cw.World("empty", plugins=tmp_path / "plugin.py") as richer:
+        richer.spawn("rosbots.xacro", z=0.05)
+        richer.spawn(tmp_path / "thing.urdf", y=5.0)
+        richer.gravity = (0.0, 0.0, -1.62)
+        richer.run(0.3)
+        state = pickle.loads(pickle.dumps(richer.save()))
+
+    def made():
+        world = cw.World("empty")
+        # It is deleted by the attempt, or changed in place.
+        world.spawn("rosbots.xacro", name="rosbots" if kept else "other", z=0.05, x=1.0)
+        world.spawn("object.urdf", name="crate", x=3.0)
+        world.on(1.0, lambda: world.model("crate").push(force=(50.0, 0.0, 0.0)))
+        world.publish("/part2_cmr/cmd_vel", linear_x=0.4)
+        world.run(0.5)
+        return world
+
+    def ahead(world):
+        odometry, imu = world.mailbox("/odom"), world.mailbox("/imu/data")
+        world.run(1.0)
+        found = [encode_cdr(message) for box in (odometry, imu) for message in box.drain()]
+        assert len(found) > 100
+        return found, [world.model(name).pose for name in world.models], world.gravity
+
+    with made() as untouched, made() as world:
+        before = untouched.models
+        with raises(STATE_MISMATCH):
+            world.restore(state)
+        assert world.models == before
+        assert ahead(world) == ahead(untouched)
 
 
 def test_not_while_it_runs_and_not_when_closed(world):

@@ -42,9 +42,9 @@ class SavingWorld(MessagingWorld):
             state: The result of `save`, which may have been pickled.
 
         Raises:
-            SimulationError: The world is running or closed, or differs from the saved one. In the
-                latter case, do not use it further.
-            CartwheelError: A deleted model cannot be spawned again.
+            SimulationError: The world is running or closed, or differs from the saved one.
+            CartwheelError: A deleted model cannot be spawned again. The world is unchanged after
+                each of these errors.
         """
         with self.used(change=True):
             if self._running:

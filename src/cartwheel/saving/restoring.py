@@ -12,7 +12,7 @@ from cartwheel.errors import SimulationError
 from cartwheel.saving.changes import mismatch
 from cartwheel.saving.models import SavedModel, replace_entry
 from cartwheel.saving.reading import Reader
-from cartwheel.saving.state import Saved, State, objects, registered, version
+from cartwheel.saving.state import Saved, State, objects, registered, save, version
 from cartwheel.simulation.models.resident import Resident
 
 if TYPE_CHECKING:
@@ -23,7 +23,8 @@ def restore(session: Session, state: State) -> None:
     """Restores a state; the session continues as it did after the state was saved.
 
     Models that were spawned since are deleted, and deleted models are spawned again. Call it on the
-    owner's thread, while the simulation does not advance.
+    owner's thread, while the simulation does not advance. If the state cannot be restored, the
+    session continues as if it had not been tried.
 
     Args:
         session: The session that was saved, or one that was made in the same way.
@@ -34,12 +35,36 @@ def restore(session: Session, state: State) -> None:
         CartwheelError: A model cannot be spawned again.
     """
     _check(session, state)
+    session.simulation.drain()
+    # Whether all parts exist is known only when they have been created.
+    before = None if _is_of(session, state) else save(session)
+    try:
+        _restore(session, state)
+    except BaseException:
+        if before is not None:
+            _restore(session, before, changed=True)
+        raise
+
+
+def _is_of(session: Session, state: State) -> bool:
+    """Whether a state was saved in this session, whose models are still the same."""
+    saved = session.originals.get(state)
+    return saved is not None and saved.residents == session.simulation.population.residents
+
+
+def _restore(session: Session, state: State, *, changed: bool = False) -> None:
+    """Restores a state that passes `_check`.
+
+    Args:
+        session: The session.
+        state: The state.
+        changed: Whether the world must be compiled in any case.
+    """
     simulation = session.simulation
-    simulation.drain()
     population, engine = simulation.population, simulation.engine
     saved = session.originals.get(state)
     before = engine.model
-    changed = _restore_world(session, state)
+    changed |= _restore_world(session, state)
     residents, replaced = _restore_models(session, state)
     changed |= replaced
     for model in (state._house, *state._models):
@@ -120,13 +145,11 @@ def _restore_models(session: Session, state: State) -> tuple[dict[str, Resident]
             resident.close()
             del live[name]
     changed = len(live) != len(population.residents)
-    population.residents = dict(live)
-    residents = {}
+    # Models that were created are closed if a later one fails.
+    population.residents = everyone = dict(live)
     for name, model in wanted.items():
-        residents[name] = (
-            live[name]
-            if name in live
-            else session.admit(
+        if name not in everyone:
+            everyone[name] = session.admit(
                 model.entry.description,
                 name,
                 pose=model.start,
@@ -134,7 +157,7 @@ def _restore_models(session: Session, state: State) -> tuple[dict[str, Resident]
                 frame_prefix=model.frame_prefix,
                 how=model.how,
             )
-        )
+    residents = {name: everyone[name] for name in wanted}
     return residents, changed or list(residents) != list(live)
 
 

@@ -130,9 +130,12 @@ class Alarms:
 
         Other actions are treated as by `restart`.
         """
-        self.restart()
         known = {id(alarm) for alarm, *_ in saved}
-        others = [alarm for alarm in self.pending if id(alarm) not in known]
+        # `restart` cancels single actions, and so would cancel saved ones that are still pending.
+        self._queue = [each for each in self._queue if id(each[2]) not in known]
+        heapq.heapify(self._queue)
+        self.restart()
+        others = self.pending
         self._queue.clear()
         for alarm, *times in saved:
             if alarm.resume(*times):
