@@ -12,7 +12,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, check, headless, making, process, sensors, unread, wires
+from benchmarks import camera, check, headless, making, process, rays, sensors, unread, wires
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
@@ -21,6 +21,7 @@ _PARTS = {
     "unread": unread,
     "camera": camera,
     "sensors": sensors,
+    "rays": rays,
     "process": process,
     "making": making,
     "wires": wires,

@@ -32,9 +32,10 @@ class _Sensor:
     note: str = ""
 
 
-def _scanner(
+def scanner(
     *, columns: int, rows: int = 1, rate: float, reach: float, output: str = "LaserScan"
 ) -> str:
+    """A lidar on the cart."""
     tall = 0.26 if rows > 1 else 0.0
     return f"""<sensor name="scanner" type="ray"><pose>0 0 0.3 0 0 0</pose>
         <update_rate>{rate}</update_rate>
@@ -67,7 +68,7 @@ _SENSORS = (
     _Sensor(
         title="laser of 360 rays at 5 Hz",
         rate=5.0,
-        element=_scanner(columns=360, rate=5.0, reach=3.5),
+        element=scanner(columns=360, rate=5.0, reach=3.5),
         topics=("/scan",),
         goal=20 * 5.3,
         each="a scan",
@@ -76,7 +77,7 @@ _SENSORS = (
     _Sensor(
         title="laser of 720 rays at 40 Hz",
         rate=40.0,
-        element=_scanner(columns=720, rate=40.0, reach=30.0),
+        element=scanner(columns=720, rate=40.0, reach=30.0),
         topics=("/scan",),
         goal=10.0,
         each="a scan",
@@ -84,7 +85,7 @@ _SENSORS = (
     _Sensor(
         title="lidar of 16 x 1800 rays at 10 Hz",
         rate=10.0,
-        element=_scanner(columns=1800, rows=16, rate=10.0, reach=100.0, output="PointCloud2"),
+        element=scanner(columns=1800, rows=16, rate=10.0, reach=100.0, output="PointCloud2"),
         topics=("/scan",),
         goal=1.5,
         each="a cloud of 28,800 points",
@@ -138,16 +139,16 @@ def _measure(sensor: _Sensor, effort: Effort) -> Iterator[Figure]:
 
 def _driving(sensor: _Sensor) -> cw.World:
     world = cw.World("walls")
-    world.spawn(_cart(sensor))
+    world.spawn(carrying(sensor.element))
     world.publish("/part2_cmr/cmd_vel", linear_x=0.2, angular_z=0.4)
     world.run(3)
     return world
 
 
-def _cart(sensor: _Sensor) -> RobotDescription:
-    """The shipped cart with a sensor mounted on it."""
+def carrying(element: str) -> RobotDescription:
+    """The shipped cart with a sensor, a ``<sensor>`` element, mounted on it."""
     described = load_text(
-        f"""<sdf version="1.7"><model name="carrier"><link name="link">{sensor.element}</link>
+        f"""<sdf version="1.7"><model name="carrier"><link name="link">{element}</link>
         </model></sdf>""",
         file="sensor.sdf",
     )

@@ -125,3 +125,6 @@ STATE_MISMATCH = Code(
 PROPERTY_ABSENT = Code(
     "CW636", "property-absent", "error", "a link or joint does not have the property to set"
 )
+EMBREE_MISSING = Code(
+    "CW637", "embree-missing", "info", "the rays of lidars are computed without Embree"
+)

@@ -15,6 +15,7 @@ from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to
 from cartwheel.simulation.clock import Task, Topic, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
+from cartwheel.simulation.sensing.embree_rays import SharedRayScenes
 from cartwheel.simulation.sensing.rendering import Renderer
 from cartwheel.simulation.sensing.visual_model import VisualModel
 from cartwheel.world.additions import Addition
@@ -66,6 +67,7 @@ class Engine:
         self.model: Any = None
         self.data: Any = None
         self.visuals = VisualModel()
+        self.ray_scenes = SharedRayScenes()
         self.renderer = Renderer(self.visuals)
         self.diagnostics: list[Diagnostic] = list(world.diagnostics)
         self.on_diagnostic: list[Callable[[Diagnostic], None]] = []

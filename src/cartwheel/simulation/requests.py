@@ -382,19 +382,16 @@ class Requests:
         return handle
 
     def rays(
-        self,
-        link: str,
-        pose: Pose,
-        directions: Array,
-        *,
-        minimum: float,
-        maximum: float,
+        self, link: str, pose: Pose, directions: Array, *, minimum: float, maximum: float,
         visuals: bool = False,
-    ) -> RayHandle:
+    ) -> RayHandle:  # fmt: skip
         """Rays from a link into the world, which hit visuals or collisions; see `RayHandle`."""
-        hit = self._engine.visuals if visuals else None
+        engine = self._engine
+        if (missing := engine.ray_scenes.missing()) is not None:
+            self.report(missing)
         handle = RayHandle(
-            self.name, link, pose, directions, minimum=minimum, maximum=maximum, visuals=hit
-        )
+            self.name, link, pose, directions, minimum=minimum, maximum=maximum,
+            scenes=engine.ray_scenes, visuals=engine.visuals if visuals else None,
+        )  # fmt: skip
         self.handles.append(handle)
         return handle

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from cartwheel.codes.world import EMBREE_MISSING
 from cartwheel.geometry import Pose, quat_from_rpy
+from cartwheel.simulation.sensing.embree_rays import SharedRayScenes
 from cartwheel.simulation.sensing.rays import RayHandle
 
 COLLISIONS = np.array([0, 0, 0, 0, 1, 0], dtype=np.uint8)
@@ -15,17 +17,28 @@ EYE = """<model name="eye"><static>true</static><pose>{x} {y} 0.7 0 0 0</pose><l
   </model>"""
 
 
-@pytest.fixture(autouse=True, params=["all shapes at once", "the nearest shapes first"])
+@pytest.fixture(
+    autouse=True,
+    params=["Embree", "MuJoCo, all shapes at once", "MuJoCo, the nearest shapes first"],
+)
 def way(request, monkeypatch):
-    """How the rays of a bundle are cast; which one is taken depends on their number."""
-    sorts = request.param == "the nearest shapes first"
-    rays = "cartwheel.simulation.sensing.rays"
-    monkeypatch.setattr(f"{rays}._WORTH_SORTING", 0 if sorts else math.inf)
-    monkeypatch.setattr(f"{rays}._FIRST_SHAPES", 2)
+    """How the rays of a bundle are cast; which one is taken depends on the machine and number."""
+    sensing = "cartwheel.simulation.sensing"
+    if request.param == "Embree":
+        pytest.importorskip("embreex")
+        monkeypatch.setattr(f"{sensing}.rays._WORTH_EMBREE", 0)
+        return
+    monkeypatch.setattr(f"{sensing}.rays.AVAILABLE", False)
+    sorts = request.param == "MuJoCo, the nearest shapes first"
+    monkeypatch.setattr(f"{sensing}.mujoco_rays._WORTH_SORTING", 0 if sorts else math.inf)
+    monkeypatch.setattr(f"{sensing}.mujoco_rays._FIRST_SHAPES", 2)
 
 
 def handle(world, directions, *, maximum=50.0, minimum=0.0):
-    made = RayHandle("eye", "link", Pose(), directions, minimum=minimum, maximum=maximum)
+    made = RayHandle(
+        "eye", "link", Pose(), directions, minimum=minimum, maximum=maximum,
+        scenes=SharedRayScenes(),
+    )  # fmt: skip
     simulation = world.session.simulation
     made.bind(simulation.model, simulation.data)
     return made
@@ -176,3 +189,133 @@ def test_a_cast_leaves_the_model_as_it_was(make):
     assert (before[2] > 1).any()
     handle(world, around(3, 50), minimum=0.5).cast()
     assert all(np.array_equal(*pair) for pair in zip(fields, before, strict=True))
+
+
+def test_rays_beside_curved_shapes_see_what_is_behind(make):
+    """They pass between the shapes and the triangles that enclose them."""
+    shapes = (
+        "<sphere><radius>0.4</radius></sphere>",
+        "<cylinder><radius>0.4</radius><length>3</length></cylinder>",
+        "<capsule><radius>0.4</radius><length>1</length></capsule>",
+        "<ellipsoid><radii>0.4 0.4 0.7</radii></ellipsoid>",
+    )
+    for shape in shapes:
+        post = make.sdf(
+            f"""<model name="post"><static>true</static><pose>3 0 0.7 0 0 0</pose><link name="l">
+            <collision name="a"><geometry>{shape}</geometry></collision>
+            <collision name="b"><pose>2 0 0 0 0 0</pose><geometry><box><size>0.2 9 9</size></box>
+            </geometry></collision></link></model>"""
+        )
+        world = make.world(post, make.sdf(EYE.format(x=0, y=0)))
+        # Tangents pass at 0.4 m from the axis, which is 3 m ahead.
+        edge = math.asin(0.4 / 3.0)
+        angles = edge + np.concatenate(
+            [np.linspace(-1e-3, 1e-3, 201), np.linspace(-1e-6, 1e-6, 41)]
+        )
+        rays = np.stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))], axis=1)
+        read, _ = handle(world, rays).cast()
+        expected = single(world, (0, 0, 0.7), rays, 50.0)
+        assert (expected < 4).any() and (expected > 4).any()
+        # At a tangent, a root of rounding errors.
+        assert read == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("static", ["true", "false"])
+@pytest.mark.parametrize("shape", ["box", "mesh"])
+def test_housings_and_near_shapes_of_its_own_robot_are_not_seen(make, tmp_path, shape, static):
+    """Ahead of the eye, 0.1 m and 0.5 m away, and on its left on a link that turns."""
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    faces = "124 143 587 576 156 126 348 387 137 175 268 284"
+    (tmp_path / "cube.obj").write_text(
+        "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        + "".join(f"f {a} {b} {c}\n" for a, b, c in faces.replace("126", "162").split())
+    )
+
+    def cube(name, size, place):
+        geometry = (
+            f"<box><size>{size} {size} {size}</size></box>"
+            if shape == "box"
+            else f"<mesh><uri>file://{tmp_path}/cube.obj</uri><scale>{size / 2} {size / 2} "
+            f"{size / 2}</scale></mesh>"
+        )
+        return (
+            f'<collision name="{name}"><pose>{place} 0 0 0</pose><geometry>{geometry}</geometry>'
+            "</collision>"
+        )
+
+    inertial = """<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia>
+      </inertial>"""
+    eye = make.sdf(
+        f"""<model name="eye"><static>{static}</static><pose>0 0 0.7 0 0 0</pose>
+        <link name="link">{inertial}{cube("housing", 0.08, "0 0 0")}
+          {cube("near", 0.1, "0.15 0 0")}{cube("far", 0.1, "0.55 0 0")}</link>
+        <link name="arm">{inertial}{cube("near", 0.1, "0 0.15 0")}{cube("far", 0.1, "0 0.55 0")}
+        </link><joint name="j" type="revolute"><parent>link</parent><child>arm</child>
+        <axis><xyz>0 0 1</xyz></axis></joint></model>"""
+    )
+    wall = make.sdf(
+        f"""<model name="wall"><static>true</static><pose>-0.15 0 0.7 0 0 0</pose><link name="l">
+        {cube("c", 0.1, "0 0 0")}</link></model>"""
+    )
+    world = make.world(eye, wall, gravity=0.0)
+    rays = np.array([[1.0, 0, 0], [0, 1.0, 0], [-1.0, 0, 0], [0, -1.0, 0]])
+    found = handle(world, rays, minimum=0.2)
+    read, _ = found.cast()
+    assert read.tolist() == [pytest.approx(0.5), pytest.approx(0.5), -math.inf, math.inf]
+    if static == "false":
+        arm = world.session.simulation.data.joint("eye::j")
+        arm.qpos[0] = -math.pi / 2
+        mujoco.mj_kinematics(world.session.simulation.model, world.session.simulation.data)
+        read, _ = found.cast()
+        assert read.tolist() == [pytest.approx(0.5), math.inf, -math.inf, math.inf]
+
+
+def test_changes_of_the_model_are_seen(make):
+    """A wall that is moved without a compilation, and one that becomes invisible."""
+    wall = make.sdf(
+        """<model name="wall"><static>true</static><pose>2 0 0.7 0 0 0</pose><link name="l">
+        <collision name="c"><geometry><box><size>0.2 1 1</size></box></geometry></collision>
+        </link></model>"""
+    )
+    world = make.world(wall, make.sdf(EYE.format(x=0, y=0)))
+    ahead = handle(world, np.array([[1.0, 0.0, 0.0]]))
+    model = world.session.simulation.model
+    assert ahead.cast()[0] == pytest.approx([1.9])
+    world.model("wall").pose = Pose((3.0, 0.0, 0.7))
+    world.step()
+    body = model.body("wall::l").id
+    assert ahead.cast()[0] == pytest.approx([2.9])
+    model.geom_rgba[model.body_geomadr[body], 3] = 0.0
+    assert ahead.cast()[0].tolist() == [math.inf]
+    model.geom_rgba[model.body_geomadr[body], 3] = 1.0
+    assert ahead.cast()[0] == pytest.approx([2.9])
+
+
+def test_far_from_the_origin_rays_are_as_exact(make):
+    random = np.random.default_rng(3)
+    posts = "".join(
+        f"""<collision name="c{i}"><pose>{2 + i} {y} 0.7 0 0 {y}</pose><geometry><box>
+        <size>0.2 0.3 1</size></box></geometry></collision>"""
+        for i, y in enumerate(random.uniform(-2, 2, 9))
+    )
+    row = make.sdf(
+        f"""<model name="row"><static>true</static><pose>70000 -40000 0 0 0 0.3</pose>
+        <link name="l">{posts}</link></model>"""
+    )
+    world = make.world(row, make.sdf(EYE.format(x=70000, y=-40000)))
+    rays = around(3, 300, steep=0.2)
+    read, _ = handle(world, rays).cast()
+    expected = single(world, (70000, -40000, 0.7), rays, 50.0)
+    assert np.isfinite(expected).sum() > 20
+    assert read == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_missing_embree_is_told_once(make, monkeypatch):
+    monkeypatch.setattr("cartwheel.simulation.sensing.embree_rays.AVAILABLE", False)
+    laser = """<model name="{name}"><static>true</static><link name="l"><sensor name="s" type="ray">
+      <ray><scan><horizontal><samples>3</samples><min_angle>0</min_angle><max_angle>1</max_angle>
+      </horizontal></scan><range><min>0.1</min><max>9</max></range></ray>
+      <plugin name="{name}" filename="libgazebo_ros_laser.so"/></sensor></link></model>"""
+    world = make.world(*(make.sdf(laser.format(name=name)) for name in "ab"))
+    told = [each for each in world.diagnostics if each.code is EMBREE_MISSING]
+    assert len(told) == 1
