@@ -141,6 +141,7 @@ class Session:
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE
         )
+        self._Clock: Any = message_class("rosgraph_msgs/msg/Clock")
         self._clock_task = self._schedule_clock(CLOCK_RATE)
         self._check(0)
 
@@ -353,10 +354,7 @@ class Session:
         return self.simulation.schedule(rate, after=self._publish_clock, topics=[self._clock])
 
     def _publish_clock(self) -> None:
-        message: Any = message_class("rosgraph_msgs/msg/Clock")(
-            clock=stamp(self.simulation.time_ns)
-        )
-        self._clock.publish(message)
+        self._clock.publish(self._Clock(stamp(self.simulation.engine.time_ns)))
 
 
 def _no_controllers(robot: RobotDescription, found: Sequence[Path]) -> Diagnostic:

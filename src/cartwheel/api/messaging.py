@@ -6,6 +6,7 @@ import contextlib
 import functools
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -217,7 +218,7 @@ class MessagingWorld(TimedWorld):
         recorder = Recorder(
             self.graph,
             file,
-            time_ns=lambda: simulation.time_ns,
+            time_ns=functools.partial(attrgetter("time_ns"), simulation.engine),
             topics=several(topics),
             encoding=encoding,
             overwrite=overwrite,

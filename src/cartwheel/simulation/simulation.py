@@ -154,9 +154,12 @@ class Simulation(Models):
             if alarm is not None and alarm < due:
                 due = alarm
             # Without tasks, commands still do not wait longer than until the next check.
-            due = min(due, watch.due)
+            # Comparisons take a quarter of the time of `min`.
+            if watch.due < due:  # noqa: PLR1730
+                due = watch.due
             count = due - engine.step
-            count = min(count, left)
+            if left < count:  # noqa: PLR1730
+                count = left
             if separation.roots or faults.pending is not None:
                 count = 1
             if self.steps_allowed is not None:
@@ -223,7 +226,7 @@ class Simulation(Models):
             Whether a forward pass was made for tasks that read the state. The physics would compute
             the same pass next.
         """
-        readers: list[Task] = []
+        readers: list[Task] | None = None
         for task in first:
             active, before = task.active, task.before
             try:
@@ -231,7 +234,7 @@ class Simulation(Models):
                     if before is not None:
                         before()
                     if task.after is not None:
-                        readers.append(task)
+                        readers = [task] if readers is None else [*readers, task]
             except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
                 self.faults.task_failed(task, error)
         if readers:

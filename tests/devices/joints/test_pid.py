@@ -124,3 +124,25 @@ def test_arrays_have_the_same_bits_as_floats(stored):
             float(lightness[index]),
         )
         assert [float(each[index]) for each in together] == list(alone)
+
+
+@pytest.mark.parametrize("stored", ["error", "limited error", "limited term"])
+def test_a_controller_has_the_same_bits_as_the_functions(stored):
+    generator = np.random.default_rng(5)
+    gains = PidGains(p=3.7, i=1.3, d=0.9, i_min=-0.4, i_max=0.7, stored=stored)
+    pid, integral, before = Pid(gains), 0.0, None
+    limited = stiff = 0
+    for _ in range(200):
+        error, target = generator.normal(scale=20.0, size=2).tolist()
+        seconds, lightness = generator.uniform(0.0, [0.02, 4000.0]).tolist()
+        rate = 0.0 if before is None else rate_of(target, before, seconds)
+        integral, before = integrate(gains, integral, error, seconds), target
+        expected = position_effort(
+            gains, error, integral, rate=rate, seconds=seconds, lightness=lightness
+        )
+        assert pid.position(error, seconds, target, lightness=lightness) == expected
+        limited += not -0.399 < integral_term(gains, integral) < 0.699
+        stiff += expected.damping != gains.d
+    # All branches.
+    assert 0 < limited < 200
+    assert 0 < stiff < 200

@@ -55,8 +55,8 @@ class Backlog(Generic[T]):
             item: The item.
             size: Size of its data in bytes.
         """
-        items = self._items
-        if self._put - self._written >= self._room or len(items) >= self._count:
+        items, waiting = self._items, self._put - self._written
+        if waiting >= self._room or len(items) >= self._count:
             self._wait()
         if not self._open:
             return
@@ -64,9 +64,7 @@ class Backlog(Generic[T]):
         self._put += size
         items.append((item, size))
         # This is `_is_due` inlined, which saves a call per message.
-        if (
-            len(items) >= self._batch or self._put - self._written > self._room // 4
-        ) and not self._called:
+        if (len(items) >= self._batch or waiting + size > self._room // 4) and not self._called:
             with self._changed:
                 self._called = True
                 self._changed.notify_all()

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from functools import partial
 
-from cartwheel.devices.elementwise import Number, clamp, remainder
+from cartwheel.devices.elementwise import Number, remainder
 from cartwheel.devices.joints.limits import (
     JointLimits,
     limited_effort,
@@ -169,14 +169,15 @@ class JointActuator:
         """Commands an effort that decreases with velocity, for controllers with their own PID."""
         self.command, self._damping = command.effort, command.damping
 
-    def write(self, seconds: float, *, lead: float = 0.0) -> None:
+    def write(self, seconds: float, lead: float = 0.0) -> None:
         """Applies the command to the joint.
 
         Args:
             seconds: Time since the last call, s.
             lead: Time since the command was set, s. A position command is extrapolated by it.
         """
-        # Comparisons take a quarter of the time of `min` and `max`.
+        # This runs for each joint at every step. Comparisons take a quarter of the time of `min`
+        # and `max`, and positional arguments less than named ones.
         active, limits, target = self._active, self.limits, self.command
         if active == "velocity":
             high = limits.velocity
@@ -185,25 +186,26 @@ class JointActuator:
                 low, high = velocity_bounds(limits, self.state.position)
             if low > target:  # noqa: PLR1730
                 target = low
-            target = min(target, high)
+            if high < target:  # noqa: PLR1730
+                target = high
             motor = self._motor
             if motor is not None:
                 motor.target = motor.rotors[motor.dof] = target
             else:
                 self._follow_velocity(target, seconds)
         elif active == "position":
-            target, fastest = target + lead * self.rate, limits.velocity
+            rate, fastest = self.rate, limits.velocity
+            target += lead * rate
             if self._slows:
                 target, fastest = limited_position(limits, target, self.state.position)
             else:
                 if limits.lower > target:  # noqa: PLR1730
                     target = limits.lower
-                target = min(target, limits.upper)
+                if limits.upper < target:  # noqa: PLR1730
+                    target = limits.upper
             servo = self._servo
             if servo is not None and not self.pids:
-                servo.command_position(
-                    target, velocity=self.rate, max_velocity=fastest, max_effort=self.strength
-                )
+                servo.command_position(target, rate, fastest, self.strength)
             else:
                 self._follow_position(target, fastest, seconds)
         elif active == "effort":
@@ -236,7 +238,7 @@ class JointActuator:
             rate=self.rate or None,
             lightness=self.lightness,
         )
-        self._servo.command_effort(command.effort, damping=command.damping)
+        self._servo.command_effort(*command)
 
     def _follow_velocity(self, target: float, seconds: float) -> None:
         assert self._servo is not None
@@ -245,7 +247,7 @@ class JointActuator:
             self._servo.command_velocity(target)
         else:
             command = pid.velocity(target, self.velocity, seconds)
-            self._servo.command_effort(command.effort, damping=command.damping)
+            self._servo.command_effort(*command)
 
     def _write_effort(self, seconds: float) -> None:
         effort, damping, limits, state = self.command, self._damping, self.limits, self.state
@@ -268,6 +270,10 @@ class JointActuator:
                 effort, damping = saturated(command, limit, velocity, gain)
         else:
             # The same without an object.
-            effort = clamp(effort, -limits.effort, limits.effort)
+            limit = limits.effort
+            if -limit > effort:  # noqa: PLR1730
+                effort = -limit
+            if limit < effort:  # noqa: PLR1730
+                effort = limit
         assert self._servo is not None
-        self._servo.command_effort(effort, damping=damping)
+        self._servo.command_effort(effort, damping)

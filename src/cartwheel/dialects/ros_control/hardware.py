@@ -242,7 +242,7 @@ class Hardware:
                 joint.halt()
             return
         for joint in self._written:
-            joint.write(seconds, lead=lead)
+            joint.write(seconds, lead)
 
     def expect_commands(self, period: float) -> None:
         """States the time between two calls of `write`, s."""

@@ -123,7 +123,7 @@ class SteerBotHardware(Hardware):
             if self.halted:
                 each.halt()
             else:
-                each.write(seconds, lead=lead)
+                each.write(seconds, lead)
 
     def _angles(self, angle: float) -> tuple[float, float]:
         """Returns the angles of the right and the left joint, rad.
@@ -168,7 +168,7 @@ class _SharedJoint(JointHardware):
     def rest(self, *, holds: bool) -> None:  # noqa: ARG002
         self.command = 0.0
 
-    def write(self, seconds: float, *, lead: float = 0.0) -> None:
+    def write(self, seconds: float, lead: float = 0.0) -> None:
         raise NotImplementedError
 
 
