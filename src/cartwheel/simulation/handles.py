@@ -202,12 +202,15 @@ class JointHandle:
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, scoped(self.model_name, self.name))
         self._data = data
         # Memory views contain Python floats, and are cheaper than arrays.
-        self._qpos: Any = memoryview(data.qpos)
-        self._qvel: Any = memoryview(data.qvel)
+        self.qpos: Any = memoryview(data.qpos)
+        self.qvel: Any = memoryview(data.qvel)
+        """Positions and velocities of the compiled model; `qposadr` and `dofadr` are the joint's
+        indices. A caller at a high rate may read them itself, as `position` and `velocity` do.
+        """
         rotor = scoped(self.model_name, self.name, ROTOR)
         self._motor = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
-        self._position_index = int(model.jnt_qposadr[self.id])
-        self._velocity_index = int(model.jnt_dofadr[self.id])
+        self.qposadr = int(model.jnt_qposadr[self.id])
+        self.dofadr = int(model.jnt_dofadr[self.id])
         body = int(model.jnt_bodyid[self.id])
         self._rest: Vec3 = tuple(model.body_pos[body].tolist())
         self._rest_turn = from_wxyz(model.body_quat[body].tolist())
@@ -215,8 +218,8 @@ class JointHandle:
         self._axis: Vec3 = tuple(model.jnt_axis[self.id].tolist())
         self._off_centre = any(self._anchor)
         self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
-        self._zero = float(model.qpos0[self._position_index])
-        self.lightness = float(model.dof_invweight0[self._velocity_index])
+        self._zero = float(model.qpos0[self.qposadr])
+        self.lightness = float(model.dof_invweight0[self.dofadr])
         """Acceleration per effort, 1/(kg m²) or 1/kg, with everything that the joint carries, where
         it was spawned.
         """
@@ -224,33 +227,33 @@ class JointHandle:
     @property
     def places(self) -> tuple[int, int]:
         """Indices of the position and the velocity in the model's arrays."""
-        return self._position_index, self._velocity_index
+        return self.qposadr, self.dofadr
 
     @property
     def position(self) -> float:
         """Position, rad or m."""
-        position: float = self._qpos[self._position_index]
+        position: float = self.qpos[self.qposadr]
         return position
 
     @position.setter
     def position(self, value: float) -> None:
-        self._qpos[self._position_index] = value
+        self.qpos[self.qposadr] = value
 
     @property
     def velocity(self) -> float:
         """Velocity, rad/s or m/s."""
-        velocity: float = self._qvel[self._velocity_index]
+        velocity: float = self.qvel[self.dofadr]
         return velocity
 
     @velocity.setter
     def velocity(self, value: float) -> None:
-        self._qvel[self._velocity_index] = value
+        self.qvel[self.dofadr] = value
 
     @property
     def effort(self) -> float:
         """Effort of the joint's drive in N m or N: a motor, a servo or a commanded effort."""
         data = self._data
-        effort = float(data.qfrc_actuator[self._velocity_index])
+        effort = float(data.qfrc_actuator[self.dofadr])
         if self._motor >= 0:
             rows = (data.efc_type == _MOTOR_ROW) & (data.efc_id == self._motor)
             effort += float(data.efc_force[rows].sum())
@@ -261,7 +264,7 @@ class JointHandle:
 
         Computed only from the joint's position, so it is exact anywhere in the world.
         """
-        moved = self._qpos[self._position_index] - self._zero
+        moved = self.qpos[self.qposadr] - self._zero
         x, y, z = self._axis
         if self._slides:
             dx, dy, dz = rotate(self._rest_turn, (x * moved, y * moved, z * moved))

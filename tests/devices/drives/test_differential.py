@@ -10,7 +10,7 @@ from cartwheel.devices.drives.differential import (
     DifferentialDriveConfig,
     WheelPair,
 )
-from cartwheel.devices.drives.limiter import Limits
+from cartwheel.devices.drives.limiter import Limiter, Limits
 
 RADIUS, TRACK = 0.1, 0.4
 FRONT = WheelPair(
@@ -71,6 +71,18 @@ def test_rims_gain_speed_along_a_ramp(drive, wheels):
         device.actuate(0.1)
         speeds.append(wheels["fl"].command * RADIUS)
     assert speeds == pytest.approx([0.1, 0.2, 0.25, 0.25])
+
+
+def test_a_command_continues_the_ramp_on_which_another_one_was(drive, wheels):
+    """Although the first command had reached its speed before."""
+    limits = Limits(acceleration=(-1.0, 1.0))
+    device = drive(replace(CONFIG, linear=limits, angular=limits))
+    limiter = Limiter(limits)
+    for wanted in (0.2,) * 5 + (0.9,) * 3 + (0.2,) * 9 + (0.0, 0.2) * 2:
+        device.command(wanted, 0.0, 0.0)
+        device.actuate(0.1)
+        assert wheels["fl"].command == limiter.step(wanted, 0.1) / RADIUS
+    assert device.linear.value == limiter.value
 
 
 @pytest.mark.parametrize(("period", "speed"), [(None, 0.2), (0.05, 0.1)])

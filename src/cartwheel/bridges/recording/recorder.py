@@ -202,18 +202,7 @@ class Recorder:
         self._time = time_ns
         if tap.latched:
             tap.last = message
-        if self._is_ros1 or tap.describes:
-            self._put(tap, time_ns, message)
-            return
-        # The same without a call, because this runs for each message.
-        try:
-            data = self._pack(message)
-        except CartwheelError as error:
-            self._refuse(tap, error)
-            return
-        self._backlog.put((tap, time_ns, data), len(data))
-        if self._backlog.waited > _LONG_WAIT:
-            self._warn_of_disk()
+        self._put(tap, time_ns, message)
 
     def _restart(self, tap: Tap, time_ns: int) -> None:
         """Begins a new file with the latched messages, except that of a tap, which follows."""
@@ -237,11 +226,7 @@ class Recorder:
         self._backlog.put((tap, time_ns, data), len(data))
         if tap.describes:
             self._backlog.put((tap, time_ns, message.data), len(data))
-        if self._backlog.waited > _LONG_WAIT:
-            self._warn_of_disk()
-
-    def _warn_of_disk(self) -> None:
-        if not self._has_warned:
+        if self._backlog.waited > _LONG_WAIT and not self._has_warned:
             self._has_warned = True
             self._warn(
                 DISK_SLOW.diagnostic(
@@ -319,8 +304,8 @@ class Recorder:
                 items = self._backlog.get(max(0.0, self._flush_due - time.monotonic()))
                 for begin in range(0, len(items), _AT_ONCE):
                     some = items[begin : begin + _AT_ONCE]
-                    for item, _ in some:
-                        self._write(*item)
+                    for (tap, time_ns, data), _ in some:
+                        self._write(tap, time_ns, data)
                     self._backlog.done(sum(size for _, size in some))
                     self._flush_if_due()
                 self._flush_if_due()
@@ -369,7 +354,8 @@ class Recorder:
             return
         channel = self._channels.get(tap.key)
         if channel is None:
-            channel = self._channels[tap.key] = writer.add(tap.topic, tap.type, latched=tap.latched)
+            channel = writer.add(tap.topic, tap.type, latched=tap.latched)
+            self._channels[tap.key] = channel
             self._topics.add(tap.topic)
         writer.write(channel, time_ns, data)
         self._messages += 1

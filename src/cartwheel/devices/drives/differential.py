@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import Literal
 
 from cartwheel.component import Scope
@@ -60,9 +59,6 @@ class DifferentialDriveConfig:
     publishes."""
 
 
-_position = attrgetter("position")
-
-
 class DifferentialDrive(Drive):
     """Turns pairs of wheels so that the robot follows a forward velocity and a yaw rate.
 
@@ -84,6 +80,8 @@ class DifferentialDrive(Drive):
     """Rim speeds that follow from the command, m/s."""
     _speeds: list[float]
     """Rim speeds after the ramp, m/s."""
+    _steady: tuple[float, float, float] | None
+    """The command and the period for which the limiters changed nothing."""
     _rotation: tuple[float, float] | None
     """Mean rotation of the left and right wheels at the last update, rad."""
 
@@ -149,10 +147,15 @@ class DifferentialDrive(Drive):
         if self._is_limited:
             forward, turn = self._command
             period = seconds if config.limit_period is None else config.limit_period
-            forward, turn = self.linear.step(forward, period), self.angular.step(turn, period)
-            if (forward, turn) != self._limited:
-                self._limited = (forward, turn)
-                self._set_targets(forward, turn)
+            inputs = (forward, turn, period)
+            if inputs != self._steady:
+                linear, angular = self.linear, self.angular
+                forward, turn = linear.step(forward, period), angular.step(turn, period)
+                if (forward, turn) != self._limited:
+                    self._limited = (forward, turn)
+                    self._set_targets(forward, turn)
+                is_steady = linear.is_steady and angular.is_steady
+                self._steady = inputs if is_steady else None
         if self._speeds is not self._targets:
             if config.acceleration > 0 and self._speeds != self._targets:
                 most = config.acceleration * seconds
@@ -169,27 +172,29 @@ class DifferentialDrive(Drive):
 
     def measure(self, seconds: float) -> None:
         """Adds the motion since the last call, `seconds` ago, to the dead reckoning."""
-        source, pair = self._config.odometry, self._config.pairs[0]
-        if source == "ground truth":
+        source = self._config.odometry
+        if source == "positions":
+            before, self._rotation = self._rotation, self._rotations()
+            if before is None:
+                return
+            left, right = self._rotation[0] - before[0], self._rotation[1] - before[1]
+        elif source == "velocities":
+            left, right = (
+                seconds * _mean([wheel.velocity for wheel in wheels])
+                for wheels in (self._lefts, self._rights)
+            )
+        elif source == "ground truth":
             return
-        rotation = None if self._yaw_rate is None else self._yaw_rate() * seconds
         if source == "commands":
             forward, turn = self.linear.value * seconds, self.angular.value * seconds
         else:
-            if source == "velocities":
-                left, right = (
-                    seconds * _mean([wheel.velocity for wheel in wheels])
-                    for wheels in (self._lefts, self._rights)
-                )
-            else:
-                before, self._rotation = self._rotation, self._rotations()
-                if before is None:
-                    return
-                left, right = self._rotation[0] - before[0], self._rotation[1] - before[1]
+            pair = self._config.pairs[0]
             forward, turn = axle_motion(
                 left * pair.left_radius, right * pair.right_radius, pair.separation
             )
-        self.reckoning.go(forward, turn if rotation is None else rotation, seconds)
+        if self._yaw_rate is not None:
+            turn = self._yaw_rate() * seconds
+        self.reckoning.go(forward, turn, seconds)
 
     def motion(self) -> Motion:
         if self._config.odometry == "ground truth":
@@ -202,6 +207,7 @@ class DifferentialDrive(Drive):
         self._speeds = self._targets
         self._rotating = [0.0] * len(self._wheels)
         self._rotation = None
+        self._steady = None
         self.linear.reset()
         self.angular.reset()
         self.reckoning.restart()
@@ -214,10 +220,12 @@ class DifferentialDrive(Drive):
         ]
 
     def _rotations(self) -> tuple[float, float]:
-        count = len(self._lefts)
+        lefts, rights = self._lefts, self._rights
+        count = len(lefts)
         if count == 1:
-            return self._lefts[0].position, self._rights[0].position
-        return sum(map(_position, self._lefts)) / count, sum(map(_position, self._rights)) / count
+            return lefts[0].position, rights[0].position
+        left_sum = sum([each.position for each in lefts])
+        return left_sum / count, sum([each.position for each in rights]) / count
 
     def _motor_wheel(self, joint: str) -> CommandedJoint:
         torque = self._config.max_torque

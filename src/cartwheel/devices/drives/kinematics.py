@@ -5,6 +5,8 @@ All functions accept floats and arrays; see `cartwheel.devices.elementwise`.
 
 from __future__ import annotations
 
+import math
+
 from cartwheel.devices.elementwise import Number, cos, sin, where
 
 PlanarPose = tuple[Number, Number, Number]
@@ -51,14 +53,14 @@ def along_arc(
     straight, half = abs(turn) <= _STRAIGHT, turn / 2
     middle = heading + half
     # The chord of an arc is shorter than the arc by this factor.
-    if straight is True:
-        chord = 1.0
-    elif straight is False:
-        chord = sin(half) / half
+    if straight.__class__ is bool:
+        # Floats, without the calls that distinguish them from arrays.
+        chord = 1.0 if straight else math.sin(half) / half
+        c, s = math.cos(middle), math.sin(middle)
     else:
         half = where(straight, 1.0, half)
         chord = where(straight, 1.0, sin(half) / half)
-    c, s = cos(middle), sin(middle)
+        c, s = cos(middle), sin(middle)
     return (
         x + chord * (forward * c - sideways * s),
         y + chord * (forward * s + sideways * c),

@@ -76,6 +76,8 @@ class Limiter:
         """The last limited command, m/s or rad/s."""
         self._before: Number = 0.0
         self._inputs: tuple[Number, Number, Number, float] | None = None
+        self.is_steady = False
+        """Whether the next step with the same arguments changes nothing."""
 
     def step(self, wanted: Number, seconds: float) -> Number:
         """Returns the limited command; see `limited`."""
@@ -85,8 +87,9 @@ class Limiter:
         inputs = (wanted, self.value, self._before, seconds)
         if inputs == self._inputs:
             # A constant command: the result of the last step.
+            self.is_steady = True
             return self.value
-        self._inputs = inputs
+        self._inputs, self.is_steady = inputs, False
         value = limited(self._limits, wanted, self.value, self._before, seconds)
         self._before, self.value = self.value, value
         return value

@@ -251,7 +251,8 @@ class JointActuator:
 
     def _write_effort(self, seconds: float) -> None:
         effort, damping, limits, state = self.command, self._damping, self.limits, self.state
-        position, velocity, most = state.position, state.velocity, limits.velocity
+        position, velocity = state.qpos[state.qposadr], state.qvel[state.dofadr]
+        most = limits.velocity
         if limits.soft is not None or (
             position < limits.lower
             or position > limits.upper

@@ -51,12 +51,12 @@ class PidJoint:
             seconds: Time since the last call, s.
         """
         joint, target = self.joint, self.target
-        velocity = joint.state.velocity
+        state = joint.state
+        velocity = state.velocity
         if self.config.quantity == "velocity":
             error = target - velocity
             command = self._pid.velocity(target, velocity, seconds)
         else:
-            state = joint.state
             if joint.type != "continuous":
                 # Comparisons take a quarter of the time of `clamp`.
                 limits = joint.limits
