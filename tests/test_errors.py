@@ -140,3 +140,11 @@ def test_logs_have_message_hint_and_code_in_one_line():
     diagnostic = SLOW.diagnostic("it is slow", hint="Wait.", origin=PLACE)
     assert diagnostic.text == f"it is slow. Wait. [{SLOW.number}]"
     assert Diagnostic(severity="info", message="m").text == "m"
+
+
+def test_a_topic_is_suggested_by_its_last_parts():
+    known = ["/a/b/odom", "/base/odom", "/odometry/filtered", "/clock"]
+    assert UnknownNameError("topic", "/odom", known).values["meant"] == "/base/odom"
+    assert UnknownNameError("topic", "b/odom", known).values["meant"] == "/a/b/odom"
+    assert UnknownNameError("topic", "/clack", known).values["meant"] == "/clock"
+    assert UnknownNameError("topic", "/", known).values["meant"] == ""

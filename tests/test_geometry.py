@@ -144,3 +144,13 @@ def test_from_xyz_rpy_reads_as_urdf_does():
     assert (pose.x, pose.y, pose.z) == (1, 2, 3)
     assert pose.apply((1, 0, 0)) == pytest.approx((1, 3, 3))
     assert pose.rpy == pytest.approx((0, 0, math.pi / 2))
+
+
+def test_a_pose_transforms_arrays_of_points():
+    pose = g.Pose.from_xyz_rpy((1, 2, 3), (0.3, -0.5, 2.0))
+    points = np.random.default_rng(1).normal(size=(4, 5, 3)).astype(np.float32)
+    placed = pose.apply(points)
+    assert placed.shape == points.shape
+    for index in np.ndindex(4, 5):
+        assert placed[index] == pytest.approx(pose.apply(points[index].tolist()), abs=1e-12)
+    assert pose.inverse().apply(placed) == pytest.approx(points, abs=1e-6)

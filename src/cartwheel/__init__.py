@@ -84,6 +84,11 @@ def load_ipython_extension(shell: Any) -> None:
     extend(shell)
 
 
+def __dir__() -> list[str]:
+    """For completion in notebooks and shells, which know only what has been imported."""
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})
+
+
 def __getattr__(name: str) -> Any:
     # The import of numpy and the physics engine takes 0.1 s, but the command line must first parse
     # its arguments and handle Ctrl-C.

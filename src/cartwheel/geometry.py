@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -207,7 +208,20 @@ class Pose:
         x, y, z = rotate(q, self.position)
         return Pose((-x, -y, -z), q)
 
-    def apply(self, point: Sequence[float]) -> Vec3:
-        """Transforms a point from this frame to the outer frame."""
+    @overload
+    def apply(self, point: NDArray[Any]) -> Array: ...
+
+    @overload
+    def apply(self, point: Sequence[float]) -> Vec3: ...
+
+    def apply(self, point: Sequence[float] | NDArray[Any]) -> Vec3 | Array:
+        """Transforms a point, or an array of points, from this frame to the outer frame.
+
+        Args:
+            point: m, shape (3,), or an array of shape (…, 3), such as that of `cartwheel.cloud`.
+        """
+        if isinstance(point, np.ndarray):
+            placed: Array = point @ matrix_from_quat(self.orientation).T + np.array(self.position)
+            return placed
         dx, dy, dz = rotate(self.orientation, point)
         return (self.position[0] + dx, self.position[1] + dy, self.position[2] + dz)

@@ -38,7 +38,16 @@ def suggested(close: Sequence[str], known: Sequence[str]) -> str:
 
 
 def closest(name: str, known: list[str], cutoff: float) -> list[str]:
-    """The most similar name; empty for overlong names, which remote clients may send."""
+    """The most similar name; empty for overlong names, which remote clients may send.
+
+    Of the names of topics, those that end with all of the name are the most similar ones:
+    ``/base/odom`` for ``/odom``, with the fewest parts.
+    """
     if len(name) > LONGEST:
         return []
+    if "/" in name:
+        end = f"/{name.strip('/')}"
+        scoped = [each for each in known if len(each) <= LONGEST and each.endswith(end)]
+        if scoped and name not in known:
+            return [min(scoped, key=lambda each: (each.count("/"), each))]
     return difflib.get_close_matches(name, known, n=1, cutoff=cutoff)

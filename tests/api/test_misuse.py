@@ -1,6 +1,8 @@
 """Calls that a world refuses at once."""
 
 import math
+import subprocess
+import sys
 
 import pytest
 from tests.coded import raises
@@ -8,7 +10,12 @@ from tests.coded import raises
 import cartwheel as cw
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import FIELD_VALUE_INVALID, MESSAGE_TYPE_UNKNOWN
-from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, SIMULATION_CLOSED
+from cartwheel.codes.world import (
+    NUMBER_OUT_OF_RANGE,
+    PROPERTY_ABSENT,
+    SIMULATION_CLOSED,
+    VALUE_INVALID,
+)
 from cartwheel.errors import CartwheelError, GraphError, SimulationError
 from cartwheel.messages import from_dict
 
@@ -123,3 +130,29 @@ def test_options_of_ros2_and_mailboxes_are_checked(make):
     for size in (0, -1):
         with raises(NUMBER_OUT_OF_RANGE, CartwheelError, value=size):
             world.mailbox("/clock", size=size)
+
+
+def test_a_pose_and_a_velocity_have_their_classes(make, rosbots):
+    cart = make.world().spawn(rosbots)
+    for wrong in ((1.0, 2.0, 3.0), None):
+        with raises(VALUE_INVALID, name="pose"):
+            cart.pose = wrong
+        with raises(VALUE_INVALID, name="velocity"):
+            cart.velocity = wrong
+
+
+def test_a_link_without_a_mass_names_those_with_one(make, rosbots):
+    base = make.world().spawn(rosbots).link("base_footprint")
+    for use in (lambda: setattr(base, "mass", 2.0), lambda: base.inertia):
+        with raises(PROPERTY_ABSENT, name="base_footprint", property="mass") as caught:
+            use()
+        assert "base_link" in str(caught.value.hint)
+    with raises(PROPERTY_ABSENT, property="collision") as caught:
+        base.friction = 1.0
+    assert "wheel_left_link" in str(caught.value.hint)
+
+
+def test_completion_knows_what_has_not_been_imported():
+    code = "import cartwheel, sys; print(*dir(cartwheel)); assert 'numpy' not in sys.modules"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert set(cw.__all__) | {"__version__"} <= set(shown.stdout.split())

@@ -39,11 +39,19 @@ def test_values_are_those_of_the_messages(driven: cw.Topic) -> None:
 @pytest.mark.parametrize(
     "field",
     ["pose.pose.position.q", "pose", "header.frame_id", "pose.pose.position.x[0]", "", "a..b",
-     "pose.covariance", "pose.covariance[-1]", "__class__", "pose.__dict__", "header.frame_id[0]"],
+     "pose.covariance[-1]", "__class__", "pose.__dict__", "header.frame_id[0]"],
 )  # fmt: skip
 def test_a_field_that_is_no_number_is_refused(driven: cw.Topic, field: str) -> None:
     with raises(FIELD_UNKNOWN, field=field):
         driven.values(field)
+
+
+def test_arrays_of_numbers(driven: cw.Topic) -> None:
+    table = driven.values("pose.covariance")
+    assert table.shape == (201, 36)
+    assert table[:, 7].tolist() == driven.values("pose.covariance[7]").tolist()
+    plot = driven.plot("pose.covariance")
+    assert list(plot.series) == [f"pose.covariance[{index}]" for index in range(36)]
 
 
 def test_a_plot_draws_its_values(driven: cw.Topic, tmp_path: Path) -> None:

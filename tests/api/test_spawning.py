@@ -6,9 +6,10 @@ from tests.coded import coded, raises
 
 import cartwheel as cw
 from cartwheel.codes import devices
+from cartwheel.codes.files import WRONG_KIND
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.codes.world import MODEL_NAME_TAKEN, MODELS_OVERLAP
-from cartwheel.errors import CartwheelError, UnknownNameError
+from cartwheel.errors import CartwheelError, DescriptionError, UnknownNameError
 from cartwheel.simulation.models import compilations
 
 
@@ -153,3 +154,24 @@ def test_an_empty_block_compiles_nothing(make, compiled):
     with world.spawning():
         pass
     assert compiled == []
+
+
+def test_xml_instead_of_a_file():
+    text = (
+        '<robot name="{}" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arg name="mass" '
+        'default="1"/><link name="a"><inertial><mass value="$(arg mass)"/><inertia ixx="1" '
+        'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    with cw.World("empty") as world:
+        one = world.spawn(text.format("one"), z=1.0)
+        two = world.spawn(f"\n{text.format('two')}", arguments={"mass": "3"}, x=1.0)
+        assert (one.mass, two.mass) == (1.0, 3.0)
+        with raises(WRONG_KIND, kind="world"):
+            world.spawn('<sdf version="1.6"><world name="w"/></sdf>')
+        with pytest.raises(DescriptionError) as caught:
+            world.spawn("<robot name='cut'>")
+        assert "<string>" in str(caught.value.origin)
+    with cw.World('<sdf version="1.6"><world name="w"/></sdf>') as world:
+        assert world.models == ()
+    with cw.build("empty", [text.format("one"), {"robot": text.format("two")}]).world() as world:
+        assert world.models == ("ground_plane", "one", "two")

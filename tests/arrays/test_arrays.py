@@ -12,7 +12,7 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel import arrays
-from cartwheel.codes.graph import ARRAY_INVALID
+from cartwheel.codes.graph import ARRAY_INVALID, FIELD_UNKNOWN
 from cartwheel.errors import GraphError
 from cartwheel.messages import from_dict
 
@@ -432,3 +432,24 @@ def test_the_cameras_of_a_robot() -> None:
         matrix = cw.camera_matrix(info.latest)
         assert matrix[0, 0] == matrix[1, 1] > 0
         assert matrix[2].tolist() == [0, 0, 1]
+
+
+def test_a_field_that_is_an_array_gives_a_row_for_each_message():
+    short, long = (
+        from_dict("sensor_msgs/msg/LaserScan", {"ranges": ranges})
+        for ranges in ([1.0, np.inf], [1.0, 2.0, 3.0])
+    )
+    table = arrays.values([short, long], "ranges")
+    assert np.array_equal(table, [[1.0, np.inf, np.nan], [1.0, 2.0, 3.0]], equal_nan=True)
+    names = from_dict("sensor_msgs/msg/JointState", {"name": ["a", "b"], "position": [1.0, 2.0]})
+    assert arrays.values([names], "position").tolist() == [[1.0, 2.0]]
+    with raises(FIELD_UNKNOWN, field="name"):
+        arrays.values([names], "name")
+
+
+@pytest.mark.parametrize("convert", [cw.scan, cw.cloud, cw.image, cw.depth, cw.camera_matrix])
+def test_no_message_and_one_of_another_type(convert):
+    for wrong in (None, from_dict("std_msgs/msg/Bool", {})):
+        with raises(ARRAY_INVALID) as caught:
+            convert(wrong)
+        assert "is expected" in caught.value.message

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import pytest
+from tests.coded import raises
 
 import cartwheel as cw
+from cartwheel.codes.world import VALUE_INVALID
 from cartwheel.testing import (
     UnmetError,
     joint_reaches,
@@ -150,3 +152,26 @@ def test_sees_a_range(make):
     with pytest.raises(UnmetError) as raised:
         sees(world, "/scan", range=3.0, timeout=0.2)
     assert raised.value.values["range"] == pytest.approx(2.0, abs=0.01)
+
+
+RED = """<robot name="red"><link name="red"><inertial><mass value="5"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <visual><geometry><box size="0.4 0.4 1"/></geometry></visual>
+  <collision><geometry><box size="0.4 0.4 1"/></geometry></collision></link>
+  <gazebo reference="red"><material>Gazebo/Red</material></gazebo></robot>"""
+
+
+def test_sees_a_colour_that_is_shaded():
+    topic = "/rosbots/camera1/image_raw"
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro")
+        with pytest.raises(UnmetError):
+            sees(cart, topic, color=(1.0, 0.0, 0.0), timeout=0.2)
+        world.spawn(RED, x=2.0, z=0.5)
+        sees(cart, topic, color=(1.0, 0.0, 0.0))
+        for other in ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.6, 0.0)):
+            with pytest.raises(UnmetError) as raised:
+                sees(cart, topic, color=other, timeout=0.2)
+            assert "the most similar colour was" in raised.value.actual
+        with raises(VALUE_INVALID, name="color"):
+            sees(cart, topic, color=(255, 0, 0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +28,21 @@ def inertial_of(link: Link) -> Inertial:
     if link.inertial is None:
         raise missing("link", link.name, "mass", "Add an <inertial> to its description.")
     return link.inertial
+
+
+@contextlib.contextmanager
+def naming(links: Sequence[Link]) -> Iterator[None]:
+    """Names the links that have a property in the error for one that does not have it."""
+    try:
+        yield
+    except CartwheelError as error:
+        if error.code is PROPERTY_ABSENT:
+            mass = error.values["property"] == "mass"
+            names = [each.name for each in links if (each.inertial if mass else each.collisions)]
+            if names:
+                shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+                error.hint = f"Links that have one: {shown}."
+        raise
 
 
 def missing(kind: str, name: str, what: str, hint: str = "") -> CartwheelError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from cartwheel.api.appearance import (
     Colour,
@@ -17,7 +17,14 @@ from cartwheel.api.appearance import (
     texture_of,
     textured,
 )
-from cartwheel.api.inertials import inertia_of, inertial_of, with_centre, with_inertia, with_mass
+from cartwheel.api.inertials import (
+    inertia_of,
+    inertial_of,
+    naming,
+    with_centre,
+    with_inertia,
+    with_mass,
+)
 from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.surfaces import friction_of, with_friction
 from cartwheel.api.values import Vector, vector
@@ -32,6 +39,7 @@ if TYPE_CHECKING:
     from cartwheel.simulation import Simulation
 
 _NONE: Vector = (0.0, 0.0, 0.0)
+T = TypeVar("T")
 
 
 class Link:
@@ -125,7 +133,7 @@ class Link:
             UnknownNameError: The model or the link does not exist any more.
             SimulationError: The world is closed.
         """
-        return inertia_of(self._described)
+        return self._read(inertia_of)
 
     @inertia.setter
     def inertia(self, inertia: Sequence[Sequence[float]] | Array) -> None:
@@ -140,7 +148,7 @@ class Link:
             UnknownNameError: The model or the link does not exist any more.
             SimulationError: The world is closed.
         """
-        return inertial_of(self._described).pose.position
+        return self._read(inertial_of).pose.position
 
     @center_of_mass.setter
     def center_of_mass(self, centre: Vector) -> None:
@@ -158,7 +166,7 @@ class Link:
             UnknownNameError: The model or the link does not exist any more.
             SimulationError: The world is closed.
         """
-        return friction_of(self._described)
+        return self._read(friction_of)
 
     @friction.setter
     def friction(self, friction: float | Sequence[float]) -> None:
@@ -230,10 +238,17 @@ class Link:
         assert link is not None
         return description, link
 
+    def _read(self, read: Callable[[Description], T]) -> T:
+        with self._world.lock:
+            description, link = self._find(self._world.session.simulation)
+            with naming(description.links):
+                return read(link)
+
     def _change(self, change: Callable[[Description], Description]) -> None:
         with self._world.used(change=True) as simulation:
             description, link = self._find(simulation)
-            changed = change(link)
+            with naming(description.links):
+                changed = change(link)
             if changed != link:
                 links = tuple(changed if each is link else each for each in description.links)
                 simulation.redescribe(self.model, replace(description, links=links))

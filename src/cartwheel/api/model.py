@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from cartwheel.api.joints import Joints
 from cartwheel.api.links import Link
 from cartwheel.api.motion import Twist
-from cartwheel.api.values import Vector, vector
+from cartwheel.api.values import Vector, instance, vector
 from cartwheel.geometry import Pose
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ class Model:
 
     @pose.setter
     def pose(self, pose: Pose) -> None:
+        pose = instance(pose, Pose, "pose", "cartwheel.Pose((x, y, z))")
         with self._world.used(change=True) as simulation:
             simulation.set_pose(self.name, pose)
 
@@ -71,6 +72,7 @@ class Model:
 
     @velocity.setter
     def velocity(self, velocity: Twist) -> None:
+        velocity = instance(velocity, Twist, "velocity", "cartwheel.Twist(linear=(x, y, z))")
         linear = vector(velocity.linear, "velocity.linear")
         angular = vector(velocity.angular, "velocity.angular")
         with self._world.used(change=True) as simulation:

@@ -127,17 +127,20 @@ class Topic:
         return [time_ns / NANOSECONDS for time_ns, _ in self._newest(size)]
 
     def values(self, field: str, size: int | None = None) -> Array:
-        """One number of each message of `history`.
+        """One number or one array of each message of `history`.
 
         Args:
-            field: Names joined with dots, such as ``pose.pose.position.x`` or ``ranges[90]``.
+            field: Names joined with dots, such as ``pose.pose.position.x``, ``ranges[90]`` or
+                ``ranges``.
             size: As for `history`.
 
         Returns:
-            Shape (n,); NaN where an array of a message has no such index. Times are in s.
+            Shape (n,), or (n, m) for an array of numbers, where m is the size of the longest one;
+            NaN where an array of a message has no such index. Times are in s.
 
         Raises:
-            GraphError: The type does not have the field, or the field is not a number.
+            GraphError: The type does not have the field, or the field is not a number or an array
+                of numbers.
         """
         return arrays.values(self.history(size), field)
 
@@ -145,14 +148,20 @@ class Topic:
         """A plot of numbers over the simulation time, which notebooks display.
 
         Args:
-            fields: Fields as for `values`.
+            fields: Fields as for `values`. Each element of an array has a line of its own.
             size: As for `history`.
 
         Raises:
-            GraphError: The type does not have a field, or the field is not a number.
+            GraphError: As for `values`.
             CartwheelError: No field is given, or matplotlib is not installed.
         """
-        series = {field: self.values(field, size) for field in fields}
+        series: dict[str, Array] = {}
+        for field in fields:
+            values = self.values(field, size)
+            columns = {field: values}
+            if values.ndim == 2:
+                columns = {f"{field}[{index}]": each for index, each in enumerate(values.T)}
+            series |= columns
         return Plot(np.array(self.times(size)), series, title=self.name)
 
     def _newest(self, size: int | None) -> Sequence[tuple[int, Any]]:

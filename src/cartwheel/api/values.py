@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import SupportsFloat
+from typing import SupportsFloat, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from cartwheel.geometry import Array, Vec3
 
 Vector = Sequence[float] | NDArray[np.float64]
 """Three numbers."""
+T = TypeVar("T")
 
 
 def vector(values: Vector, name: str) -> Vec3:
@@ -41,6 +42,19 @@ def array(values: object, shape: tuple[int, ...], name: str) -> Array:
         size = " x ".join(map(str, shape))
         raise invalid(name, f"must be {size} finite numbers", values)
     return made
+
+
+def instance(value: object, kind: type[T], name: str, example: str) -> T:
+    """A value of a class.
+
+    Raises:
+        CartwheelError: It is of another class.
+    """
+    if not isinstance(value, kind):
+        error = invalid(name, f"must be a {kind.__name__}", value)
+        error.hint = f"Write {example}."
+        raise error
+    return value
 
 
 def scalar(

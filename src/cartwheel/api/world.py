@@ -34,7 +34,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
     image was rendered before the fork. A world with connections raises a `SimulationError` there.
 
     Args:
-        world: ``empty``, the name of another built-in world, a file, or a description.
+        world: ``empty``, the name of another built-in world, a file, the XML of one as text, or a
+            description.
         seed: Seed for all noise. The same seed and commands give identical results.
         strict: Treat every warning about a file as an error.
         lenient: Skip plugins that cannot be created, for example because a parameter is invalid,
@@ -178,7 +179,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         """Spawns a model.
 
         Args:
-            robot: A xacro, URDF or SDF file, or a description.
+            robot: A xacro, URDF or SDF file, the XML of one as text, or a description.
             name: Name in this world; None for the description's name.
             pose: Pose of the root link in the world. The file's pose is used if neither `pose` nor
                 any of the following six values is given.

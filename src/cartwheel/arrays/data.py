@@ -23,6 +23,22 @@ def full_kind_of(message: Any) -> str:
     return str(getattr(type(message), "__msgtype__", type(message).__name__))
 
 
+def require(message: Any, kind: str, *fields: str) -> None:
+    """Checks that a message has the fields of a type.
+
+    Raises:
+        GraphError: It does not, or there is no message.
+    """
+    if message is None:
+        raise GraphError(
+            f"there is no message, and a {kind} is expected",
+            code=ARRAY_INVALID,
+            hint="Subscribe to the topic, and run the world until the first message is published.",
+        )
+    if not all(hasattr(message, field) for field in fields):
+        raise invalid(f"a {kind} is expected, and the message is a {full_kind_of(message)}")
+
+
 def bytes_of(message: Any) -> Array:
     """The data of a message, as bytes."""
     data = message.data

@@ -17,7 +17,7 @@ _INDEX = re.compile(r"\d+")
 
 
 def values(messages: Iterable[Any], field: str) -> Array:
-    """One number of each message.
+    """One number or one array of each message.
 
     Args:
         messages: Messages of one type.
@@ -25,13 +25,23 @@ def values(messages: Iterable[Any], field: str) -> Array:
             ``ranges[90]``. A time or a duration, such as ``header.stamp``, is in s.
 
     Returns:
-        Shape (n,), float64; NaN where an array of a message has no such index.
+        Shape (n,), float64; NaN where an array of a message has no such index. For a field that is
+        an array of numbers, such as ``ranges``, shape (n, m), where m is the size of the longest
+        array; NaN after the end of the others.
 
     Raises:
-        GraphError: The type does not have the field, or the field is not a number.
+        GraphError: The type does not have the field, or the field is not a number or an array of
+            numbers.
     """
     steps = _steps(field)
-    return np.array([_value(message, field, steps) for message in messages], dtype=float)
+    found = [_value(message, field, steps) for message in messages]
+    rows = [each for each in found if isinstance(each, np.ndarray)]
+    if not rows:
+        return np.array(found, dtype=float)
+    table = np.full((len(found), max(row.size for row in rows)), np.nan)
+    for line, row in zip(table, rows, strict=True):
+        line[: row.size] = row
+    return table
 
 
 def _steps(field: str) -> list[str | int]:
@@ -44,7 +54,7 @@ def _steps(field: str) -> list[str | int]:
     return steps
 
 
-def _value(message: Any, field: str, steps: list[str | int]) -> float:
+def _value(message: Any, field: str, steps: list[str | int]) -> float | Array:
     value = message
     for step in steps:
         if isinstance(step, str):
@@ -62,7 +72,11 @@ def _value(message: Any, field: str, steps: list[str | int]) -> float:
         return float(value.sec + value.nanosec * 1e-9)
     if isinstance(value, bool | int | float | np.bool_ | np.number):
         return float(value)
-    raise _unknown(f'the field "{field}" is not a number', field)
+    if not isinstance(value, str | bytes) and hasattr(value, "__len__"):
+        numbers = np.asarray(value)
+        if numbers.ndim == 1 and (numbers.dtype.kind in "biuf" or not numbers.size):
+            return numbers.astype(float)
+    raise _unknown(f'the field "{field}" is not a number or an array of numbers', field)
 
 
 def _unknown(message: str, field: str) -> GraphError:

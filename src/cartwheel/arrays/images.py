@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.arrays.data import Array, bytes_of, invalid, kind_of, locked
+from cartwheel.arrays.data import Array, bytes_of, invalid, kind_of, locked, require
 
 _MOST_PIXELS = 1 << 28
 """Maximum number of pixels of a compressed image, which is known only after decoding its header."""
@@ -45,8 +45,10 @@ def image(message: Any) -> Array:
     Raises:
         GraphError: The encoding is unknown, or the data do not fit the size of the image.
     """
+    require(message, "sensor_msgs/Image", "data")
     if kind_of(message) == "CompressedImage":
         return _decoded(message)
+    require(message, "sensor_msgs/Image", "encoding")
     encoding = str(message.encoding)
     pixels = _pixels(message, encoding)
     if encoding.startswith("bgr"):
@@ -69,8 +71,10 @@ def depth(message: Any) -> Array:
     Raises:
         GraphError: The message is no depth image, or the data do not fit the size of the image.
     """
+    require(message, "sensor_msgs/Image", "data")
     if kind_of(message) == "CompressedImage":
         return _decoded_depth(message)
+    require(message, "sensor_msgs/Image", "encoding")
     encoding = str(message.encoding)
     if encoding == "32FC1":
         return _pixels(message, encoding)
@@ -91,6 +95,8 @@ def camera_matrix(message: Any) -> Array:
     Raises:
         GraphError: The matrix does not have nine elements.
     """
+    if not hasattr(message, "K"):
+        require(message, "sensor_msgs/CameraInfo", "k")
     numbers = np.array(message.k if hasattr(message, "k") else message.K, dtype=float)
     if numbers.shape != (9,):
         raise invalid(f"the camera matrix has {numbers.size} elements instead of 9")

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
-from cartwheel.arrays.data import Array, bytes_of, invalid, kind_of, locked, vector
+from cartwheel.arrays.data import Array, bytes_of, invalid, kind_of, locked, require, vector
 
 _FIELDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 """``sensor_msgs/PointField`` datatypes."""
@@ -56,6 +56,7 @@ def scan(message: Any) -> Scan:
     Raises:
         GraphError: The angles are not finite, or the numbers of ranges and intensities differ.
     """
+    require(message, "sensor_msgs/LaserScan", "ranges", "intensities", "angle_min")
     ranges, intensities = vector(message, "ranges"), vector(message, "intensities")
     if intensities.size not in (0, ranges.size):
         raise invalid(
@@ -90,9 +91,10 @@ def cloud(message: Any, *, structured: bool = False) -> Array:
     Raises:
         GraphError: A field is invalid or missing, or the data do not fit the size of the cloud.
     """
-    if kind_of(message) == "PointCloud":
+    if message is not None and kind_of(message) == "PointCloud":
         places = [(point.x, point.y, point.z) for point in message.points]
         return locked(np.array(places, dtype=np.float32).reshape(-1, 3))
+    require(message, "sensor_msgs/PointCloud2", "fields", "point_step", "row_step")
     points = _points(message)
     if structured:
         return points

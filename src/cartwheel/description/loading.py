@@ -52,7 +52,8 @@ def load(
     """Reads a xacro, URDF, SDF or world file. The format is detected from the contents.
 
     Args:
-        path: The file, a folder with a model, or the name of a built-in description.
+        path: The file, a folder with a model, the name of a built-in description, or, without
+            `reach`, the XML itself; see `load_text`.
         arguments: Values of ``name:=value`` arguments for a xacro.
         package_path: Additional folders to search for packages and models.
         reach: Files that an untrusted description may read; None for the user's own files.
@@ -60,6 +61,8 @@ def load(
     Raises:
         DescriptionError: The description cannot be used; the error has the location and a hint.
     """
+    if reach is None and isinstance(path, str) and path.lstrip().startswith("<"):
+        return load_text(path, arguments=arguments, package_path=package_path)
     return understand(open_description(path, arguments or {}, package_path, reach))
 
 

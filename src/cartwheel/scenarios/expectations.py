@@ -68,7 +68,9 @@ class Expression(Condition):
             raise CartwheelError(
                 f'the expression "{self.text}" cannot be evaluated: {error.reason}',
                 code=SCENARIO_EXPRESSION,
-                hint=error.hint,
+                hint=f"{error.hint} Write parameters of the scenario as ${{name}}.".strip()
+                if "is not defined" in error.reason
+                else error.hint,
                 values={"expression": self.text},
             ) from None
         return bool(self._value)

@@ -268,8 +268,8 @@ class _Marks:
         return {**options, "robot": self._file(options["robot"])}
 
     def _file(self, name: Any) -> Any:
-        """A file beside the test, below the root folder, or the name of a bundled file."""
-        if not isinstance(name, str | Path):
+        """A file beside the test, below the root folder, the name of a bundled file, or XML."""
+        if not isinstance(name, str | Path) or str(name).lstrip().startswith("<"):
             return name
         for folder in (self._folder, self._root):
             if (folder / name).is_file():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cartwheel.api.values import array, invalid
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.errors import GraphError
 from cartwheel.testing.conditions import Condition
@@ -16,7 +17,10 @@ if TYPE_CHECKING:
     from cartwheel.api import World
 
 _COLOR_DISTANCE = 0.25
-"""Maximum difference of each of red, green and blue, from 0 to 1: shading changes colours."""
+"""Maximum difference of each of red, green and blue, as a fraction of the brightness."""
+_DARKEST = 0.4
+"""Brightness of the darkest shaded surface, as a fraction of that of its saturated colour. For a
+grey, it is 1, because other greys are other colours."""
 _CHANNELS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0), "rgba8": (0, 1, 2), "bgra8": (2, 1, 0)}
 _DEPTHS = {"32FC1": (np.float32, 1.0), "16UC1": (np.uint16, 1e-3)}
 """Type and unit in m of the values of depth images."""
@@ -52,10 +56,11 @@ class Sees(Condition):
     ) -> None:
         super().__init__()
         self.topic, self.range, self.within = topic, range, within
-        self.color = None if color is None else tuple(color[:3])
+        self.color = None if color is None else _checked(color)
         self.share, self.model = share, model
         self.nearest: float | None = None
         self.seen_share: float | None = None
+        self._pixels: Any = None
         self.seen_models: tuple[str, ...] = ()
         self.count = 0
         self._met = False
@@ -117,9 +122,9 @@ class Sees(Condition):
         if self.color is None:
             # An image of one colour shows nothing.
             return bool((red_first != red_first[0, 0]).any())
-        near = np.abs(red_first / 255.0 - np.array(self.color)) <= _COLOR_DISTANCE
-        share = float(near.all(axis=2).mean())
-        self.seen_share = max(self.seen_share or 0.0, share)
+        share = float(_similar(red_first / 255.0, np.array(self.color)).mean())
+        if self.seen_share is None or share > self.seen_share:
+            self.seen_share, self._pixels = share, red_first
         return share >= self.share
 
     @property
@@ -140,7 +145,13 @@ class Sees(Condition):
         if not self.count:
             return "no message arrived"
         if self.seen_share is not None:
-            return f"at most {100 * self.seen_share:.3g} % of the pixels had the colour"
+            pixels = self._pixels.reshape(-1, 3) / 255.0
+            distances = np.abs(pixels - np.array(self.color)).max(axis=1)
+            seen = ", ".join(f"{each:.2g}" for each in pixels[distances.argmin()])
+            return (
+                f"at most {100 * self.seen_share:.3g} % of the pixels had the colour; the most "
+                f"similar colour was ({seen})"
+            )
         if self.model is not None:
             return f"it showed {', '.join(self.seen_models) or 'no model'}"
         if self.nearest is not None:
@@ -150,6 +161,28 @@ class Sees(Condition):
     @property
     def values(self) -> Mapping[str, float | str | None]:
         return {"count": self.count, "range": self.nearest, "share": self.seen_share}
+
+
+def _checked(color: Sequence[float]) -> tuple[float, ...]:
+    """Red, green and blue from 0 to 1."""
+    values = array(color[:3], (3,), "color")
+    if values.min() < 0.0 or values.max() > 1.0:
+        error = invalid("color", "must be red, green and blue from 0 to 1", tuple(color))
+        error.hint = "Divide values from 0 to 255 by 255."
+        raise error
+    return tuple(values.tolist())
+
+
+def _similar(pixels: Any, color: Any) -> Any:
+    """Which pixels show a surface with a colour, lit or shaded; shape (height, width)."""
+    near = (np.abs(pixels - color) <= _COLOR_DISTANCE).all(axis=2)
+    brightest = float(color.max())
+    if brightest == 0.0:
+        return near
+    saturation = 1.0 - float(color.min()) / brightest
+    scale = (pixels @ color / (color @ color)).clip(1.0 - (1.0 - _DARKEST) * saturation, 1.0)
+    shaded = np.abs(pixels - scale[..., None] * color) <= _COLOR_DISTANCE * scale[..., None]
+    return near | shaded.all(axis=2)
 
 
 def _nearest(message: Any, kind: str) -> float | None:
