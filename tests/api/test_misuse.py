@@ -146,10 +146,10 @@ def test_a_link_without_a_mass_names_those_with_one(make, rosbots):
     for use in (lambda: setattr(base, "mass", 2.0), lambda: base.inertia):
         with raises(PROPERTY_ABSENT, name="base_footprint", property="mass") as caught:
             use()
-        assert "base_link" in str(caught.value.hint)
+        assert "base_link" in caught.value.values["links"]
     with raises(PROPERTY_ABSENT, property="collision") as caught:
         base.friction = 1.0
-    assert "wheel_left_link" in str(caught.value.hint)
+    assert "wheel_left_link" in caught.value.values["links"]
 
 
 def test_completion_knows_what_has_not_been_imported():

@@ -42,6 +42,7 @@ def naming(links: Sequence[Link]) -> Iterator[None]:
             if names:
                 shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
                 error.hint = f"Links that have one: {shown}."
+                error.values = {**error.values, "links": tuple(names)}
         raise
 
 

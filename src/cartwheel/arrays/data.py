@@ -33,10 +33,12 @@ def require(message: Any, kind: str, *fields: str) -> None:
         raise GraphError(
             f"there is no message, and a {kind} is expected",
             code=ARRAY_INVALID,
+            values={"expected": kind},
             hint="Subscribe to the topic, and run the world until the first message is published.",
         )
     if not all(hasattr(message, field) for field in fields):
-        raise invalid(f"a {kind} is expected, and the message is a {full_kind_of(message)}")
+        found = full_kind_of(message)
+        raise invalid(f"a {kind} is expected, and the message is a {found}", expected=kind)
 
 
 def bytes_of(message: Any) -> Array:
