@@ -239,3 +239,33 @@ def test_a_robot_that_tips_over_has_no_plane():
     robot = as_robot(f'<robot name="r">{parts}</robot>')
     assert rest_of(robot, robot.links) is None
     assert rest_of(robot, []) is None
+
+
+def test_wheels_of_a_controller_hang_like_those_of_a_plugin(bench, tmp_path):
+    yaml = tmp_path / "drive.yaml"
+    yaml.write_text(
+        "drive:\n  type: diff_drive_controller/DiffDriveController\n  left_wheel: left_joint\n"
+        "  right_wheel: right_joint\n  wheel_separation: 0.34\n  wheel_radius: 0.05\n"
+    )
+    text = cart(0.003)
+    plugin = text[text.index("<gazebo>") : text.rindex("</gazebo>") + len("</gazebo>")]
+    control = '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"/></gazebo>'
+    controlled = text.replace(plugin, control)
+    assert bench.find(text, RULE)
+    assert bench.find(controlled, RULE) == []
+    (finding,) = bench.find(controlled, RULE, controller_files=[yaml])
+    assert finding.message == bench.find(text, RULE)[0].message
+
+
+def test_wheels_with_limits_many_turns_away_hang_as_well(bench):
+    text = cart(0.003)
+    for side in ("left", "right"):
+        text = text.replace(
+            f'<joint name="{side}_joint" type="continuous">',
+            f'<joint name="{side}_joint" type="revolute">'
+            '<limit lower="-1000" upper="1000" effort="9" velocity="99"/>',
+        )
+    assert bench.find(text, RULE)
+    assert {each.severity for each in bench.find(text, "drive-joint-not-continuous")} == {"info"}
+    near = text.replace("1000", "180")
+    assert {each.severity for each in bench.find(near, "drive-joint-not-continuous")} == {"warning"}

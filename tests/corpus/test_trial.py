@@ -6,6 +6,7 @@ import pytest
 
 from cartwheel.api import World
 from cartwheel.codes.devices import (
+    CONTROLLER_GAINS_MISSING,
     CONTROLLERS_NOT_FOUND,
     PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
@@ -582,3 +583,65 @@ def test_arguments_and_controllers_come_from_the_launch_files_of_the_robot(tmp_p
         controllers=[arm / "config/b.yaml"],
     )
     assert (verdict.name, verdict.controllers) == ("righty", ("b",))
+
+
+@pytest.mark.parametrize(
+    ("name", "moves"), [("libown_gm_status.so", False), ("libown_gm_thing.so", True)]
+)
+def test_an_unsupported_plugin_that_measures_a_joint_moves_nothing(tried, name, moves):
+    plugin = (
+        f'<gazebo><plugin name="x" filename="{name}"><jointName>left_joint</jointName>'
+        "<motorConstant>1</motorConstant></plugin></gazebo>"
+    )
+    assert tried(cart(0.1), plugin).moves is not moves
+
+
+def test_an_effort_is_tested_on_each_joint_alone(tmp_path, tried):
+    """A cart on a rail carries a pole: an effort on both pushes the light cart backward.
+
+    The cart of 0.05 kg bears the pole's reaction to its torque, F = τ m l / (I + m l²), beside
+    the commanded force.
+    """
+    pole = ARM.format(kind="Effort").replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/>', 1)
+    rail = (
+        '<link name="cart"><inertial><mass value="0.05"/>'
+        '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/></inertial></link>'
+        '<joint name="rail" type="prismatic"><parent link="base"/><child link="cart"/>'
+        '<axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="50" velocity="9"/></joint>'
+    )
+    trans = pole[pole.index("<transmission") : pole.index("<gazebo>")]
+    both = pole.replace(
+        '<joint name="shoulder" type="revolute"><parent link="base"/>',
+        f'{rail}<joint name="shoulder" type="revolute"><parent link="cart"/>',
+    ).replace(trans, trans + trans.replace('"t"', '"t2"').replace('"shoulder"', '"rail"'))
+    path = tmp_path / "push.yaml"
+    path.write_text(
+        "push:\n  type: effort_controllers/JointGroupEffortController\n  joints: [rail, shoulder]\n"
+    )
+    verdict = tried(both, controllers=[path])
+    assert [spin.joint for spin in verdict.spins] == ["rail", "shoulder"]
+    assert all(spin.follows for spin in verdict.spins), verdict.spins
+    assert verdict.good, verdict.faults
+
+
+def test_gains_of_zero_are_why_a_joint_does_not_move(tmp_path, tried):
+    path = tmp_path / "arm.yaml"
+    path.write_text(PID.format(p=0.0).replace("d: 1.0", "i: 0.0, d: 0.0"))
+    (fault,) = tried(ARM.format(kind="Effort"), controllers=[path]).faults
+    assert (fault.test, fault.subject, fault.code) == (
+        "reach",
+        "shoulder",
+        CONTROLLER_GAINS_MISSING,
+    )
+    assert fault.source == "file"
+    assert fault.reason.origin.line == 3
+
+
+def test_the_integral_of_ros_control_without_a_limit_corrects_no_error(tmp_path, tried):
+    """See `test_a_velocity_error_that_follows_from_the_load_and_the_gain_is_none`."""
+    path = tmp_path / "arm.yaml"
+    path.write_text(PID.format(p=3.0).replace("d: 1.0", "i: 50.0, d: 1.0"))
+    verdict = tried(ARM.format(kind="Effort"), controllers=[path])
+    (reach,) = verdict.reaches
+    assert abs(reach.error) == pytest.approx(0.98 * abs(math.sin(reach.reached)) / 3.0, rel=0.02)
+    assert verdict.good, verdict.faults

@@ -46,7 +46,7 @@ ROS1 = """<launch>
   <include file="$(find gazebo_ros)/launch/empty_world.launch"/>
   <group if="$(arg gripper)">
     <param name="robot_description" command="$(find xacro)/xacro --inorder '$(arg model)'
-        gripper:=$(arg gripper) user:=$(eval 1 + 1)"/>
+        gripper:=$(arg gripper) user:=$(eval clock())"/>
   </group>
   <group unless="$(arg gripper)">
     <param name="robot_description" command="xacro '$(arg model)' gripper:=no"/>
@@ -159,3 +159,79 @@ def test_broken_and_recursive_launch_files_say_nothing(package, text):
 def test_a_launch_file_in_xml_that_includes_itself_ends(package):
     folder = package(a_dot_launch='<launch><include file="$(dirname)/a.launch"/></launch>')
     assert launches_near(folder) == ()
+
+
+def test_a_document_that_xacro_processes_in_place_has_the_arguments(package):
+    text = """def generate_launch_description():
+    path = os.path.join(get_package_share_directory("arm"), "urdf", "arm.urdf.xacro")
+    layout = input("Layout: ")
+    if layout == "1":
+        table = "true"
+    elif layout == "2":
+        table = "false"
+    document = xacro.parse(open(path))
+    xacro.process_doc(document, mappings={"table": table, "prefix": "left_"})
+    description = {"robot_description": document.toxml()}
+"""
+    folder = package(arm_dot_launch_dot_py=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    # Which branch is executed is unknown, so the last value is used.
+    assert use.arguments == {"table": "false", "prefix": "left_"}
+
+
+def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
+    text = """def generate_launch_description():
+    name = LaunchConfiguration("name", default="arm")
+    path = PathJoinSubstitution([FindPackageShare("arm"), "urdf", [name, ".urdf.xacro"]])
+    Node(package="robot_state_publisher",
+         parameters=[{"robot_description": Command(["xacro ", path])}])
+    Node(package="controller_manager", executable="spawner", arguments=[[name, "_controller"]])
+"""
+    folder = package(arm_dot_launch_dot_py=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.spawned == ("arm_controller",)
+
+
+def test_launch_files_are_known_by_their_folder(package):
+    folder = package(sim_dot_py=STARTER, rsp_dot_launch_dot_py=INCLUDED)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.file == folder / "launch/sim.py"
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("name + '_x'", "left_x"),
+        ("2 * arg('count')", "6"),
+        ("'yes' if name == 'left' and wide else 'no'", "yes"),
+        ("find('arm')[-4:] + '_' + name", "/arm_left"),
+        ("optenv('CARTWHEEL_NO_SUCH_NAME', 'none')", "none"),
+        ("str(count).rjust(10**9)", None),
+        ("unknown + 1", None),
+        ("__import__('os').getcwd()", None),
+    ],
+)
+def test_expressions_of_roslaunch_are_evaluated_within_limits(package, expression, expected):
+    text = f"""<launch>
+  <arg name="name" default="left"/><arg name="count" default="3"/><arg name="wide" value="true"/>
+  <arg name="value" value="$(eval {expression})"/>
+  <param name="robot_description"
+    command="xacro $(find arm)/urdf/arm.urdf.xacro side:=$(arg value)"/>
+</launch>"""
+    folder = package(sim_dot_launch=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.arguments == ({} if expected is None else {"side": expected})
+
+
+def test_an_expression_decides_which_elements_are_read(package):
+    text = """<launch>
+  <arg name="kind" default="a"/>
+  <group if="$(eval kind == 'b')">
+    <param name="robot_description" command="xacro $(find arm)/urdf/arm.urdf.xacro side:=b"/>
+  </group>
+  <group unless="$(eval arg('kind') == 'b')">
+    <param name="robot_description" command="xacro $(find arm)/urdf/arm.urdf.xacro side:=a"/>
+  </group>
+</launch>"""
+    (use,) = launches_near(package(sim_dot_launch=text))
+    assert use.arguments == {"side": "a"}

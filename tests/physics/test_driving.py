@@ -1,8 +1,10 @@
 """The cart at the default step: what its command, its ramp, its torque and its tyres say."""
 
 import dataclasses
+import itertools
 import math
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -266,6 +268,43 @@ def test_a_caster_that_drags_neither_hops_nor_brakes_its_robot(make, speed):
         pitches.append(robot.pose.rpy[1])
     assert (robot.pose.x - before) / 2.0 == pytest.approx(speed, rel=0.06)
     assert max(pitches) - min(pitches) < 0.02
+
+
+@pytest.mark.parametrize("axis", ["1 1 1", "1 0 0", "0 0 1"])
+def test_a_ball_on_a_joint_that_cannot_roll_forward_is_a_caster(make, axis):
+    """It slides like a ball on a fixed joint, and may lead the robot on an arc."""
+    wheels = [WHEEL.format(side=side, y=y) for side, y in (("left", 0.18), ("right", -0.18))]
+    text = DRAGGING.format(wheels="".join(wheels))
+    text = text.replace(
+        'name="fixed" type="fixed">', f'name="b" type="continuous"><axis xyz="{axis}"/>'
+    )
+    world = stand(make, load_text(text, file="drag.urdf"), pose=Pose((0, 0, 0.1)))
+    world.publish("/cmd_vel", linear_x=0.2)
+    world.run(4.0)
+    robot = world.model("drag")
+    places, pitches = [robot.pose.position], []
+    for _ in range(20):
+        world.run(0.1)
+        places.append(robot.pose.position)
+        pitches.append(robot.pose.rpy[1])
+    way = sum(math.dist(a, b) for a, b in itertools.pairwise(places))
+    assert way / 2.0 == pytest.approx(0.2, rel=0.08)
+    assert max(pitches) - min(pitches) < 0.02
+
+
+@pytest.mark.parametrize(("limit", "round_"), [(1000.0, True), (3.0, False)])
+def test_limits_many_turns_away_leave_a_wheel_a_wheel(make, limit, round_):
+    turning = f'type="revolute"><limit lower="-{limit}" upper="{limit}" effort="9" velocity="99"/>'
+    wheels = [WHEEL.format(side=side, y=y) for side, y in (("left", 0.18), ("right", -0.18))]
+    text = DRAGGING.format(wheels="".join(wheels)).replace('type="continuous">', turning)
+    world = make.world()
+    world.spawn(load_text(text, file="drag.urdf"), z=0.1)
+    model = world.session.simulation.model
+    kind = model.geom_type[model.geom("drag::left::left_collision").id]
+    ellipsoid, cylinder = (
+        int(getattr(mujoco.mjtGeom, f"mjGEOM_{k}")) for k in ("ELLIPSOID", "CYLINDER")
+    )
+    assert kind == (ellipsoid if round_ else cylinder)
 
 
 TURNING = """<robot name="slab">

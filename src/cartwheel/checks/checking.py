@@ -14,6 +14,7 @@ from cartwheel.checks.repairs import displaced, mend
 from cartwheel.checks.reported import passed
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rules import RULES
+from cartwheel.checks.stated_sizes import controlled_sides
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
@@ -118,7 +119,7 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
     robots = tuple(
         Robot(each, root, mended=mended | cut, cut=cut, displaced=lost) for each in described
     )
-    return Subject(
+    subject = Subject(
         root=opened.root,
         files=opened.files,
         packages=opened.packages,
@@ -128,6 +129,9 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
         gaps=tuple(gaps),
         control=controller_files_of(robots, opened.packages, given),
     )
+    for robot in robots:
+        robot.controlled = controlled_sides(subject, robot)
+    return subject
 
 
 def _read(

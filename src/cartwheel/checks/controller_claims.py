@@ -172,6 +172,24 @@ def gains_missing(controller: Controller) -> list[tuple[str, Value, str]]:
     return missing
 
 
+def gains_zero(controller: Controller) -> list[Value]:
+    """The joints of a ROS 1 controller whose PID gains are stated, but all 0.
+
+    Returns:
+        For each joint the value with its name.
+    """
+    if controller.file.is_ros2 or {each.interface for each in claims(controller)} != {"effort"}:
+        return []
+    joints = [each for row in table(controller, "joint") for each in values(controller, row)]
+    return [
+        value
+        for row in table(controller, "gains")
+        for value in joints
+        if controller.has(f"{(path := row.names[0].replace('{joint}', value.text.strip()))}/p")
+        and not any(_positive(controller, f"{path}/{key}") for key in ("p", "i", "d"))
+    ]
+
+
 def _positive(controller: Controller, path: str) -> bool:
     value = controller.value(path)
     # A value set by a launch file is unknown here.

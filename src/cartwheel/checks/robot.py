@@ -41,6 +41,10 @@ class Drive:
         return self.left + self.right
 
 
+Sides = tuple[tuple[str, ...], tuple[str, ...]]
+"""Joints of the left and right wheels."""
+
+
 class Robot:
     """A model, with cached values that several rules use.
 
@@ -71,6 +75,8 @@ class Robot:
         for joint in description.joints:
             self.inbound.setdefault(joint.child, joint)
         self._displaced = frozenset(displaced)
+        self.controlled: tuple[Sides, ...] = ()
+        """The wheels of controllers that drive the base."""
 
     @cached_property
     def collisions(self) -> dict[str, list[Solid]]:
@@ -196,6 +202,11 @@ class Robot:
                 )
             )
         return tuple(found)
+
+    @property
+    def sides(self) -> tuple[Sides, ...]:
+        """Joints of the left and right wheels of each plugin or controller that drives it."""
+        return (*((each.left, each.right) for each in self.drives), *self.controlled)
 
     @cached_property
     def joint_names(self) -> frozenset[str]:

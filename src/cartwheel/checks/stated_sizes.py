@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.checks import controller_claims as claimed
 from cartwheel.checks import nodes, plugin_tags
 from cartwheel.checks.controller_files import Controller, Value
-from cartwheel.checks.robot import Robot
+from cartwheel.checks.robot import Robot, Sides
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST
 from cartwheel.checks.wheels import axle_of, wheel_middle, wheel_place
@@ -76,6 +76,23 @@ def stated_sizes(subject: Subject) -> Iterator[Stated]:
     for robot, file in subject.control:
         for controller in file.controllers:
             yield from _of_controller(robot, controller)
+
+
+def controlled_sides(subject: Subject, robot: Robot) -> tuple[Sides, ...]:
+    """Joints of the left and right wheels of the controllers that drive a robot.
+
+    The joints that a steering controller turns are no wheels.
+    """
+    found = [
+        (one.first, one.second)
+        for owner, file in subject.control
+        if owner is robot
+        for controller in file.controllers
+        for one in _of_controller(robot, controller)
+        if one.measure == "apart" and one.second
+        if all(robot.joints[name].turns for name in one.first + one.second)
+    ]
+    return tuple(dict.fromkeys(found))
 
 
 def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:

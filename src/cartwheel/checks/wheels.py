@@ -197,8 +197,8 @@ def wheel_links(robot: Robot, joint: Joint) -> list[str]:
 
 
 def wheel_joints(robot: Robot) -> list[Joint]:
-    """The wheel joints of all drive plugins."""
-    names = dict.fromkeys(name for drive in robot.drives for name in drive.joints)
+    """The wheel joints of all plugins and controllers that drive the base."""
+    names = dict.fromkeys(name for sides in robot.sides for side in sides for name in side)
     found = [robot.joints[name] for name in names if name in robot.joints]
     return [joint for joint in found if joint.child in robot.links]
 

@@ -79,10 +79,12 @@ def spins(
                     sag=_sag(world, model, name, gains.get(name, 0.0)),
                 )
     for info, joints in by_effort:
-        effort = min(_effort(world, model, robot, name) for name in joints)
-        _, pushed = _moved(world, model, [(info, joints)], effort, (0.0, _PUSHING))
-        _, pulled = _moved(world, model, [(info, joints)], -effort, (0.0, _PUSHING))
-        for name in joints:
+        for index, name in enumerate(joints):
+            # An effort on several joints of a chain may move one of them backward.
+            effort = _effort(world, model, robot, name)
+            only = index if info.type == _FLOATS else None
+            _, pushed = _moved(world, model, [(info, joints)], effort, (0.0, _PUSHING), only=only)
+            _, pulled = _moved(world, model, [(info, joints)], -effort, (0.0, _PUSHING), only=only)
             speed = (pushed[name] - pulled[name]) / 2 / _PUSHING
             yield Spin(topic=info.name, joint=name, commanded=effort, measured=speed, effort=True)
 
@@ -143,15 +145,20 @@ def _moved(
     inputs: Sequence[tuple[TopicInfo, tuple[str, ...]]],
     value: float,
     seconds: tuple[float, float],
+    *,
+    only: int | None = None,
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Positions at the beginning and end of a measurement, after a reset and a command.
 
-    `seconds` contains the time before the measurement and its duration.
+    `seconds` contains the time before the measurement and its duration. `only` is the index of the
+    joint that receives the value; the others of its topic receive 0.
     """
     world.reset()
     world.run(0.5)
     for info, joints in inputs:
-        said: Any = value if info.type == _FLOAT else [value] * len(joints)
+        said: Any = value
+        if info.type != _FLOAT:
+            said = [value if only in (None, index) else 0.0 for index in range(len(joints))]
         world.publish(info.name, {"data": said})
     if seconds[0]:
         world.run(seconds[0])

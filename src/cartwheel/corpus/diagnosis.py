@@ -209,9 +209,10 @@ def _of_drive(
     if robot.SKID_STEERING in factors:
         # Its ratio contains the stated separation.
         factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
-    if robot.SKID_STEERING in factors and factors[robot.SKID_STEERING][1] < ratio < 1:
-        # Fewer wheels than predicted carry the robot.
-        return factors[robot.SKID_STEERING][0]
+    skids, slowest = factors.get(robot.SKID_STEERING, (None, 1.0))
+    if skids is not None and slowest < ratio < max(1.0, _rolling(skids)):
+        # Fewer wheels than predicted carry the robot, or the friction depends on the direction.
+        return skids
     product = math.prod(factor for _, factor in factors.values())
     legacy = next((each for each in found if _reverses(each)), None) if turning else None
     for sign, cause in ((1.0, None), (-1.0, legacy)):
@@ -228,6 +229,12 @@ def _of_drive(
             return next(iter(factors.values()))[0]
     codes = _TURNING if turning else _DRIVING
     return _first(each for each in found if each.code in codes)
+
+
+def _rolling(skids: Diagnostic) -> float:
+    """The turn rate of wheels that do not slide, relative to the commanded one."""
+    ratio = skids.values.get("rolling")
+    return ratio if isinstance(ratio, float) else 1.0
 
 
 def _is_free(said: Iterable[Diagnostic], topic: str) -> bool:
@@ -274,11 +281,15 @@ def _explains_fall(each: Diagnostic) -> bool:
 
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:
     return _first(
-        each
-        for each in found
-        if each.code in _JOINTS
-        and joint in (each.values.get("joint"), each.values.get("name"), each.values.get("link"))
+        each for each in found if each.code in _JOINTS and joint in _joints_of(each)
     ) or _first(each for each in found if _is_heavy(each, child))
+
+
+def _joints_of(each: Diagnostic) -> tuple[object, ...]:
+    """Names in a diagnostic among which are those of the joints that it concerns."""
+    joints = each.values.get("joints", ())
+    several = joints if isinstance(joints, tuple) else ()
+    return (*several, *(each.values.get(key) for key in ("joint", "name", "link")))
 
 
 def _is_heavy(each: Diagnostic, link: str) -> bool:

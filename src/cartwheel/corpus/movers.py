@@ -17,6 +17,8 @@ _MOVES = re.compile(
 """Names of plugins that move something. Those of controller managers are not among them."""
 _RECORDS = re.compile(r"(?:^|_)bag_plugin|record", re.IGNORECASE)
 """Names of plugins that only record what moves."""
+_REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom", re.IGNORECASE)
+"""Names of unsupported plugins that only measure, although their tags contain joints."""
 _MANAGER = re.compile(r"ros2?_control")
 _COMMANDS = re.compile(r"gain|force|torque|thrust|motor|rotor|cmd_?vel", re.IGNORECASE)
 """Names of the tags of unsupported plugins that move something."""
@@ -38,7 +40,8 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     """Plugins that should move the robot or its joints, without controller managers.
 
     An unsupported plugin also counts if its tags contain the name of a movable joint, or if a tag
-    is named after gains, forces, motors or velocity commands.
+    is named after gains, forces, motors or velocity commands, unless its own name says that it only
+    measures.
     """
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     return [
@@ -46,7 +49,10 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         for tag in robot.plugins
         if not _MANAGER.search(name := short_name(tag.filename))
         and not _RECORDS.search(name)
-        and (_MOVES.search(name) or (not is_known(tag) and _acts(tag.element, joints)))
+        and (
+            _MOVES.search(name)
+            or (not is_known(tag) and not _REPORTS.search(name) and _acts(tag.element, joints))
+        )
     ]
 
 

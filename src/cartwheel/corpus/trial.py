@@ -221,6 +221,7 @@ def _moved(
 def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:
     """Proportional gains of PIDs with an effort output and a slow or no integral, by joint."""
     found: dict[str, float] = {}
+    ros1 = any(short_name(tag.filename) == "gazebo_ros_control" for tag in robot.plugins)
     for controller in started:
         values = controller.settings.flat()
         for joint, interface in controller.interfaces.items():
@@ -234,6 +235,10 @@ def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, 
             )
             if interface == "effort" and path is not None:
                 gain, integral = (values.get(f"{path}.{name}") or 0.0 for name in ("p", "i"))
+                clamps = ("i_clamp", "i_clamp_min", "i_clamp_max")
+                if ros1 and not any(values.get(f"{path}.{name}") for name in clamps):
+                    # ros_control limits the integral to 0 if no limit is stated.
+                    integral = 0.0
                 if motion.yields(float(gain), float(integral)):
                     found[joint] = float(gain)
     for tag in robot.plugins:

@@ -11,6 +11,7 @@ The file is long because it is one table of types, which readers look up togethe
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -412,6 +413,11 @@ class SoftLimits:
     """N m s/rad or N s/m: maximum effort per velocity beyond the limit."""
 
 
+_MANY = 120 * math.pi
+"""rad; a wheel whose joint has such limits on both sides rolls freely for sixty turns. Limits of up
+to 360 are probably degrees."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Joint:
     name: str
@@ -440,6 +446,17 @@ class Joint:
         screws.
         """
         return self.type in ("revolute", "continuous", "prismatic")
+
+    @property
+    def turns(self) -> bool:
+        """Whether it turns like a wheel: without limits, or with limits many turns away."""
+        if self.type == "continuous":
+            return True
+        lower, upper = self.axis.lower, self.axis.upper
+        return self.type == "revolute" and (
+            (lower is None and upper is None)
+            or (lower is not None and upper is not None and lower <= -_MANY <= _MANY <= upper)
+        )
 
     @property
     def resists(self) -> bool:

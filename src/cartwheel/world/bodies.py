@@ -57,6 +57,10 @@ class _Branch:
     """The parent body's axle, if the parent is a wheel."""
     steered: Steering = "not"
     """Whether the joints above it rotate about the vertical."""
+    driven: bool = False
+    """Whether a motor turns the axle."""
+    carried: bool = False
+    """Whether it is mounted on a wheel."""
 
 
 class BodyBuilder:
@@ -168,11 +172,22 @@ class BodyBuilder:
         # A tyre may be fixed to a hub.
         held = joint is not None and joint.type == "fixed" and axle is not None
         axle = axle.seen_from(branch.pose) if held and axle is not None else axle_of(joint)
-        self._fill(entry, body, branch, axle, moves=moves, trunk=trunk)
+        driven = branch.driven if held else joint is not None and joint.name in entry.motors
+        self._fill(entry, body, replace(branch, driven=driven), axle, moves=moves, trunk=trunk)
+        rolling = axle is not None and not is_upright(rotate(link.pose.orientation, axle.axis))
         steered = branch.steered
         if joint is not None and _steers(link, joint) and steered != "by motors":
             steered = "by motors" if joint.name in entry.motors else "freely"
-        return replace(branch, parent=body, moves=moves, axle=axle, trunk=trunk, steered=steered)
+        return replace(
+            branch,
+            parent=body,
+            moves=moves,
+            axle=axle,
+            trunk=trunk,
+            steered=steered,
+            driven=driven,
+            carried=branch.carried or rolling,
+        )
 
     def _fill(
         self,
@@ -202,8 +217,18 @@ class BodyBuilder:
             tread = None
             if axle is not None:
                 along = axle.seen_from(link.pose.inverse())
-                tread = tread_of(shape, there, along, steered=branch.steered)
+                tread = tread_of(
+                    shape,
+                    there,
+                    along,
+                    steered=branch.steered,
+                    driven=branch.driven,
+                    carried=branch.carried,
+                )
             bottom = lowest(shape, there) if trunk else None
+            # A ball caster on a joint about the vertical does not roll.
+            spins = axle is not None and tread is None and not branch.driven and not branch.carried
+            low = lowest(shape, there) if spins else None
             if isinstance(shape, Plane) and not entry.description.static:
                 raise WorldError(
                     f'collision "{collision.name}" is an infinite plane, which must be static',
@@ -244,6 +269,7 @@ class BodyBuilder:
                         rolls=axle is not None,
                         tread=tread,
                         bottom=bottom,
+                        low=low,
                         floor_area=contact.floor_area(geom.type, geom.size),
                         friction=friction,
                         reference=reference,

@@ -78,6 +78,8 @@ class BuiltSurface:
     """The tread of a wheel that may roll on the ground."""
     bottom: float | None
     """Lowest point in the model, m, for geoms fixed to a free root; otherwise None."""
+    low: float | None
+    """Lowest point in the model, m, for undriven geoms that turn about the vertical."""
     floor_area: float
     """Area on which others may slide, m²; see `floor_area`."""
     friction: tuple[float, float, float]

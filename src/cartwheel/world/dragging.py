@@ -22,6 +22,9 @@ LARGEST_MU = 1.0
 """Maximum friction coefficient of parts that must slide: Gazebo's default, and that of rubber."""
 _TOUCHES = 0.02
 """Maximum height of a part that touches the ground, relative to the radius of the wheels."""
+_NEAR = 0.1
+"""Maximum difference between the heights of wheels and of a ball caster, relative to the radius of
+the wheels."""
 LARGEST_STEERED_MU = 1.5
 """The same for wheels that motors steer. They also need grip, for turns at high speed."""
 
@@ -38,7 +41,7 @@ def limited(
     Returns:
         The surfaces, and the collisions whose friction is reduced.
     """
-    surfaces = list(surfaces)
+    surfaces = _without_misaligned(surfaces)
     treads: dict[str, list[Tread]] = {}
     for each in surfaces:
         if each.tread is not None:
@@ -57,6 +60,46 @@ def limited(
     dragging = {each.model for each in made if _drags(each, treads.get(each.model, ()))}
     made = [replace(each, pulls=each.rolls and each.model in dragging) for each in made]
     return made, list(added.values())
+
+
+def _without_misaligned(surfaces: Iterable[BuiltSurface]) -> list[BuiltSurface]:
+    """The surfaces, where wheels that cannot roll in the direction of the motion are dragged parts.
+
+    Ball casters are often described as a sphere on a continuous joint with any axis.
+    """
+    surfaces = list(surfaces)
+    driven: dict[str, list[Tread]] = {}
+    for each in surfaces:
+        if each.tread is not None and each.tread.driven:
+            driven.setdefault(each.model, []).append(each.tread)
+    made = []
+    for each in surfaces:
+        wheels = driven.get(each.model, ())
+        if each.tread is not None and _is_misaligned(each.tread, wheels):
+            each = replace(each, rolls=False, tread=None, bottom=each.tread.bottom)  # noqa: PLW2901
+        elif each.low is not None and _is_level(each.low, wheels):
+            each = replace(each, rolls=False, bottom=each.low)  # noqa: PLW2901
+        made.append(each)
+    return made
+
+
+def _is_level(bottom: float, treads: Sequence[Tread]) -> bool:
+    """Whether a part is about as low as wheels."""
+    return any(abs(bottom - each.bottom) < _NEAR * each.radius for each in treads)
+
+
+def _is_misaligned(tread: Tread, driven: Sequence[Tread]) -> bool:
+    """Whether an undriven wheel on a fixed axle is not parallel to driven wheels, which are.
+
+    A base with driven wheels in several directions, such as three omnidirectional wheels, moves in
+    each of them.
+    """
+    if tread.driven or tread.carried or tread.steered != "not" or not driven:
+        return False
+    if any(each.steered != "not" or each.carried for each in driven):
+        return False
+    parallel = all(each.rolls_beside(driven[0]) for each in driven)
+    return parallel and not tread.rolls_beside(driven[0])
 
 
 def _largest(surface: BuiltSurface) -> float:

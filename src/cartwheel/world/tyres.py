@@ -39,6 +39,8 @@ _CENTRED, _ALONG = 0.1, 0.999
 """Maximum offset from the axis, relative to a cylinder's radius, and minimum cosine between both
 axes. Slightly misaligned wheels are wheels, and stay misaligned.
 """
+_PARALLEL = 0.9
+"""Minimum cosine between the axles of wheels that roll in the same direction."""
 _LEVEL = 0.5
 """Minimum cosine between an axle and the vertical at which a body does not roll: rotors, lasers,
 turrets.
@@ -60,11 +62,8 @@ class Axle:
 
 
 def axle_of(joint: Joint | None) -> Axle | None:
-    """A joint's axle if its rotation is unlimited, as for SDF revolute joints without limits."""
-    if joint is None:
-        return None
-    unlimited = joint.axis.lower is None and joint.axis.upper is None
-    if joint.type != "continuous" and not (joint.type == "revolute" and unlimited):
+    """A joint's axle if it turns like a wheel; see `Joint.turns`."""
+    if joint is None or not joint.turns:
         return None
     return Axle(rotate(joint.pose.orientation, joint.axis.xyz), joint.pose.position)
 
@@ -98,11 +97,21 @@ class Tread:
     """Unit vector along the axle."""
     steered: Steering
     """Whether joints above the wheel turn its axle about the vertical."""
+    driven: bool = False
+    """Whether a motor turns it."""
+    carried: bool = False
+    """Whether it is mounted on another wheel, like the rollers of a mecanum wheel."""
 
     @property
     def bottom(self) -> float:
         """Height of the lowest point."""
         return self.centre[2] - self.radius
+
+    def rolls_beside(self, driven: Tread) -> bool:
+        """Whether it rolls in the direction in which a driven wheel moves the base."""
+        u, v = (each.axis[:2] for each in (self, driven))
+        lengths = math.hypot(*u) * math.hypot(*v)
+        return abs(u[0] * v[0] + u[1] * v[1]) > _PARALLEL * lengths
 
     def scrubs_beside(self, other: Tread) -> bool:
         """Whether one of two wheels must slip sideways in a turn: their axles are not in line."""
@@ -113,7 +122,9 @@ class Tread:
         return abs(x * v - y * u) > _CENTRED * self.radius * math.hypot(u, v)
 
 
-def tread_of(shape: Shape, pose: Pose, axle: Axle, *, steered: Steering) -> Tread | None:
+def tread_of(
+    shape: Shape, pose: Pose, axle: Axle, *, steered: Steering, driven: bool, carried: bool
+) -> Tread | None:
     """A wheel's tread; None for rotating bodies that do not roll.
 
     Args:
@@ -121,6 +132,8 @@ def tread_of(shape: Shape, pose: Pose, axle: Axle, *, steered: Steering) -> Trea
         pose: Pose in the model, in which the axle is also given.
         axle: The axle.
         steered: Whether joints above the wheel turn its axle about the vertical.
+        driven: Whether a motor turns the wheel.
+        carried: Whether the wheel is mounted on another one.
     """
     match shape:
         case Ellipsoid(radii=radii):
@@ -131,7 +144,7 @@ def tread_of(shape: Shape, pose: Pose, axle: Axle, *, steered: Steering) -> Trea
             return None
     if is_upright(axle.axis):
         return None
-    return Tread(pose.position, radius, axle.axis, steered)
+    return Tread(pose.position, radius, axle.axis, steered, driven, carried)
 
 
 def is_upright(axis: Vec3) -> bool:

@@ -37,3 +37,13 @@ def test_one_that_the_xacro_lacks_is_the_prefix_that_makes_joints_of_its_words()
 def test_words_that_agree_on_no_prefix_tell_nothing():
     assert launch_arguments(pair(), robot("a_left", "b_right")) == {}
     assert launch_arguments(pair(), robot("up", "down")) == {}
+
+
+def test_the_prefix_of_a_frame_is_empty():
+    frame = {"drive": {"base_frame_id": "$(arg f)base", "sensors": {"imu_frame": ["$(arg f)imu"]}}}
+    assert launch_arguments(frame, robot("left")) == {"f": ""}
+    declared = '<xacro:arg name="f" default="x/"/>'
+    assert launch_arguments(frame, robot("left", declared=declared)) == {"f": "x/"}
+    # A value that is not a prefix, and a word that is not the name of a frame, are unknown.
+    assert launch_arguments({"drive": {"base_frame_id": "$(arg f)"}}, robot("left")) == {}
+    assert launch_arguments({"drive": {**frame["drive"], "r": "$(arg f)1"}}, robot("left")) == {}

@@ -200,7 +200,11 @@ class _Reader:
         first = places[0] if places else next((words[w] for w in _FIRST if w in words), _NOTHING)
         if name in _JOINS:
             parts = [*([] if isinstance(holder, _Unknown) else [holder]), *places]
-            return str(PurePosixPath(*(_text(each) for each in _flat(parts))))
+            # A part may be a list of substitutions, as in [folder, [name, ".xacro"]].
+            steps = [
+                step for each in parts for step in (each if isinstance(each, list) else [each])
+            ]
+            return str(PurePosixPath(*map(_joined, steps)))
         if name in _SHARES:
             return self._facts.package(_text(words.get("package", first)))
         if name in _SAME:
@@ -209,8 +213,12 @@ class _Reader:
             return str(PurePosixPath(_text(first)).parent)
         if name == "open" or name in _PASSED:
             return first if name == "open" else holder
-        if name in ("process_file", "process"):
+        if name in ("process_file", "process", "process_doc"):
+            # For process_doc, the document is the text of the file that xacro.parse has read.
             return self._processed(_text(first), words.get("mappings", {}))
+        if name == "parse" and isinstance(node.func, ast.Attribute):
+            module = node.func.value
+            return first if isinstance(module, ast.Name) and module.id == "xacro" else _NOTHING
         maker = _ACTIONS.get(name)
         return _NOTHING if maker is None else maker(self, first, places, words)
 

@@ -117,11 +117,18 @@ def _files(folder: Path) -> Iterator[Path]:
             name for name in folders if not name.startswith(".") and name not in _SKIPPED
         )
         for name in sorted(names):
-            if name.endswith((".launch", ".launch.xml", ".launch.py", "_launch.py")):
+            if _is_launch(Path(root, name)):
                 count += 1
                 if count > _MOST:
                     return
                 yield Path(root, name)
+
+
+def _is_launch(path: Path) -> bool:
+    """Whether a file is a launch file by its name, or by its folder, such as ``launch/sim.py``."""
+    if path.name.endswith((".launch", ".launch.xml", ".launch.py", "_launch.py")):
+        return True
+    return path.suffix in (".py", ".xml") and path.parent.name == "launch"
 
 
 def _read(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:

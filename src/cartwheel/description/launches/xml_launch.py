@@ -5,15 +5,20 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
+from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator, Function
 from cartwheel.description.launches.use import UNKNOWN, Facts
 
 _CALL = re.compile(r"\$\(\s*([\w-]+)\s*([^()]*)\)")
+_EVAL = re.compile(r"\$\(\s*eval\s(.*)\)\s*", re.DOTALL)
 _FALSE = frozenset({"false", "0", "False"})
+_SECONDS = 0.2
+"""Maximum CPU time of an expression, s."""
 
 
 def read_xml(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
@@ -21,6 +26,14 @@ def read_xml(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int)
     root = xml.readable_file(path)
     if root is not None and root.tag == "launch":
         _Reader(path, dict(arguments), facts, depth).group(root)
+
+
+class _NoTable:
+    """xacro's tables of names do not exist here."""
+
+
+class _UnknownError(Exception):
+    """A value that only the execution of the launch file determines."""
 
 
 class _Reader:
@@ -96,13 +109,17 @@ class _Reader:
 
     def _value(self, node: Node, name: str) -> str:
         text = node.attributes.get(name, "")
+        # As in roslaunch, the parentheses of an expression end at the end of the attribute.
+        expression = _EVAL.fullmatch(text)
+        if expression is not None and "$(" not in expression[1]:
+            return self._evaluated(expression[1])
         for _ in range(20):
             found = _CALL.search(text)
             if found is None:
                 break
             value = self._call(found[1], found[2].strip())
             text = text[: found.start()] + value + text[found.end() :]
-        # What is left is an expression with parentheses, such as $(eval len('a')).
+        # What is left is an expression with parentheses within a text.
         return re.sub(r"\$\(.*\)", UNKNOWN, text)
 
     def _call(self, kind: str, rest: str) -> str:
@@ -119,7 +136,34 @@ class _Reader:
             return str(self._path.parent)
         if kind == "command":
             return rest.strip("'\"")
+        if kind == "eval" and UNKNOWN not in rest:
+            quoted = len(rest) > 1 and rest[0] == rest[-1] and rest[0] in "'\""
+            return self._evaluated(rest[1:-1] if quoted and rest[0] not in rest[1:-1] else rest)
         return UNKNOWN
+
+    def _evaluated(self, text: str) -> str:
+        """The value of an expression; the names are those of arguments, as in roslaunch."""
+        functions: Mapping[str, Callable[..., Any]] = {
+            "arg": self._known,
+            "find": lambda name: _certain(self._facts.package(name)),
+            "env": lambda name: os.environ[name],
+            "optenv": lambda name, default="": os.environ.get(name, default),
+            "dirname": lambda: str(self._path.parent),
+        }
+        names: dict[str, Any] = {**BUILTINS, **MATH}
+        for name, value in self._arguments.items():
+            if UNKNOWN not in value:
+                names[name] = _converted(value)
+        for name, plain in functions.items():
+            names[name] = Function(name, lambda _, *args, plain=plain: plain(*args))
+        evaluator = Evaluator(Budget(_SECONDS), namespace=_NoTable, dotted=_NoTable)
+        try:
+            return str(evaluator.evaluate(text, names))
+        except Exception:  # noqa: BLE001 - whatever the operation of a stranger raises
+            return UNKNOWN
+
+    def _known(self, name: str) -> Any:
+        return _converted(_certain(self._arguments.get(name, UNKNOWN)))
 
 
 def _words(text: str) -> list[str]:
@@ -127,3 +171,19 @@ def _words(text: str) -> list[str]:
         return shlex.split(text)
     except ValueError:
         return text.split()
+
+
+def _certain(text: str) -> str:
+    if UNKNOWN in text:
+        raise _UnknownError
+    return text
+
+
+def _converted(text: str) -> Any:
+    """An argument in an expression: an integer, a number or a boolean if it looks like one."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return {"true": True, "false": False}.get(text.lower(), text)

@@ -15,8 +15,9 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
 from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
 from cartwheel.dialects.ros_control.manager import ControllerManager
-from cartwheel.dialects.ros_control.ordering import in_order
+from cartwheel.dialects.ros_control.ordering import compete, in_order
 from cartwheel.dialects.ros_control.robot import ControlledRobot, RobotSensor
+from cartwheel.dialects.ros_control.selection import launched
 from cartwheel.dialects.sdf.force_torque import read_joint_load
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.errors import CartwheelError
@@ -102,7 +103,12 @@ class ControlPlugin(Plugin[Any]):
         manager = self.manager
         assert manager is not None
         files = self.shared.get(ControllerFiles)
-        for entry in in_order(files.wanted(entries)):
+        listed = files.wanted(entries)
+        description = self.part.description
+        movable = {joint.name for joint in description.joints if joint.type != "fixed"}
+        # Reading the launch files takes time, so they are only read if they have to decide.
+        chosen = launched(description) if compete(listed, movable) else ()
+        for entry in in_order(listed, chosen):
             try:
                 files.loaded.append(manager.load_entry(entry))
                 manager.switch([entry.name], [])

@@ -2,7 +2,8 @@
 
 Launch files usually pass the same values to the robot's xacro, under the same name. A name that the
 xacro does not declare is assumed to be a joint prefix: the one for which the text after it
-completes the name of a joint.
+completes the name of a joint. A name that is only used as the prefix of frames is assumed to be
+empty.
 """
 
 from __future__ import annotations
@@ -13,11 +14,12 @@ from typing import Any
 
 from cartwheel.description.model import RobotDescription
 
+_ARGUMENT = re.compile(r"\$\(\s*(?:arg|var)\s+(\w+)\s*\)")
 _BEFORE_NAME = re.compile(r"\$\(\s*(?:arg|var)\s+(\w+)\s*\)(\w+)")
 
 
 def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
-    """Returns the robot's arguments, and the joint prefixes that the file requires.
+    """Returns the robot's arguments, and the prefixes of names that the file requires.
 
     Args:
         content: Content of the file.
@@ -32,7 +34,29 @@ def launch_arguments(content: Any, robot: RobotDescription) -> dict[str, str]:
             if able:
                 prefixes[name] = prefixes.get(name, able) & able
     shortest = {name: min(able, key=len) for name, able in prefixes.items() if able}
-    return {**shortest, **robot.arguments}
+    empty = dict.fromkeys(_of_frames(content), "")
+    return {**empty, **shortest, **robot.arguments}
+
+
+def _of_frames(content: Any) -> set[str]:
+    """Names of arguments that only precede the names of frames, in values of keys with `frame`."""
+    frames, others = set[str](), set[str]()
+
+    def walk(node: Any, key: str) -> None:
+        if isinstance(node, Mapping):
+            for name, value in node.items():
+                others.update(_ARGUMENT.findall(str(name)))
+                walk(value, str(name))
+        elif isinstance(node, list):
+            for value in node:
+                walk(value, key)
+        elif isinstance(node, str):
+            prefixes = {name for name, _ in _BEFORE_NAME.findall(node)} if "frame" in key else set()
+            frames.update(prefixes)
+            others.update(set(_ARGUMENT.findall(node)) - prefixes)
+
+    walk(content, "")
+    return frames - others
 
 
 def texts(content: Any) -> Iterator[str]:

@@ -46,6 +46,16 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
     return selection(robot, chosen(file, launches), launches)
 
 
+def launched(robot: RobotDescription) -> tuple[str, ...]:
+    """Names of the controllers that the launch files in the robot's package start."""
+    file = Path(robot.origin.file)
+    folder = root_of(file)
+    launches = () if folder is None else launches_near(folder)
+    use = chosen(file, launches)
+    starter = use if use is not None and use.spawned else controllers_for(file, use, launches)
+    return () if starter is None else starter.spawned
+
+
 def selection(
     robot: RobotDescription, use: LaunchUse | None, launches: Sequence[LaunchUse]
 ) -> Selection:

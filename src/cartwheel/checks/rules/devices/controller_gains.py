@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from cartwheel.checks.controller_claims import (
     gains_missing,
+    gains_zero,
     severity_in,
     used_controllers,
 )
@@ -23,6 +24,19 @@ _TUNED = "Tune the gains: p in N m/rad, d in N m s/rad."
 def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
     for controller in used_controllers(subject):
         missing = gains_missing(controller)
+        zero = [] if missing else gains_zero(controller)
+        if zero:
+            names = [value.text.strip() for value in zero]
+            yield devices_codes.CONTROLLER_GAINS_MISSING.diagnostic(
+                severity="warning",
+                message=f'the gains of controller "{controller.name}" for {", ".join(names)} are '
+                "all 0, so the controller does not move "
+                + ("the joint" if len(names) == 1 else "these joints"),
+                values={"controller": controller.name, "joints": tuple(names), "missing": ""},
+                origin=zero[0].origin,
+                mark=zero[0].text,
+                hint=_TUNED,
+            )
         if not missing:
             continue
         ros2 = controller.file.is_ros2
@@ -40,7 +54,11 @@ def controller_gains(subject: Subject) -> Iterator[Diagnostic]:
             severity="warning" if ros2 else severity_in(controller.file),
             message=f'controller "{controller.name}" has no gains{of} ({under} is missing), so '
             + ("its joints do not move" if ros2 else "it does not start"),
-            values={"controller": controller.name, "joints": tuple(names), "missing": under},
+            values={
+                "controller": controller.name,
+                "joints": tuple(value.text.strip() for _, value, _ in missing),
+                "missing": under,
+            },
             origin=controller.type.origin if whole else missing[0][1].origin,
             instead=text if whole else f"{under.rpartition('/')[2]}: 100.0",
             place="after" if whole and _has_own_line(controller.type) else "",

@@ -45,6 +45,8 @@ def drive_joint_fixed(subject: Subject) -> Iterator[Diagnostic]:
                 message=f'the driven wheel joint "{name}" has the type {joint.type}{limits}',
                 values={"joint": name, "type": joint.type},
                 origin=joint.origin,
+                # The wheel rolls for many turns before it reaches a limit.
+                severity="info" if joint.turns else None,
                 instead='type="continuous"',
                 place="attribute" if node is not None else "",
                 mark=f'type="{joint.type}"',

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from cartwheel.checks.stated_sizes import (
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import axle_of, wheel_place
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.model import Joint
 from cartwheel.errors import Diagnostic
 
 WIDEST_SKID = 2.5
@@ -43,7 +44,8 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
             apart, joints = (
                 (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)
             )
-        if one.skids and min(apart, joints) <= one.value <= _widest(one, apart):
+        if one.skids and min(apart, joints) <= one.value * one.factor <= _widest(one, apart):
+            # Such a robot needs a larger value, which a multiplier may contribute.
             continue
         # A wheel may be offset from its joint; either distance is accepted.
         if differs(one.value, apart, LEAST) and differs(one.value, joints, LEAST):
@@ -85,9 +87,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
     for one in sizes:
         if one.measure != "apart" or id(one.robot) in others:
             continue
-        left, right = (
-            [one.robot.joints[name] for name in side] for side in (one.first, one.second)
-        )
+        left, right = (_with_followers(one, side) for side in (one.first, one.second))
         axle = axle_of(one.robot, one.first, one.second, beside=True)
         ratio = turn_ratio(one.robot, left, right, axle, one.value * one.factor / 2)
         if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
@@ -96,11 +96,27 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
         yield robot_codes.SKID_STEERING.diagnostic(
             message=f"the wheels slide when the robot turns, so it turns at {ratio:.0%} of the "
             "commanded rate",
-            values={"tag": one.label, "joint": one.first[0], "ratio": ratio, "stated": one.value},
+            values={
+                "tag": one.label,
+                "joint": one.first[0],
+                "ratio": ratio,
+                "stated": one.value,
+                "rolling": one.value * one.factor / mean_between(one, beside=True),
+            },
             origin=one.origin,
             hint=f"A wheel separation of {wanted:.4g} m compensates for this.",
             mark=one.mark,
         )
+
+
+def _with_followers(one: Stated, side: Sequence[str]) -> list[Joint]:
+    """The wheel joints of a side, and those that mimic them."""
+    followers = [
+        joint
+        for joint in one.robot.joints.values()
+        if joint.mimic is not None and joint.mimic.joint in side and joint.mimic.multiplier == 1
+    ]
+    return [*(one.robot.joints[name] for name in side), *followers]
 
 
 def _places(one: Stated) -> list[float]:

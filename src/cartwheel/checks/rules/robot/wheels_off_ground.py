@@ -129,10 +129,9 @@ def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
         return
     bearing = [name for name in rigid if (rest.height(robot, [name]) or 0.0) < _SINKS]
     limit = _SINKS + _softness(robot, bearing)
-    for drive in robot.drives:
+    for pair in robot.sides:
         sides = [
-            [_wheel(robot.joints[name], below) for name in side if name in names]
-            for side in (drive.left, drive.right)
+            [_wheel(robot.joints[name], below) for name in side if name in names] for side in pair
         ]
         wheels = {name for side in sides for wheel in side for name in wheel}
         if not wheels <= set(rigid):
@@ -207,7 +206,7 @@ def _rigid(robot: Robot, below: Mapping[str, list[Joint]]) -> list[str]:
         for joint in below[parent]:
             axis = rotate(robot.links[joint.child].pose.orientation, joint.axis.xyz)
             turns = joint.type in ("continuous", "revolute") and abs(axis[2]) > _VERTICAL
-            rolls = joint.type in ("continuous", "ball") and not turns
+            rolls = (joint.turns or joint.type == "ball") and not turns
             if joint.type != "fixed" and not turns and (not rolls or rolled[parent]):
                 continue
             rolled[joint.child] = rolled[parent] or (rolls and joint.name not in robot.driven)
