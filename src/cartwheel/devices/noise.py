@@ -97,7 +97,7 @@ class _Drift:
 
     def restart(self) -> None:
         """Starts a new drift at the current time."""
-        self._random = self._part.random(f"{self._name} drift")
+        self._random = self._part.random_stream(f"{self._name} drift")
         drawn: Array = self._random.normal(0.0, self._deviation)
         self._value = drawn if self._settled else np.zeros_like(drawn)
         self._updated_ns = self._part.time_ns

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import zlib
 from collections.abc import Callable, Collection, Iterator
 from typing import Any, Protocol, TypeVar
 
@@ -20,6 +19,7 @@ from cartwheel.simulation.handles import (
     Handle,
     MotorHandle,
 )
+from cartwheel.simulation.random_numbers import RandomNumbers
 from cartwheel.simulation.requests import Requests
 from cartwheel.simulation.sensing.contacts import contacts_of, geoms_of
 from cartwheel.simulation.sensing.rays import RayHandle
@@ -63,6 +63,7 @@ class Part(Requests):
         """Joints and their PID controllers."""
         self.on_seed: list[Callable[[], None]] = []
         """Called after a reset with a new seed, to draw random constants again; see `random`."""
+        self._random = RandomNumbers(entry.name)
         self.read_sensors: set[str] = set()
         """Sensors that a plugin of the model publishes, so that no default plugin is needed."""
         self._touched: dict[frozenset[str], dict[int, str]] = {}
@@ -126,18 +127,18 @@ class Part(Requests):
         return max(self._engine.step_ns, round(NANOSECONDS / max(rate, SLOWEST)))
 
     def random(self, name: str) -> np.random.Generator:
-        """A random generator for the noise at the current time, separate for each `name`.
+        """The random generator for the noise at the current time, separate for each `name`.
 
-        It depends only on the seed, the time, the model's name and `name`. Other random generators
-        and subscribers have no effect. Create a new generator for each measurement.
+        It depends only on the seed, the time, the model's name and `name`. Use it at once: the next
+        call with this name sets it to its time.
         """
-        words = [
-            self._engine.seed,
-            zlib.crc32(self.name.encode()),
-            zlib.crc32(name.encode()),
-            self._engine.time_ns,
-        ]
-        return np.random.default_rng(words)
+        engine = self._engine
+        return self._random.at(name, seed=engine.seed, time_ns=engine.time_ns)
+
+    def random_stream(self, name: str) -> np.random.Generator:
+        """A new random generator, which begins at the current time and continues on its own."""
+        engine = self._engine
+        return self._random.stream(name, seed=engine.seed, time_ns=engine.time_ns)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
         """Contacts of these collisions (``link::collision``), each as `first`."""
