@@ -10,6 +10,7 @@ from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.pictures import Picture
 from cartwheel.api.plots import Plot
+from cartwheel.api.recordings import RecordedMessage, Recording
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
@@ -30,6 +31,8 @@ __all__ = [
     "Model",
     "Picture",
     "Plot",
+    "RecordedMessage",
+    "Recording",
     "State",
     "Timer",
     "Topic",
