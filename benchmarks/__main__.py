@@ -12,7 +12,19 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 
 from rich.console import Console
 
-from benchmarks import camera, check, headless, making, process, rays, sensors, unread, wires
+from benchmarks import (
+    camera,
+    check,
+    headless,
+    making,
+    process,
+    rays,
+    recording,
+    scenario,
+    sensors,
+    unread,
+    wires,
+)
 from benchmarks.figure import FULL, QUICK
 from benchmarks.report import machine, show, write
 
@@ -24,6 +36,8 @@ _PARTS = {
     "rays": rays,
     "process": process,
     "making": making,
+    "recording": recording,
+    "scenario": scenario,
     "wires": wires,
     "check": check,
 }

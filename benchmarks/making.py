@@ -80,8 +80,20 @@ def _robot(name: str, robot: RobotDescription, effort: Effort) -> Iterator[Figur
             for _ in range(_RESETS):
                 world.reset()
 
-        reset = _medians(effort.rounds, {"resets": resets})["resets"] / _RESETS
-    yield Figure(group=group, name="reset", value=1e3 * reset, unit="ms", goal=0.5)
+        state = world.save()
+
+        def saves() -> None:
+            for _ in range(_RESETS):
+                world.save()
+
+        def restores() -> None:
+            for _ in range(_RESETS):
+                world.restore(state)
+
+        ways = {"reset": resets, "save": saves, "restore": restores}
+        found = _medians(effort.rounds, ways)
+    for way, goal in (("reset", 0.5), ("save", 10), ("restore", 10)):
+        yield Figure(group=group, name=way, value=1e3 * found[way] / _RESETS, unit="ms", goal=goal)
 
 
 def _together(count: int) -> Iterator[Figure]:
