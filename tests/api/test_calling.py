@@ -229,3 +229,32 @@ def test_a_service_that_works_on_a_thread() -> None:
         with raises(WAIT_TIMED_OUT, service="/endless"):
             world.call("/endless", timeout=0.2)
         waiting.set()
+
+
+def test_gazebo_s_services_without_ros(make: Any, rosbots: Path) -> None:
+    world = make.world()
+    cart = world.spawn(rosbots, z=0.05)
+    with raises(SERVICE_UNKNOWN):
+        world.call("/gazebo/get_world_properties")
+    world.serve_gazebo()
+    world.serve_gazebo()
+    pose = {"position": {"x": 2.0, "z": 0.05}, "orientation": {"w": 1.0}}
+    state = {"model_name": "rosbots", "pose": pose, "twist": {"linear": {"x": 0.3}}}
+    assert world.call("/gazebo/set_model_state", model_state=state).success
+    assert cart.pose.x == pytest.approx(2.0)
+    found = world.call("/gazebo/get_model_state", model_name="rosbots")
+    assert found.success and found.pose.position.x == pytest.approx(2.0)
+    # It is read on a thread of its own, and spawned on this one.
+    crate = """<robot name="crate"><link name="a"><inertial><mass value="1"/><inertia ixx="1"
+      iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
+    spawned = world.call("/gazebo/spawn_urdf_model", model_name="crate", model_xml=crate)
+    assert spawned.success and "crate" in world.models
+    states = world.topic("/gazebo/model_states")
+    world.run(0.1)
+    assert "crate" in states.latest.name
+    saved = world.save()
+    assert world.call("/gazebo/delete_model", model_name="crate").success
+    world.restore(saved)
+    assert "crate" in world.models
+    assert world.call("/gazebo/reset_simulation") is not None
+    assert world.time == 0.0

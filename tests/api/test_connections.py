@@ -277,6 +277,12 @@ def test_ros1_is_connected_with_the_world(tmp_path: Path, monkeypatch: pytest.Mo
             wait_for(lambda: "/odom" in master.state()[0], "the topics")
             assert world.graph.service("/gazebo/get_model_state")
         wait_for(lambda: "/odom" not in master.state()[0], "the end of the topics")
+        with cw.World("empty") as world:
+            # The connection takes over the services.
+            world.serve_gazebo()
+            connection = world.connect_ros1()
+            assert world.call("/gazebo/get_world_properties").success
+            connection.close()
     finally:
         master.kill()
 

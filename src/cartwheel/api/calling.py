@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from concurrent.futures import Future
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.api.topics import made_message
 from cartwheel.codes.graph import SERVICE_TIMED_OUT
 from cartwheel.codes.world import RUN_NESTED
-from cartwheel.errors import GraphError, SimulationError
+from cartwheel.errors import GraphError, SimulationError, UnknownNameError
 from cartwheel.graph import Action, Service
 from cartwheel.graph import Goal as GraphGoal
 from cartwheel.messages import service_classes
@@ -21,6 +22,11 @@ from cartwheel.simulation import Simulation
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import duration_ns
 
+if TYPE_CHECKING:
+    from cartwheel.assembly.ros1 import Ros1Connection
+    from cartwheel.gazebo import GazeboApi
+
+_GAZEBO = "/gazebo/"
 _LOOK = 0.02
 """Wall time between two checks whether a service has responded, s."""
 
@@ -29,6 +35,8 @@ Status = Literal["pending", "active", "succeeded", "cancelled", "aborted", "reje
 
 class CallingWorld(MessagingWorld):
     """The part of `World` that calls services and sends goals to actions."""
+
+    _gazebo: GazeboApi | None = None
 
     @property
     def services(self) -> tuple[str, ...]:
@@ -62,7 +70,12 @@ class CallingWorld(MessagingWorld):
         """
         self.check_open()
         limit = duration_ns(timeout, "the timeout in s") / NANOSECONDS
-        offered = self.graph.service(service)
+        try:
+            offered = self.graph.service(service)
+        except UnknownNameError as error:
+            if service.startswith(_GAZEBO) and not self._offers_gazebo:
+                error.hint = "Call serve_gazebo first, which provides Gazebo's services."
+            raise
         kind = service_classes(offered.type)[0].__msgtype__
         made = made_message(service, kind, request, fields)
         with self.used(change=True) as simulation, finding_with(self.session.types):
@@ -101,6 +114,41 @@ class CallingWorld(MessagingWorld):
                 )
         simulation.drain_queued()
         return _checked(service, future.result())
+
+    def serve_gazebo(self) -> None:
+        """Provides the services and topics of Gazebo, such as ``/gazebo/set_model_state``.
+
+        They are those of ROS 1, and a connection to ROS 1 provides them without this call. After
+        ``/gazebo/pause_physics``, `run` waits for ``/gazebo/unpause_physics``.
+
+        Raises:
+            SimulationError: The world is closed.
+        """
+        from cartwheel.gazebo import GazeboApi
+
+        with self.used():
+            if not self._offers_gazebo:
+                self._gazebo = GazeboApi(self.session)
+                self._gazebo.start()
+
+    def connect_ros1(self, node: str = "gazebo", arguments: Sequence[str] = ()) -> Ros1Connection:
+        with self.used():
+            # The connection provides the same services.
+            self._withdraw_gazebo()
+            return super().connect_ros1(node, arguments)
+
+    @property
+    def _offers_gazebo(self) -> bool:
+        return any(name.startswith(_GAZEBO) for name in self.services)
+
+    def _withdraw_gazebo(self) -> None:
+        if self._gazebo is not None:
+            self._gazebo.close()
+            self._gazebo = None
+
+    def _end(self) -> None:
+        self._withdraw_gazebo()
+        super()._end()
 
     def send_goal(self, action: str, goal: Any = None, **fields: Any) -> Goal:
         """Sends a goal to an action, such as a trajectory of a controller.
