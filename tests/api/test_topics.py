@@ -202,3 +202,19 @@ def test_the_world_is_freed_with_its_topics() -> None:
         assert freed() is None
     finally:
         gc.enable()
+
+
+def test_a_subscription_can_be_closed() -> None:
+    with cw.World("empty") as world:
+        times: list[float] = []
+        subscription = world.subscribe("/clock", lambda _: times.append(world.time))
+        world.run(0.1)
+        assert len(times) == 11
+        # Also by its own callback.
+        other = world.subscribe("/clock", lambda _: other.close())
+        world.run(0.1)
+        subscription.close()
+        subscription.close()
+        world.run(0.1)
+        assert len(times) == 21
+        assert world.save().left_out == ()

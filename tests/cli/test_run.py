@@ -327,6 +327,8 @@ def test_joints_that_wait_for_controllers_nobody_starts_are_told(program, tmp_pa
 
 def test_automatic_controllers_are_those_of_the_launch_file(program, tmp_path):
     file = package(tmp_path)
+    out = program("run", file, "--headless", "--for", 0.1, "--speed", "max").stdout
+    assert "\ntry     --controllers auto\n" in out
     out = program(
         *("run", file, "--headless", "--for", 0.1, "--speed", "max", "--controllers", "auto")
     ).stdout

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from cartwheel.api.timing import TimedWorld
 from cartwheel.api.topics import Topic, made_message
-from cartwheel.graph import Graph, Mailbox, Publisher
+from cartwheel.graph import Graph, Mailbox, Publisher, Subscription
 from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class MessagingWorld(TimedWorld):
 
     def subscribe(
         self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
-    ) -> None:
+    ) -> Subscription:
         """Calls `callback` with each message during `run`.
 
         An exception in the callback stops `run` after the current step. The next `run` continues
@@ -112,6 +112,9 @@ class MessagingWorld(TimedWorld):
             topic: Topic name.
             callback: Receives each message. It must not change the message.
             type: As in `advertise`. Required if the topic does not exist yet.
+
+        Returns:
+            The subscription; `close` ends it.
 
         Raises:
             UnknownNameError: The topic does not exist and no type is given, or the type does not
@@ -129,7 +132,7 @@ class MessagingWorld(TimedWorld):
                 simulation.faults.defer(error)
 
         full = None if type is None else self.message_class(type).__msgtype__
-        self.graph.subscribe(topic, guarded, type_name=full)
+        return self.graph.subscribe(topic, guarded, type_name=full)
 
     def advertise(self, topic: str, type: str) -> Publisher:
         """Advertises a topic, and returns its publisher.

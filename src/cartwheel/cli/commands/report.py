@@ -161,9 +161,11 @@ class Report(Observer):
             if not description.plugins:
                 self._no_manager(description)
             return
+        from cartwheel.dialects.ros_control.selection import selection_near
         from cartwheel.dialects.ros_control.suggestion import suggested
 
-        files = suggested(description)
+        automatic = bool(selection_near(description).names)
+        files = ["auto"] if automatic else [str(file) for file in suggested(description)]
         self._line("control", "no controllers are running; in ROS, launch files start them")
         words = " ".join(f"--controllers {file}" for file in files) or "--controllers FILE.yaml"
         self._line("try", words)

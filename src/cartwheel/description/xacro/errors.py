@@ -107,8 +107,10 @@ def explain(failure: Failure) -> DescriptionError:
         name = inner.name
         hint, near = _meant(name, failure.arguments)
         message = f'the argument "{name}" {"is not declared" if hint else "has no value"}'
-        hint = hint or (
-            f"Pass {xacro_argument(name)}, or set a default in the file: <xacro:arg "
+        # A launch file may pass arguments that the file does not declare.
+        hint = f"{hint} Otherwise, pass".lstrip() if hint else "Pass"
+        hint += (
+            f" {xacro_argument(name)}, or set a default in the file: <xacro:arg "
             f'name="{name}" default="…"/>.'
         )
         code, values = _unknown("argument", name, near)
