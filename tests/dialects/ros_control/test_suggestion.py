@@ -101,3 +101,32 @@ def test_controllers_of_wheels_that_a_plugin_drives_would_hold_them(workspace):
       <leftJoint>beam_joint</leftJoint></plugin>"""
     body = beam("beam", "world") + transmission("beam_joint", "Position")
     assert names(workspace, robot(body, ROS1 + drive)) == []
+
+
+@pytest.mark.parametrize(
+    "joints",
+    [
+        '["$(var prefix)beam_joint"]',
+        '["$(var prefix) beam_joint"]',
+        r'["beam\x5fjoint"]',
+        "[beam_joint]",
+    ],
+)
+def test_a_name_is_found_however_it_is_written(workspace, joints):
+    (workspace / "arm_bringup" / "config" / "others.yaml").write_text(
+        OTHERS.replace("[another]", joints)
+    )
+    text = robot(
+        beam("left beam", "world") + beam("beam", "world") + system(ros2_joint("beam_joint")),
+        ros2_plugin(),
+    )
+    assert "others.yaml" in names(workspace, text)
+
+
+@pytest.mark.parametrize("joints", ["[]", '["$(var prefix)finger"]'])
+def test_a_file_for_other_joints_is_not_offered(workspace, joints):
+    (workspace / "arm_bringup" / "config" / "others.yaml").write_text(
+        OTHERS.replace("[another]", joints)
+    )
+    text = robot(beam("beam", "world") + system(ros2_joint("beam_joint")), ros2_plugin())
+    assert "others.yaml" not in names(workspace, text)

@@ -89,11 +89,15 @@ class Packages:
         Raises:
             DescriptionError: The package was not found; the hint lists the searched folders.
         """
-        found = self._search.package(name)
+        found = self.found(name)
         if found is None:
             message = f'the package "{name}" was not found'
             raise _missing("package", name, message, origin, self._search.package_advice(name))
         return found
+
+    def found(self, name: str) -> Path | None:
+        """As `find`, without an error: None if the package was not found."""
+        return self._search.package(name)
 
     def how_to_install(self, name: str) -> str:
         """A hint on how to install a package."""

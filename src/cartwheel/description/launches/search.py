@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -12,7 +11,6 @@ from cartwheel.description.files.packages import Packages
 from cartwheel.description.launches.python_launch import read_python
 from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse
 from cartwheel.description.launches.xml_launch import read_xml
-from cartwheel.errors import DescriptionError
 
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 _MOST = 500
@@ -31,11 +29,11 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
     executing them are left out.
     """
     found: list[LaunchUse] = []
+    # Which package is found depends on the folder of the launch file.
+    packages: dict[Path, Packages] = {}
     for path in _files(folder):
-        packages = Packages(path, package_path)
-        facts = Facts(
-            find=functools.partial(_find, packages), read=_read, home=package_above(path.parent)
-        )
+        near = packages.setdefault(path.parent, Packages(path, package_path))
+        facts = Facts(find=near.found, read=_read, home=package_above(path.parent))
         _read(path, {}, facts, 0)
         described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
         if not described and facts.yamls:
@@ -137,10 +135,3 @@ def _read(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) ->
         return
     reader = read_python if path.suffix == ".py" else read_xml
     reader(path, arguments, facts, depth)
-
-
-def _find(packages: Packages, name: str) -> Path | None:
-    try:
-        return packages.find(name)
-    except DescriptionError:
-        return None

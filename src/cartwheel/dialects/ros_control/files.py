@@ -113,13 +113,17 @@ def read_parameters(path: Path) -> dict[str, Any]:
     Raises:
         PluginError: See `read_yaml`.
     """
-    name, equals, file = str(path).partition("=")
-    if not equals or path.exists():
-        name, file = "", str(path)
-    content = read_yaml(Path(file))
+    name, file = name_and_file(path)
+    content = read_yaml(file)
     if name or isinstance(content.get("type"), str):
-        return {name or Path(file).stem: content}
+        return {name or file.stem: content}
     return content
+
+
+def name_and_file(path: Path) -> tuple[str, Path]:
+    """Splits ``NAME=FILE``; the name is empty if the path is only that of a file."""
+    name, equals, file = str(path).partition("=")
+    return (name, Path(file)) if equals and not path.exists() else ("", path)
 
 
 def read_yaml(path: Path) -> dict[str, Any]:

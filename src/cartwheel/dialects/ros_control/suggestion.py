@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
@@ -14,6 +15,7 @@ from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
     controller_entries,
     is_ros2,
+    name_and_file,
     read_parameters,
     ros1_entries,
     ros2_file,
@@ -25,6 +27,10 @@ from cartwheel.errors import CartwheelError
 
 _ROS2_CONTROL = "gz_ros2_control-system"
 _ARGUMENT = re.compile(r"\$\((?:arg|var)\s+[^()]*\)")
+_BROADCASTS = "joint_state"
+"""Part of the types that publish joint states."""
+_ARGUMENT_WITH_END = re.compile(_ARGUMENT.pattern + r"([\w/]*)")
+"""Also what follows in the same word, or the beginning of it."""
 _LEVELS = 4
 """Number of folders above the robot's file that are searched for its package."""
 _MOST = 400
@@ -109,8 +115,11 @@ def _fitting(
     """The files, each with whether it contains controllers for the joints."""
     for path in paths:
         try:
+            # Reading a file as YAML takes a hundred times as long as searching its text.
+            if not _can_fit(yaml_text.read(name_and_file(path)[1]), joints):
+                continue
             content = read_parameters(path)
-        except CartwheelError:
+        except (CartwheelError, OSError, UnicodeDecodeError):
             continue
         if is_ros2(content) != ros2:
             continue
@@ -120,9 +129,21 @@ def _fitting(
             values.append(content.get(PARAMETERS, {}))
         words = {word for each in values for word in texts(each)}
         named = any(_names(word, joint) for joint in joints for word in words)
-        broadcasts = len(entries) == 1 and "joint_state" in entries[0].type
+        broadcasts = len(entries) == 1 and _BROADCASTS in entries[0].type
         if named or broadcasts:
             yield path, named
+
+
+def _can_fit(text: str, joints: Sequence[str]) -> bool:
+    """Whether a file can contain a name of a joint, or a type that publishes joint states.
+
+    It may contain neither, but a file for which the answer is False contains none.
+    """
+    # An escape sequence can hide a name.
+    if any(word in text for word in (_BROADCASTS, "\\", *joints)):
+        return True
+    ends = _ARGUMENT_WITH_END.findall(text)
+    return any(end in joint for end in ends for joint in joints)
 
 
 def _manager(tag: PluginTag) -> str:
