@@ -119,7 +119,7 @@ def test_missing_file_says_what_is_there(folder):
     assert hint("cart.udf") == 'Did you mean "cart.urdf"?'
     assert hint("robot/cart.urdf") == 'The folder "robot" does not exist either.'
     listed = hint("zzzzz").removeprefix("Bundled descriptions: ").removesuffix(".").split(", ")
-    assert {"rosbots.xacro", "empty.world", "object.urdf", "ramp"} <= set(listed)
+    assert {"rosbots.xacro", "empty", "object.urdf", "ramp"} <= set(listed)
     for name in listed:
         assert load(name).name
     assert not {"materials.xacro", "rosbots.gazebo.xacro", "sun", "ground_plane"} & set(listed)
@@ -221,3 +221,8 @@ def test_a_world_is_named_as_gazebos_users_name_it(tmp_path, monkeypatch):
     assert find_description("mud.world") == theirs / "mud.world"
     (tmp_path / "mud.world").write_text("<sdf/>")
     assert find_description("mud.world") == Path("mud.world")
+
+
+def test_a_world_is_suggested_by_its_name():
+    with raises(files.FILE_MISSING, meant="walls"):
+        load_world("wals")

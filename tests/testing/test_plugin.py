@@ -220,3 +220,10 @@ def test_fixtures_of_a_project_replace_those_of_the_plugin(pytester_run):
         """
     )
     assert "cartwheel:" not in done.stdout and done.returncode == 1
+
+
+def test_an_unknown_option_of_a_mark_is_an_error(pytester_run):
+    done = pytester_run(
+        'import pytest\n@pytest.mark.cartwheel(worl="walls")\ndef test_it(world): pass'
+    )
+    assert done.returncode == 1 and '"worl"' in done.stdout and '"world"' in done.stdout

@@ -19,6 +19,7 @@ from cartwheel.codes.command import NO_TEST_ROBOT, OPTION_INVALID
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import CartwheelError, RecordingError
 from cartwheel.messages.echo import to_yaml
+from cartwheel.similar_names import meant, suggestion
 from cartwheel.testing.recent import Recent
 
 if TYPE_CHECKING:
@@ -237,7 +238,7 @@ class _Marks:
             for name in ("robot", "robots"):
                 if name in given:
                     robots = _listed(given.pop(name))
-            self._add_options(given, mark.name)
+            self._add_options(given, mark.name, ("world", "robot", "seed", "record"))
         for mark in reversed(list(node.iter_markers("world"))):
             if mark.args:
                 self.world = self._file(mark.args[0])
@@ -252,14 +253,20 @@ class _Marks:
         chosen = robots + marked or ([default] if default else [])
         self.robots = [self._robot(each) for each in chosen]
 
-    def _add_options(self, given: Mapping[str, Any], mark: str) -> None:
+    def _add_options(
+        self, given: Mapping[str, Any], mark: str, others: tuple[str, ...] = ()
+    ) -> None:
         for name in given:
             if name not in _BUILD_OPTIONS:
                 raise CartwheelError(
                     f'the mark {mark} has no option "{name}"',
                     code=OPTION_INVALID,
-                    hint=f"Valid options: {', '.join(_BUILD_OPTIONS)}.",
-                    values={"option": name, "mark": mark},
+                    hint=suggestion(name, (*others, *_BUILD_OPTIONS)),
+                    values={
+                        "option": name,
+                        "mark": mark,
+                        "meant": meant(name, (*others, *_BUILD_OPTIONS)),
+                    },
                 )
         self.options |= given
 

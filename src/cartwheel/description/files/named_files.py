@@ -78,7 +78,11 @@ def shipped_descriptions() -> Iterator[Path]:
 def _spawnable_names() -> list[str]:
     """Names of the built-in robots, worlds and models, without the parts of other descriptions."""
     names = {
-        path.parent.name if path.name == "model.sdf" else path.name
+        path.parent.name
+        if path.name == "model.sdf"
+        else path.stem
+        if path.suffix == ".world"
+        else path.name
         for path in shipped_descriptions()
         if _is_complete(path)
     }
