@@ -89,14 +89,13 @@ class Packages:
         Raises:
             DescriptionError: The package was not found; the hint lists the searched folders.
         """
-        found = self.found(name)
-        if found is None:
-            message = f'the package "{name}" was not found'
-            raise _missing("package", name, message, origin, self._search.package_advice(name))
+        if (found := self.found(name)) is None:
+            text, advice = f'the package "{name}" was not found', self._search.package_advice(name)
+            raise _missing("package", name, text, origin, advice)
         return found
 
     def found(self, name: str) -> Path | None:
-        """As `find`, without an error: None if the package was not found."""
+        """As `find`, without an error."""
         return self._search.package(name)
 
     def how_to_install(self, name: str) -> str:
