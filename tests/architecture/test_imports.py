@@ -109,6 +109,8 @@ MAY_IMPORT = {
         "bridges",
     },
     "scenarios": {"api", "testing", "description", "messages", "graph"},
+    "batch": {"api", "messages", "arrays"},
+    "gym": {"api", "batch"},
     "cli": {
         "description",
         "world",

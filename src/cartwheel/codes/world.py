@@ -128,3 +128,10 @@ PROPERTY_ABSENT = Code(
 EMBREE_MISSING = Code(
     "CW637", "embree-missing", "info", "the rays of lidars are computed without Embree"
 )
+BATCH_INVALID = Code(
+    "CW638", "batch-invalid", "error", "an argument of a batch of worlds is invalid"
+)
+BATCH_PROCESS_ENDED = Code(
+    "CW639", "batch-process-ended", "error", "a process with worlds of a batch has ended"
+)
+BATCH_CLOSED = Code("CW640", "batch-closed", "error", "a batch of worlds is used after its end")

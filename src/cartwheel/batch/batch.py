@@ -1,0 +1,231 @@
+"""Many worlds of the same models that run together."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from cartwheel.batch.lane import Values, different_shapes
+from cartwheel.batch.plan import Actions, Observations, Plan, Vary, invalid
+from cartwheel.batch.processes import Lanes, Method, Process
+from cartwheel.codes.world import BATCH_CLOSED
+from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Array
+
+if TYPE_CHECKING:
+    from cartwheel.api import Built, World
+
+
+class Batch:
+    """Worlds that receive actions and return observations as arrays.
+
+    World i is the world that ``built.world(seed=seed + i)`` makes, with the same bits, whatever the
+    number of worlds and processes. Each has all sensors, plugins and controllers of its robots.
+
+    Args:
+        built: What `cartwheel.build` returned.
+        n: Number of worlds.
+        act: For each topic, the fields that the columns of the actions set, such as
+            ``{"/cmd_vel": ["linear.x", "angular.z"]}``.
+        obs: The observations by name. Each is a field of the newest message of the topic of this
+            name, a list of fields, a tuple of a topic and its fields, or a function that receives
+            the `World` and returns numbers.
+        period: Simulation time of a step, s.
+        seed: Seed of the first world.
+        vary: Called with the world and a random generator after each reset, to change masses,
+            poses or lights.
+        workers: Number of processes; 0 runs all worlds in this one. By default one for each core.
+        start_method: How processes are started, as in `multiprocessing`. With ``spawn``, a script
+            must make the batch below ``if __name__ == "__main__":``, and functions must be those of
+            a module.
+
+    Raises:
+        CartwheelError: An argument is invalid, or a world cannot be made.
+        UnknownNameError: A topic does not exist.
+    """
+
+    def __init__(
+        self,
+        built: Built,
+        n: int,
+        *,
+        act: Actions,
+        obs: Observations,
+        period: float = 0.1,
+        seed: int = 0,
+        vary: Vary | None = None,
+        workers: int | None = None,
+        start_method: Method = "spawn",
+    ) -> None:
+        if isinstance(n, bool) or not isinstance(n, int) or n < 1:
+            raise invalid(f"a batch must have at least one world (got {n})", "n")
+        self._plan = Plan.of(act, obs, period=period, vary=vary)
+        self.n = n
+        self.seed = seed
+        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+        count = min(n, (cores or 1) if workers is None else workers)
+        if count < 0:
+            raise invalid(f"the number of processes must be at least 0 (got {count})", "workers")
+        seeds = [seed + index for index in range(n)]
+        self._closed = False
+        self._here: Lanes | None = None
+        self._processes: list[Process] = []
+        self._edges: list[int] = [0, n]
+        if count == 0 or (workers is None and n == 1):
+            self._here = Lanes(built, self._plan, seeds)
+            return
+        self._edges = np.linspace(0, n, count + 1).astype(int).tolist()
+        try:
+            for first, last in zip(self._edges, self._edges[1:], strict=False):
+                self._processes.append(Process(built, self._plan, seeds[first:last], start_method))
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def action_names(self) -> tuple[str, ...]:
+        """Topic and field of each column of the actions."""
+        return self._plan.action_names
+
+    def world(self, index: int) -> World:
+        """A world, if all worlds are in this process.
+
+        Raises:
+            CartwheelError: It is in another process, or does not exist.
+        """
+        (chosen,) = self._chosen([index])
+        if self._here is None:
+            raise invalid("the worlds are in other processes: use workers=0", "workers")
+        return self._here.lanes[chosen].world
+
+    def reset(
+        self, seed: int | None = None, *, which: Sequence[int] | Array | None = None,
+        seeds: Sequence[int] | Array | None = None,
+    ) -> Values:  # fmt: skip
+        """Returns worlds to their start, and runs a step without an action.
+
+        Args:
+            seed: New seed of world 0; world i has this seed plus i. None keeps all seeds.
+            which: Indices of the worlds; None is all of them.
+            seeds: Instead of `seed`, the seed of each of these worlds.
+
+        Returns:
+            The observations of these worlds by name, each of shape (number of worlds, …).
+
+        Raises:
+            CartwheelError: An argument is invalid, or a topic has had no message.
+        """
+        chosen = self._chosen(which)
+        if seeds is not None:
+            given: list[int | None] = [int(each) for each in seeds]
+            if len(given) != len(chosen):
+                raise invalid(f"{len(chosen)} seeds are required (got {len(given)})", "seeds")
+        else:
+            given = [None if seed is None else seed + index for index in chosen]
+        return self._call("reset", chosen, lambda rows: [given[row] for row in rows])
+
+    def step(self, actions: Array, *, which: Sequence[int] | Array | None = None) -> Values:
+        """Publishes actions, and runs the worlds for a period.
+
+        Args:
+            actions: Shape (number of worlds, number of actions), in the order of `action_names`.
+            which: Indices of the worlds; None is all of them.
+
+        Returns:
+            As for `reset`.
+
+        Raises:
+            CartwheelError: The actions have the wrong shape or are not finite, or a world has
+                failed.
+        """
+        chosen = self._chosen(which)
+        table = np.asarray(actions, dtype=float)
+        wanted = (len(chosen), len(self.action_names))
+        if table.shape != wanted:
+            raise invalid(
+                f"the actions must have the shape {wanted} (got {table.shape})", "actions"
+            )
+        if not np.isfinite(table).all():
+            raise invalid("the actions must be finite", "actions")
+        return self._call("step", chosen, lambda rows: table[rows])
+
+    def _chosen(self, which: Sequence[int] | Array | None) -> list[int]:
+        if self._closed:
+            raise CartwheelError("the batch is closed", code=BATCH_CLOSED)
+        if which is None:
+            return list(range(self.n))
+        found = np.asarray(which)
+        if found.dtype == bool:
+            found = np.flatnonzero(found)
+        chosen = [int(each) for each in found]
+        if not chosen or len(set(chosen)) < len(chosen) or not all(
+            0 <= each < self.n for each in chosen
+        ):  # fmt: skip
+            raise invalid(f"the worlds must be different numbers from 0 to {self.n - 1}", "which")
+        return chosen
+
+    def _call(self, name: str, chosen: list[int], part_of: Callable[[list[int]], Any]) -> Values:
+        """Calls a method of `Lanes` for some worlds, each in its process.
+
+        Args:
+            name: The method.
+            chosen: Indices of the worlds.
+            part_of: The argument for some of the chosen worlds.
+        """
+        if self._here is not None:
+            found: Values = getattr(self._here, name)(chosen, part_of(list(range(len(chosen)))))
+            return found
+        asked = []
+        for index, process in enumerate(self._processes):
+            first, last = self._edges[index], self._edges[index + 1]
+            rows = [row for row, world in enumerate(chosen) if first <= world < last]
+            if rows:
+                process.ask(name, [chosen[row] - first for row in rows], part_of(rows))
+                asked.append((process, rows))
+        return _joined(asked, len(chosen))
+
+    def close(self) -> None:
+        """Closes all worlds and ends all processes."""
+        self._closed = True
+        if self._here is not None:
+            self._here.close()
+        for process in self._processes:
+            process.close()
+        self._processes.clear()
+
+
+def _joined(asked: Sequence[tuple[Process, list[int]]], count: int) -> Values:
+    """The answers of the processes in the order of the worlds."""
+    answers: list[tuple[list[int], Values]] = []
+    failure: CartwheelError | None = None
+    for process, rows in asked:
+        try:
+            answers.append((rows, process.answer()))
+        except CartwheelError as error:
+            failure = failure or error
+    if failure is not None:
+        raise failure
+    found: Values = {}
+    for name in answers[0][1]:
+        shapes = {part[name].shape[1:] for _, part in answers}
+        if len(shapes) > 1:
+            raise different_shapes(name, shapes)
+        found[name] = np.empty((count, *shapes.pop()))
+        for rows, part in answers:
+            found[name][rows] = part[name]
+    return found

@@ -1,0 +1,97 @@
+"""What the worlds of a batch receive and return."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cartwheel.codes.world import BATCH_INVALID
+from cartwheel.errors import CartwheelError
+
+if TYPE_CHECKING:
+    from cartwheel.api import World
+
+Actions = Mapping[str, Sequence[str]]
+"""The fields that are set in the messages of each topic, such as
+``{"/cmd_vel": ["linear.x", "angular.z"]}``."""
+Fields = str | Sequence[str]
+"""A field that is a number or an array of numbers, such as ``ranges``; or several numbers."""
+Observation = Fields | tuple[str, Fields] | Callable[["World"], Any]
+"""Fields of the topic that is the name of the observation; or a topic and its fields; or a function
+that returns numbers of a world."""
+Observations = Mapping[str, Observation]
+Vary = Callable[["World", np.random.Generator], None]
+"""Changes a world after a reset, with random numbers that depend on the seed of the world."""
+
+
+@dataclass(frozen=True)
+class TopicFields:
+    """Fields of the newest message of a topic."""
+
+    topic: str
+    fields: tuple[str, ...]
+    single: bool
+    """Whether the observation is one field, which may be an array."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How each world of a batch runs. It can be pickled if its functions can.
+
+    Raises:
+        CartwheelError: A value is invalid.
+    """
+
+    act: Mapping[str, tuple[str, ...]]
+    obs: Mapping[str, TopicFields | Callable[[World], Any]]
+    period: float
+    """Simulation time of a step, s."""
+    vary: Vary | None
+
+    @classmethod
+    def of(
+        cls, act: Actions, obs: Observations, *, period: float, vary: Vary | None = None
+    ) -> Plan:
+        """Checks and completes the arguments of `Batch`."""
+        actions: dict[str, tuple[str, ...]] = {}
+        for topic, fields in act.items():
+            if isinstance(fields, str) or not fields:
+                raise invalid(f'the action "{topic}" must have a list of fields', "act")
+            actions[topic] = tuple(fields)
+        if not obs:
+            raise invalid("a batch requires at least one observation", "obs")
+        return cls(actions, {name: _observation(name, each) for name, each in obs.items()}, period,
+                   vary)  # fmt: skip
+
+    @property
+    def action_names(self) -> tuple[str, ...]:
+        """Topic and field of each column of the actions."""
+        return tuple(f"{topic} {field}" for topic, field in self._actions())
+
+    def _actions(self) -> Iterator[tuple[str, str]]:
+        for topic, fields in self.act.items():
+            for field in fields:
+                yield topic, field
+
+
+def _observation(name: str, value: Any) -> Any:
+    if callable(value):
+        return value
+    topic = name
+    if isinstance(value, tuple) and len(value) == 2 and str(value[0]).startswith("/"):
+        topic, value = value
+    if isinstance(value, str):
+        return TopicFields(topic, (value,), True)
+    fields = tuple(value) if isinstance(value, Sequence) else ()
+    if not fields or not all(isinstance(each, str) for each in fields):
+        raise invalid(f'the observation "{name}" must be a field, a list of fields, a topic with '
+                      "its fields, or a function", "obs")  # fmt: skip
+    return TopicFields(topic, fields, False)
+
+
+def invalid(message: str, argument: str) -> CartwheelError:
+    """The error of an invalid argument."""
+    return CartwheelError(message, code=BATCH_INVALID, values={"argument": argument})

@@ -1,0 +1,137 @@
+"""Worlds of a batch in other processes."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import signal
+from collections.abc import Sequence
+from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING, Any, Literal
+
+from cartwheel.batch.lane import Lane, Values, stacked
+from cartwheel.codes.world import BATCH_PROCESS_ENDED
+from cartwheel.errors import CartwheelError, fault
+from cartwheel.geometry import Array
+
+if TYPE_CHECKING:
+    from cartwheel.api import Built
+    from cartwheel.batch.plan import Plan
+
+Method = Literal["spawn", "fork", "forkserver"]
+_END = 5.0
+"""Wall time in which a process must end, s."""
+
+
+class Lanes:
+    """Several worlds in this process."""
+
+    def __init__(self, built: Built, plan: Plan, seeds: Sequence[int]) -> None:
+        self.lanes: list[Lane] = []
+        try:
+            self.lanes += [Lane(built, plan, seed) for seed in seeds]
+        except BaseException:
+            self.close()
+            raise
+
+    def reset(self, which: Sequence[int], seeds: Sequence[int | None]) -> Values:
+        """Begins some of the worlds anew."""
+        pairs = zip(which, seeds, strict=True)
+        return stacked([self.lanes[index].reset(seed) for index, seed in pairs])
+
+    def step(self, which: Sequence[int], actions: Array) -> Values:
+        """Runs some of the worlds for a period, and returns their observations."""
+        pairs = zip(which, actions, strict=True)
+        return stacked([self.lanes[index].step(action) for index, action in pairs])
+
+    def close(self) -> None:
+        """Closes all worlds."""
+        for lane in self.lanes:
+            lane.close()
+
+
+class Process:
+    """Several worlds in another process.
+
+    Args:
+        built: Makes the worlds.
+        plan: What they receive and return.
+        seeds: The seed of each world.
+        method: How the process is started.
+    """
+
+    def __init__(self, built: Built, plan: Plan, seeds: Sequence[int], method: Method) -> None:
+        context: Any = multiprocessing.get_context(method)
+        self._link, theirs = context.Pipe()
+        self._process: Any = context.Process(
+            target=_work, args=(theirs, built, plan, seeds), name="cartwheel-batch", daemon=True
+        )
+        self._process.start()
+        theirs.close()
+
+    def ask(self, name: str, *arguments: Any) -> None:
+        """Calls a method of `Lanes`; `answer` returns the result."""
+        with contextlib.suppress(OSError):  # it has ended, which `answer` reports
+            self._link.send((name, arguments))
+
+    def answer(self) -> Any:
+        """The result of the call.
+
+        Raises:
+            CartwheelError: The call raised it, or the process has ended.
+        """
+        try:
+            error, result = self._link.recv()
+        except (EOFError, OSError):
+            self._process.join(_END)
+            status = self._process.exitcode
+            raise CartwheelError(
+                f"a process of the batch ended with status {status}",
+                code=BATCH_PROCESS_ENDED,
+                values={"status": str(status)},
+            ) from None
+        if error is not None:
+            raise error
+        return result
+
+    def close(self) -> None:
+        """Ends the process."""
+        with contextlib.suppress(OSError):
+            self._link.send(None)
+        self._link.close()
+        self._process.join(_END)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+
+
+def _work(link: Connection, built: Built, plan: Plan, seeds: Sequence[int]) -> None:
+    """Runs in the process: answers calls until the link is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one
+    with contextlib.suppress(EOFError, OSError):
+        try:
+            lanes = Lanes(built, plan, seeds)
+        except Exception as error:  # noqa: BLE001 - the first answer reports it
+            link.recv()
+            link.send((_picklable(error), None))
+            return
+        with contextlib.closing(lanes):
+            while (call := link.recv()) is not None:
+                name, arguments = call
+                answer: tuple[CartwheelError | None, Any]
+                try:
+                    answer = (None, getattr(lanes, name)(*arguments))
+                except Exception as error:  # noqa: BLE001 - the parent process raises it
+                    answer = (_picklable(error), None)
+                link.send(answer)
+
+
+def _picklable(error: Exception) -> CartwheelError:
+    """The error without its traceback and causes, which may not be picklable."""
+    if isinstance(error, CartwheelError):
+        return CartwheelError(
+            error.message, code=error.code, origin=error.origin, hint=error.hint,
+            values=error.values,
+        )  # fmt: skip
+    found = fault("an unexpected error in a world of a batch", error)
+    return CartwheelError(found.message, code=found.code, hint=found.hint, values=found.values)

@@ -1,0 +1,125 @@
+"""Many environments that run together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from cartwheel.batch import Batch
+from cartwheel.batch.lane import Values
+from cartwheel.batch.processes import Method
+from cartwheel.gym.task import Task
+
+_SEEDS = 2**31
+
+
+class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
+    """Worlds as environments of Gymnasium, in several processes.
+
+    Environment i behaves as an `Env` that was reset with the seed i higher. An environment whose
+    episode has ended starts a new one in the next step, and ignores the action of this step
+    (`AutoresetMode.NEXT_STEP`).
+
+    Args:
+        task: What is learned.
+        n: Number of environments.
+        workers: As for `cartwheel.batch.Batch`.
+        start_method: As for `cartwheel.batch.Batch`.
+
+    Raises:
+        CartwheelError: The task is invalid.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - as in Gymnasium
+        "render_modes": [],
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
+
+    def __init__(
+        self, task: Task, n: int, *, workers: int | None = None, start_method: Method = "spawn"
+    ) -> None:
+        self.task, self.num_envs = task, n
+        self._batch = Batch(
+            task.built, n, act=task.fields(), obs=task.obs, period=task.period, vary=task.vary,
+            workers=workers, start_method=start_method,
+        )  # fmt: skip
+        self._randoms = [np.random.default_rng() for _ in range(n)]
+        self._values: Values = task.limited(self._batch.reset())
+        self._steps = np.zeros(n, dtype=int)
+        self._over = np.zeros(n, dtype=bool)
+        self.single_action_space = task.action_space()
+        self.single_observation_space = task.observation_space(self._values)
+        self.action_space = batch_space(self.single_action_space, n)
+        self.observation_space = batch_space(self.single_observation_space, n)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,  # noqa: ARG002 - Gymnasium's
+    ) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Starts an episode in each environment.
+
+        Args:
+            seed: Seed of the first environment, or of each one; None continues.
+            options: Not used.
+        """
+        given: Sequence[int | None]
+        if seed is None or isinstance(seed, int):
+            given = [None if seed is None else seed + index for index in range(self.num_envs)]
+        else:
+            given = seed
+        for index, each in enumerate(given):
+            if each is not None:
+                self._randoms[index] = np.random.default_rng(each)
+        self._steps[:], self._over[:] = 0, False
+        self._values = self.task.limited(
+            self._batch.reset(seeds=[self._draw(index) for index in range(self.num_envs)])
+        )
+        return self._copied(), {}
+
+    def step(self, actions: Any) -> tuple[dict[str, Any], Any, Any, Any, dict[str, Any]]:
+        """Runs each environment for a period, or starts its next episode."""
+        table = np.asarray(actions, dtype=float)
+        rewards = np.zeros(self.num_envs)
+        ended = np.zeros(self.num_envs, dtype=bool)
+        going = [index for index in range(self.num_envs) if not self._over[index]]
+        over = [index for index in range(self.num_envs) if self._over[index]]
+        before = self._values
+        self._values = {name: each.copy() for name, each in before.items()}
+        if over:
+            seeds = [self._draw(index) for index in over]
+            self._put(over, self._batch.reset(which=over, seeds=seeds))
+            self._steps[over] = 0
+        if going:
+            self._put(going, self._batch.step(table[going], which=going))
+            self._steps[going] += 1
+            rewards[going], ended[going] = self.task.judge(
+                _some(before, going), table[going], _some(self._values, going)
+            )
+        late = self._steps >= self.task.steps
+        self._over = ended | late
+        return self._copied(), rewards, ended, late, {}
+
+    def close_extras(self, **_: Any) -> None:
+        """Closes all worlds and ends all processes."""
+        self._batch.close()
+
+    def _draw(self, index: int) -> int:
+        return int(self._randoms[index].integers(_SEEDS))
+
+    def _put(self, rows: Any, values: Values) -> None:
+        for name, each in self.task.limited(values).items():
+            self._values[name][rows] = each
+
+    def _copied(self) -> dict[str, Any]:
+        return {name: each.copy() for name, each in self._values.items()}
+
+
+def _some(values: Values, rows: Any) -> Values:
+    return {name: each[rows] for name, each in values.items()}

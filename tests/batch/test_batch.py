@@ -1,0 +1,211 @@
+"""Worlds of a batch: each is the world that its seed makes alone."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import numpy as np
+import pytest
+from tests.batch import duties
+from tests.coded import raises
+
+import cartwheel as cw
+from cartwheel import arrays
+from cartwheel.batch import Batch
+from cartwheel.codes.graph import FIELD_UNKNOWN, NO_MESSAGE, TOPIC_UNKNOWN
+from cartwheel.codes.world import (
+    BATCH_CLOSED,
+    BATCH_INVALID,
+    BATCH_PROCESS_ENDED,
+    NUMBER_OUT_OF_RANGE,
+)
+
+N = 5
+ACTIONS = np.random.default_rng(0).uniform(-1.0, 1.0, (8, N, 2))
+SOME = np.array([4, 1])
+
+
+@pytest.fixture(scope="module")
+def built():
+    return cw.build("empty", ["rosbots.xacro"])
+
+
+def batch(built, n=N, **options):
+    given = {"act": duties.ACT, "obs": duties.OBS, "seed": 3, "workers": 0, **options}
+    return Batch(built, n, **given)
+
+
+def journey(made):
+    """All observations of a journey with a reset of two worlds in the middle."""
+    seen = [made.reset()]
+    for index, actions in enumerate(ACTIONS):
+        seen.append(made.step(actions))
+        if index == 3:
+            seen.append(made.reset(which=SOME, seeds=[70, 71]))
+            seen.append(made.step(actions[:2], which=SOME))
+    return seen
+
+
+def alone(built, index):
+    """The same journey of one world, without a batch."""
+    with built.world(seed=3 + index) as world:
+        imu, odometry = world.topic("/imu/data"), world.topic("/odom")
+
+        def read():
+            latest = imu.latest
+            return {
+                "/imu/data": [latest.angular_velocity.z, latest.linear_acceleration.x],
+                "speed": odometry.latest.twist.twist.linear.x,
+                "covariance": arrays.values([odometry.latest], "pose.covariance")[0],
+                "pose": duties.pose(world),
+            }
+
+        def step(action):
+            world.publish("/part2_cmr/cmd_vel", linear_x=action[0], angular_z=action[1])
+            world.run(0.1)
+            return read()
+
+        world.reset()
+        world.run(0.1)
+        seen = [read()]
+        for number, actions in enumerate(ACTIONS):
+            seen.append(step(actions[index]))
+            if number == 3 and index in SOME:
+                row = SOME.tolist().index(index)
+                world.reset(seed=70 + row)
+                world.run(0.1)
+                seen.append(read())
+                seen.append(step(actions[row]))
+        return seen
+
+
+@pytest.mark.parametrize("workers", [0, 1, 2])
+def test_each_world_is_that_of_its_seed(built, workers):
+    with batch(built, workers=workers, vary=None) as made:
+        seen = journey(made)
+    assert {name: each.shape for name, each in seen[0].items()} == {
+        "/imu/data": (N, 2), "speed": (N,), "covariance": (N, 36), "pose": (N, 3),
+    }  # fmt: skip
+    for index in range(N):
+        rows = [
+            {name: each[index if len(each) == N else SOME.tolist().index(index)] for name, each in
+             moment.items()}
+            for moment in seen
+            if len(moment["speed"]) == N or index in SOME
+        ]  # fmt: skip
+        for row, expected in zip(rows, alone(built, index), strict=True):
+            for name, value in expected.items():
+                assert np.array_equal(row[name], value), (index, name)
+
+
+GYRO = """<sdf version="1.7"><model name="gyro"><static>true</static><link name="link">
+<sensor name="imu" type="imu"><update_rate>100</update_rate><imu><angular_velocity><z>
+<noise type="gaussian"><mean>0</mean><stddev>0.1</stddev></noise></z></angular_velocity></imu>
+<plugin name="gyro" filename="libgazebo_ros_imu_sensor.so"/></sensor></link></model></sdf>"""
+
+
+def test_noise_differs_between_worlds(tmp_path):
+    (tmp_path / "gyro.sdf").write_text(GYRO)
+    noisy = cw.build("empty", [tmp_path / "gyro.sdf"])
+    topic = "/imu_data"
+    with batch(noisy, act={}, obs={topic: "angular_velocity.z"}) as made:
+        first = made.reset()[topic]
+        assert len(set(first.tolist())) == N
+        assert np.array_equal(made.reset()[topic], first)
+        other = made.reset(seed=4)[topic]
+        assert np.array_equal(other[:-1], first[1:]) and other[-1] not in first
+        assert made.step(np.zeros((N, 0)))[topic].shape == (N,)
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_variations_depend_on_the_seed_of_the_world(built, workers):
+    with batch(built, obs={"pose": duties.pose}, vary=duties.heavier, workers=workers) as made:
+        made.reset()
+        first = made.step(ACTIONS[0])["pose"]
+        assert len(set(first[:, 2].tolist())) == N
+        made.reset(which=[1], seeds=[3])
+        assert np.array_equal(made.step(ACTIONS[0][:1], which=[1])["pose"][0], first[0])
+
+
+def test_the_names_of_actions_are_in_order(built):
+    with batch(built, 1) as made:
+        assert made.action_names == (
+            "/part2_cmr/cmd_vel linear.x", "/part2_cmr/cmd_vel angular.z",
+        )  # fmt: skip
+        assert made.world(0).models == ("ground_plane", "rosbots")
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        ({"n": 0}, BATCH_INVALID),
+        ({"workers": -1}, BATCH_INVALID),
+        ({"obs": {}}, BATCH_INVALID),
+        ({"obs": {"/odom": 3}}, BATCH_INVALID),
+        ({"obs": {"words": duties.words}}, BATCH_INVALID),
+        ({"act": {"/part2_cmr/cmd_vel": "linear.x"}}, BATCH_INVALID),
+        ({"act": {"/cmd_val": ["linear.x"]}}, TOPIC_UNKNOWN),
+        ({"act": {"/part2_cmr/cmd_vel": ["linear.w"]}}, FIELD_UNKNOWN),
+        ({"obs": {"/nothing": "x"}}, TOPIC_UNKNOWN),
+        ({"obs": {"/part2_cmr/cmd_vel": "linear.x"}}, NO_MESSAGE),
+        ({"obs": {"/odom": "pose.pose.position.w"}}, FIELD_UNKNOWN),
+        ({"period": -1.0}, NUMBER_OUT_OF_RANGE),
+    ],
+)
+@pytest.mark.parametrize("workers", [0, 1])
+def test_mistakes_are_errors(built, options, code, workers):
+    given = {"workers": workers, "n": 2, **options}
+    with raises(code), batch(built, **given) as made:
+        made.reset()
+        made.step(np.zeros((2, len(made.action_names))))
+
+
+@pytest.mark.parametrize(
+    "actions", [np.zeros((N, 1)), np.zeros(2), np.full((N, 2), np.nan), np.zeros((N - 1, 2))]
+)
+def test_actions_of_a_wrong_shape_are_errors(built, actions):
+    with batch(built) as made:
+        made.reset()
+        with raises(BATCH_INVALID):
+            made.step(actions)
+        made.step(ACTIONS[0])
+
+
+@pytest.mark.parametrize("which", [[], [0, 0], [N], [-1], np.zeros(N, bool)])
+def test_wrong_worlds_are_errors(built, which):
+    with batch(built) as made, raises(BATCH_INVALID):
+        made.reset(which=which)
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_observations_of_different_sizes_are_errors(built, workers):
+    with batch(built, obs={"many": duties.as_many_as_time}, workers=workers) as made:
+        made.reset()
+        actions = np.zeros((N, 2))
+        actions[-1] = 1.0
+        with raises(BATCH_INVALID):
+            for _ in range(10):
+                made.step(actions)
+
+
+def test_a_process_that_ends_is_an_error(built):
+    with batch(built, obs={"x": duties.dying}, workers=2) as made:
+        made.reset()
+        with raises(BATCH_PROCESS_ENDED):
+            for _ in range(10):
+                made.step(np.ones((N, 2)))
+
+
+def test_processes_end_with_the_batch(built):
+    made = batch(built, workers=2)
+    made.reset()
+    processes = [each._process for each in made._processes]
+    os.kill(processes[0].pid, signal.SIGINT)  # Ctrl-C is for the parent process
+    made.step(ACTIONS[0])
+    made.close()
+    assert [each.exitcode for each in processes] == [0, 0]
+    with raises(BATCH_CLOSED):
+        made.step(ACTIONS[0])
+    with raises(BATCH_INVALID), batch(built, workers=1) as other:
+        other.world(0)

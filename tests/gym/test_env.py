@@ -1,0 +1,169 @@
+"""Environments: what Gymnasium requires, and the worlds behind them."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from tests.coded import raises
+
+from cartwheel.codes.world import BATCH_INVALID
+
+pytest.importorskip("gymnasium")
+
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
+from tests.gym.duties import FORWARD, pose, progress, task
+
+from cartwheel.gym import Env, VectorEnv, vary
+
+
+@pytest.fixture(scope="module")
+def job():
+    return task()
+
+
+def test_the_checker_of_gymnasium_passes(job):
+    env = Env(job, render_mode="rgb_array")
+    with warnings.catch_warnings():
+        # It advises against observations without limits.
+        warnings.filterwarnings("ignore", message=".*Box observation space.*")
+        # And it tests other ways of rendering only for registered environments.
+        warnings.filterwarnings("ignore", message=".*alternative render modes.*")
+        check_env(env)
+    assert env.observation_space.contains(env.reset(seed=1)[0])
+    env.close()
+
+
+def test_an_episode_ends_by_success_or_time(job):
+    env = Env(job)
+    env.reset(seed=3)
+    count, rewards = 0, 0.0
+    while True:
+        values, reward, ended, late, _ = env.step(FORWARD)
+        count, rewards = count + 1, rewards + reward
+        if ended or late:
+            break
+    assert ended and not late and values["pose"][0] > 0.2
+    assert rewards == pytest.approx(values["pose"][0], abs=1e-3)
+    env.reset()
+    steps = [env.step(np.zeros(2, np.float32))[2:4] for _ in range(10)]
+    assert steps == [(False, False)] * 9 + [(False, True)]
+    env.close()
+
+
+def test_seeds_repeat_episodes(job):
+    env = Env(job)
+
+    def drive(seed):
+        values = [env.reset(seed=seed)[0]["pose"]]
+        values += [env.step(FORWARD)[0]["pose"] for _ in range(5)]
+        return np.array(values)
+
+    first, other, again = drive(1), drive(2), drive(1)
+    assert np.array_equal(first, again) and not np.array_equal(first, other)
+    # Each episode has variations of its own.
+    assert not np.array_equal(drive(None), drive(None))
+    env.close()
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_vector_repeats_single_environments(job, workers):
+    """Also after the ends of episodes: an environment starts anew in the step after."""
+    n, count = 3, 16
+    actions = np.random.default_rng(2).uniform(0.2, 1.0, (count, n, 2)).astype(np.float32)
+    vector = VectorEnv(job, n, workers=workers)
+    assert vector.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    values, _ = vector.reset(seed=7)
+    assert vector.observation_space.contains(values) and vector.action_space.contains(actions[0])
+    seen = [(values["pose"], np.zeros(n), np.zeros(n, bool), np.zeros(n, bool))]
+    for each in actions:
+        values, *rest, _ = vector.step(each)
+        seen.append((values["pose"], *rest))
+    vector.close()
+    over = np.zeros(n, bool)
+    for index in range(n):
+        env = Env(job)
+        values, _ = env.reset(seed=7 + index)
+        assert np.array_equal(seen[0][0][index], values["pose"])
+        ended = late = False
+        for number, each in enumerate(actions):
+            if ended or late:
+                values, _ = env.reset()
+                reward, ended, late = 0.0, False, False
+                over[index] = True
+            else:
+                values, reward, ended, late, _ = env.step(each[index])
+            got = [part[index] for part in seen[number + 1]]
+            assert np.array_equal(got[0], values["pose"])
+            assert got[1:] == [reward, ended, late]
+        env.close()
+    assert over.all()
+
+
+def test_the_gymnasium_wrappers_accept_a_vector(job):
+    from gymnasium.wrappers.vector import RecordEpisodeStatistics
+
+    vector = RecordEpisodeStatistics(VectorEnv(job, 2, workers=0))
+    vector.reset(seed=0)
+    lengths = []
+    for _ in range(12):
+        *_, infos = vector.step(np.zeros((2, 2), np.float32))
+        if "episode" in infos:
+            lengths += infos["episode"]["l"][infos["_episode"]].tolist()
+    assert lengths == [10, 10]
+    vector.close()
+
+
+def test_limits_are_those_of_the_space():
+    env = Env(task(limits={"pose": (-0.05, 0.05)}, ended=None, vary=None))
+    space = env.observation_space["pose"]
+    assert (space.low == np.float32(-0.05)).all() and (space.high == np.float32(0.05)).all()
+    env.reset(seed=0)
+    for _ in range(9):
+        values = env.step(FORWARD)[0]
+    assert values["pose"][0] == np.float32(0.05)
+    env.close()
+
+
+def far(world):  # noqa: ARG001
+    return [float("inf")]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"act": {"/part2_cmr/cmd_vel": {"linear.x": (1.0, 1.0)}}},
+        {"limits": {"pos": (0.0, 1.0)}},
+        {"obs": {"far": far}},
+        {"reward": lambda before, action, after: 0.0},
+        {"ended": lambda after: np.zeros((1, 2))},
+    ],
+)  # fmt: skip
+def test_mistakes_are_errors(options):
+    with raises(BATCH_INVALID):
+        env = Env(task(**options))
+        env.reset()
+        env.step(FORWARD)
+
+
+def test_variations_start_from_the_values_of_the_file(job):
+    from cartwheel.batch import Batch
+
+    change = vary("rosbots", mass=(2.0, 2.0), friction=(0.3, 0.3), light=(0.5, 0.5),
+                  damping=(3.0, 3.0), pose={"x": (1.0, 1.0)})  # fmt: skip
+    batch = Batch(job.built, 1, act={}, obs={"pose": pose}, vary=change, workers=0)
+    world = batch.world(0)
+    cart = world.model("rosbots")
+    mass, damping = cart.link("base_link").mass, cart.joints["wheel_left_joint"].damping
+    light = world.light("sun").intensity
+    for _ in range(3):
+        batch.reset()
+        assert cart.link("base_link").mass == 2 * mass
+        assert cart.link("wheel_left_link").friction == (0.3, 0.3)
+        assert cart.joints["wheel_left_joint"].damping == 3 * damping
+        assert world.light("sun").intensity == 0.5 * light
+        assert cart.pose.x == pytest.approx(1.0, abs=0.01)
+    batch.close()
+    assert progress({"pose": np.zeros((1, 3))}, None, {"pose": np.ones((1, 3))}).tolist() == [1.0]
