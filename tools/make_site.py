@@ -73,6 +73,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "python/state.md",
             "python/messages.md",
             "python/save-restore.md",
+            "python/learning.md",
             "ros1.md",
             "ros2.md",
             "foxglove.md",

@@ -17,7 +17,7 @@ def pose(world: cw.World) -> list[float]:
     return [place.x, place.y, place.yaw]
 
 
-def words(world: cw.World) -> list[str]:  # noqa: ARG001
+def words(world: cw.World) -> list[str]:
     """No numbers."""
     return ["no", "numbers"]
 

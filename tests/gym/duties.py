@@ -16,7 +16,7 @@ def pose(world: cw.World) -> list[float]:
     return [place.x, place.y, place.yaw]
 
 
-def progress(before: Any, actions: Any, after: Any) -> Any:  # noqa: ARG001
+def progress(before: Any, actions: Any, after: Any) -> Any:
     """Movement along x, m."""
     return after["pose"][:, 0] - before["pose"][:, 0]
 

@@ -102,6 +102,39 @@ def test_a_vector_repeats_single_environments(job, workers):
     assert over.all()
 
 
+@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.DISABLED])
+def test_other_ways_to_start_the_next_episode(job, mode):
+    """The observations of the next episode come one step earlier, or on demand."""
+    n, actions = 2, np.tile(FORWARD, (2, 1))
+    usual, other = (VectorEnv(job, n, workers=0, autoreset=each) for each in
+                    (AutoresetMode.NEXT_STEP, mode))  # fmt: skip
+    for vector in (usual, other):
+        vector.reset(seed=4)
+    episodes = 0
+    for _ in range(24):
+        values, *rest, _ = usual.step(actions)
+        same, *other_rest, infos = other.step(actions)
+        over = rest[1] | rest[2]
+        for one, two in zip(rest, other_rest, strict=True):
+            assert np.array_equal(one, two)
+        if over.any() and mode is AutoresetMode.SAME_STEP:
+            assert np.array_equal(infos["_final_obs"], over)
+            for index in np.flatnonzero(over):
+                assert np.array_equal(infos["final_obs"][index]["pose"], values["pose"][index])
+            assert not (over & ~np.any(same["pose"] != values["pose"], axis=1)).any()
+        elif over.any():
+            assert np.array_equal(same["pose"], values["pose"])
+            other.reset(options={"reset_mask": over})
+        episodes += int(over.sum())
+        if over.any():
+            # All start together, so that both are at the same step again.
+            for vector in (usual, other):
+                vector.reset(seed=10 + episodes)
+    assert episodes >= 4
+    for vector in (usual, other):
+        vector.close()
+
+
 def test_the_gymnasium_wrappers_accept_a_vector(job):
     from gymnasium.wrappers.vector import RecordEpisodeStatistics
 
@@ -127,7 +160,7 @@ def test_limits_are_those_of_the_space():
     env.close()
 
 
-def far(world):  # noqa: ARG001
+def far(world):
     return [float("inf")]
 
 

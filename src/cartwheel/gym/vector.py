@@ -21,13 +21,15 @@ _SEEDS = 2**31
 class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
     """Worlds as environments of Gymnasium, in several processes.
 
-    Environment i behaves as an `Env` that was reset with the seed i higher. An environment whose
-    episode has ended starts a new one in the next step, and ignores the action of this step
-    (`AutoresetMode.NEXT_STEP`).
+    Environment i behaves as an `Env` that was reset with the seed i higher.
 
     Args:
         task: What is learned.
         n: Number of environments.
+        autoreset: When an environment whose episode has ended starts the next one: with
+            ``NEXT_STEP`` in the next step, which ignores its action; with ``SAME_STEP`` at once,
+            and the last observations are in the infos as ``final_obs``; with ``DISABLED`` when
+            `reset` is called with the option ``reset_mask``.
         workers: As for `cartwheel.batch.Batch`.
         start_method: As for `cartwheel.batch.Batch`.
 
@@ -35,15 +37,18 @@ class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
         CartwheelError: The task is invalid.
     """
 
-    metadata: dict[str, Any] = {  # noqa: RUF012 - as in Gymnasium
-        "render_modes": [],
-        "autoreset_mode": AutoresetMode.NEXT_STEP,
-    }
-
     def __init__(
-        self, task: Task, n: int, *, workers: int | None = None, start_method: Method = "spawn"
+        self,
+        task: Task,
+        n: int,
+        *,
+        autoreset: AutoresetMode = AutoresetMode.NEXT_STEP,
+        workers: int | None = None,
+        start_method: Method = "spawn",
     ) -> None:
         self.task, self.num_envs = task, n
+        self.metadata = {"render_modes": [], "autoreset_mode": autoreset}
+        self._autoreset = autoreset
         self._batch = Batch(
             task.built, n, act=task.fields(), obs=task.obs, period=task.period, vary=task.vary,
             workers=workers, start_method=start_method,
@@ -61,26 +66,28 @@ class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
         self,
         *,
         seed: int | Sequence[int | None] | None = None,
-        options: dict[str, Any] | None = None,  # noqa: ARG002 - Gymnasium's
+        options: dict[str, Any] | None = None,
     ) -> tuple[dict[str, Any], dict[str, Any]]:
         """Starts an episode in each environment.
 
         Args:
             seed: Seed of the first environment, or of each one; None continues.
-            options: Not used.
+            options: With ``reset_mask``, an array of bool of shape (n,), only these environments
+                start an episode.
         """
         given: Sequence[int | None]
         if seed is None or isinstance(seed, int):
             given = [None if seed is None else seed + index for index in range(self.num_envs)]
         else:
             given = seed
-        for index, each in enumerate(given):
-            if each is not None:
-                self._randoms[index] = np.random.default_rng(each)
-        self._steps[:], self._over[:] = 0, False
-        self._values = self.task.limited(
-            self._batch.reset(seeds=[self._draw(index) for index in range(self.num_envs)])
-        )
+        mask = (options or {}).get("reset_mask")
+        chosen = [index for index in range(self.num_envs) if mask is None or mask[index]]
+        for index in chosen:
+            own = given[index]
+            if own is not None:
+                self._randoms[index] = np.random.default_rng(own)
+        self._values = {name: each.copy() for name, each in self._values.items()}
+        self._start(chosen)
         return self._copied(), {}
 
     def step(self, actions: Any) -> tuple[dict[str, Any], Any, Any, Any, dict[str, Any]]:
@@ -88,14 +95,11 @@ class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
         table = np.asarray(actions, dtype=float)
         rewards = np.zeros(self.num_envs)
         ended = np.zeros(self.num_envs, dtype=bool)
-        going = [index for index in range(self.num_envs) if not self._over[index]]
-        over = [index for index in range(self.num_envs) if self._over[index]]
+        waits = self._over if self._autoreset is AutoresetMode.NEXT_STEP else self._over & False
+        going = [index for index in range(self.num_envs) if not waits[index]]
         before = self._values
         self._values = {name: each.copy() for name, each in before.items()}
-        if over:
-            seeds = [self._draw(index) for index in over]
-            self._put(over, self._batch.reset(which=over, seeds=seeds))
-            self._steps[over] = 0
+        self._start(np.flatnonzero(waits).tolist())
         if going:
             self._put(going, self._batch.step(table[going], which=going))
             self._steps[going] += 1
@@ -104,14 +108,25 @@ class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
             )
         late = self._steps >= self.task.steps
         self._over = ended | late
-        return self._copied(), rewards, ended, late, {}
+        infos: dict[str, Any] = {}
+        if self._autoreset is AutoresetMode.SAME_STEP:
+            over = np.flatnonzero(self._over).tolist()
+            for index in over:
+                last = {name: each[index].copy() for name, each in self._values.items()}
+                infos = self._add_info(infos, {"final_obs": last, "final_info": {}}, index)
+            self._start(over)
+        return self._copied(), rewards, ended, late, infos
+
+    def _start(self, chosen: list[int]) -> None:
+        """Starts an episode in some environments."""
+        if chosen:
+            seeds = [int(self._randoms[index].integers(_SEEDS)) for index in chosen]
+            self._put(chosen, self._batch.reset(which=chosen, seeds=seeds))
+            self._steps[chosen], self._over[chosen] = 0, False
 
     def close_extras(self, **_: Any) -> None:
         """Closes all worlds and ends all processes."""
         self._batch.close()
-
-    def _draw(self, index: int) -> int:
-        return int(self._randoms[index].integers(_SEEDS))
 
     def _put(self, rows: Any, values: Values) -> None:
         for name, each in self.task.limited(values).items():
