@@ -175,3 +175,11 @@ def test_sees_a_colour_that_is_shaded():
             assert "the most similar colour was" in raised.value.actual
         with raises(VALUE_INVALID, name="color"):
             sees(cart, topic, color=(255, 0, 0))
+
+
+@pytest.mark.wording
+def test_a_position_of_almost_zero_has_no_sign(cart):
+    cart.pose = cw.Pose((-1e-5, -1e-5, 0.0))
+    with pytest.raises(UnmetError) as raised:
+        reaches(cart, (5.0, 0.0), timeout=0.1)
+    assert "x = 0.000, y = 0.000" in raised.value.actual

@@ -161,7 +161,9 @@ class Bench:
             if self.world.session.simulation.moves(name) or name in self._robots:
                 pose = self.world.model(name).pose
                 x, y, z = pose.position
-                lines.append(f"{name}: x {x:.3f}, y {y:.3f}, z {z:.3f} m, yaw {pose.yaw:.3f} rad")
+                lines.append(
+                    f"{name}: x {x:z.3f}, y {y:z.3f}, z {z:z.3f} m, yaw {pose.yaw:z.3f} rad"
+                )
         return "\n".join(lines)
 
     def _diagnostics(self) -> str:

@@ -130,8 +130,8 @@ class Reaches(Condition):
         )
         return (
             f"the closest approach was {self.closest:.3g} m{turn} at {self.closest_time:.3f} s; "
-            f"the last pose was x = {x:.3f}, y = {y:.3f}, z = {z:.3f} m, "
-            f"yaw = {self._last.yaw:.3f} rad"
+            f"the last pose was x = {x:z.3f}, y = {y:z.3f}, z = {z:z.3f} m, "
+            f"yaw = {self._last.yaw:z.3f} rad"
         )
 
     @property
