@@ -131,6 +131,9 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
             yield Fault(test="controller", subject=name, reason=refused[name])
     if verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
         return
+    if verdict.failure is not None and verdict.controllers:
+        # The simulation stopped before the controllers were tested.
+        return
     wheels = any(joint.type == "continuous" for joint in description.joints)
     lost = _coded(said, frozenset({files.INCLUDE_ABSENT}))
     if lost is not None and wheels and not verdict.movers:

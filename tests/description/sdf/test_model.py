@@ -673,6 +673,25 @@ def test_errors(inside, code):
     assert caught.value.origin.line >= 2
 
 
+@pytest.mark.parametrize(("kind", "loads"), [("fixed", True), ("revolute", False)])
+def test_a_link_on_a_fixed_joint_may_have_a_mass_of_zero(kind, loads):
+    """As in gz-sim, which attaches it to the other link."""
+    moments = "".join(f"<i{axes}>0</i{axes}>" for axes in ("xx", "yy", "zz", "xy", "xz", "yz"))
+    inertial = f"<inertial><mass>0</mass><inertia>{moments}</inertia></inertial>"
+    text = f'<link name="a"/><link name="b">{inertial}</link><joint name="j" type="{kind}">{ENDS}'
+    text += "<axis><xyz>0 0 1</xyz></axis></joint>"
+    if not loads:
+        with pytest.raises(DescriptionError) as caught:
+            robot(text)
+        assert named(caught.value) == "mass-not-positive"
+        return
+    found = robot(text)
+    (warning,) = [each for each in found.diagnostics if named(each) == "mass-not-positive"]
+    assert warning.severity == "warning"
+    assert found.mass == pytest.approx(1.0)
+    assert found.links[1].inertial is None
+
+
 def test_reversed_limits_have_no_effect():
     limits = "<axis><limit><lower>1</lower><upper>0</upper></limit></axis>"
     found = robot(BAD_JOINT.format("revolute", ENDS + limits))

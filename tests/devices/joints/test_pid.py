@@ -56,6 +56,9 @@ def test_the_derivative_gain_of_a_velocity_acts_on_the_target():
     # On the joint's velocity, it would act as an inertia, one step late.
     assert pid.velocity(1.0, 5.0, 0.01).effort == 0.0
     assert pid.velocity(1.5, 5.0, 0.01).effort == pytest.approx(2.0 * 0.5 / 0.01)
+    # A joint with an inertia of 3 reaches 2/5 of the change: 2 (Δ - v) = 3 v.
+    effort = pid.velocity(2.0, 5.0, 0.01, lightness=1 / 3).effort
+    assert effort * 0.01 / 3 == pytest.approx(2.0 / 5.0 * 0.5)
 
 
 @pytest.mark.parametrize(("inertia", "damping"), [(1.0, 0.2), (1e-3, 0.2 + 10 * 0.01)])

@@ -5,6 +5,7 @@ from tests.dialects.ros_control.arms import ROS1, beam, robot, ros2_joint, ros2_
 from tests.dialects.ros_control.arms import ros2_system as system
 
 from cartwheel.description import load_robot
+from cartwheel.dialects.ros_control.selection import selection_near
 from cartwheel.dialects.ros_control.suggestion import suggested
 
 ROS1_FILE = """
@@ -130,3 +131,27 @@ def test_a_file_for_other_joints_is_not_offered(workspace, joints):
     )
     text = robot(beam("beam", "world") + system(ros2_joint("beam_joint")), ros2_plugin())
     assert "others.yaml" not in names(workspace, text)
+
+
+@pytest.mark.parametrize("commands", [False, True])
+def test_a_launch_file_of_another_part_counts_if_it_starts_controllers_of_the_joints(
+    workspace, commands
+):
+    """Many packages start the controller that publishes all joint states in a file of its own."""
+    bringup = workspace / "arm_bringup"
+    (bringup / "config" / "states.yaml").write_text(
+        "s:\n  type: joint_state_controller/JointStateController\n"
+    )
+    (bringup / "launch").mkdir()
+    loads = "".join(
+        f'<rosparam file="$(find arm_bringup)/config/{name}.yaml"/>'
+        for name in ["states"] + ["one"] * commands
+    )
+    (bringup / "launch" / "states.launch").write_text(
+        f'<launch>{loads}<node name="n" pkg="controller_manager" type="spawner" args="s"/></launch>'
+    )
+    path = workspace / "arm_description" / "arm.urdf"
+    path.write_text(robot(beam("beam", "world") + transmission("beam_joint", "Position"), ROS1))
+    selected = selection_near(load_robot(path))
+    assert {file.name for file in selected.files} == {"states.yaml", "one.yaml"}
+    assert selected.names == (("s",) if commands else ())

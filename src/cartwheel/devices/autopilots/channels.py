@@ -129,7 +129,9 @@ class Channel(Component):
         assert joint is not None
         velocity = joint.velocity
         if self.config.kind == "velocity":
-            effort = pid.velocity(command / self.config.slowdown, velocity, seconds)
+            effort = pid.velocity(
+                command / self.config.slowdown, velocity, seconds, joint.lightness
+            )
         else:
             most = self.config.most_error
             error = min(max(command - joint.position, -most), most)

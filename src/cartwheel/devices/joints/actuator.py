@@ -246,7 +246,7 @@ class JointActuator:
         if pid is None:
             self._servo.command_velocity(target)
         else:
-            command = pid.velocity(target, self.velocity, seconds)
+            command = pid.velocity(target, self.velocity, seconds, self.lightness)
             self._servo.command_effort(*command)
 
     def _write_effort(self, seconds: float) -> None:

@@ -152,21 +152,24 @@ def position_effort(
 
 
 def velocity_effort(
-    gains: PidGains, target: Number, integral: Number, change: Number
+    gains: PidGains, target: Number, integral: Number, change: Number, lightness: Number = 0.0
 ) -> DampedEffort:
     """Returns the effort for a target velocity.
 
     The derivative gain acts on the target only. The derivative of the measured velocity would act
     as an inertia, one step late. If it exceeded the joint's own inertia, the oscillation would grow
-    at any step size.
+    at any step size. With both inertias, I and d, a jump of the target by v changes the velocity by
+    d v / (I + d).
 
     Args:
         gains: The gains. The proportional gain acts as damping.
         target: Target velocity, rad/s or m/s.
         integral: The stored integral.
         change: Rate of change of the target, rad/s² or m/s².
+        lightness: Acceleration of the joint per effort, 1 / I.
     """
-    effort = gains.p * target + integral_term(gains, integral) + gains.d * change
+    jump = gains.d * change / (1.0 + max(gains.d, 0.0) * lightness)
+    effort = gains.p * target + integral_term(gains, integral) + jump
     return DampedEffort(effort, gains.p)
 
 
@@ -233,11 +236,16 @@ class Pid:
             effort, d = effort + p * seconds * rate, d + p * seconds
         return _damped((effort, d))
 
-    def velocity(self, target: float, velocity: float, seconds: float) -> DampedEffort:
-        """Returns the effort for a target velocity and a measured velocity, rad/s or m/s."""
+    def velocity(
+        self, target: float, velocity: float, seconds: float, lightness: float = 0.0
+    ) -> DampedEffort:
+        """Returns the effort for a target velocity and a measured velocity, rad/s or m/s.
+
+        `lightness` is the acceleration of the joint per effort; see `velocity_effort`.
+        """
         change = self._change(target, seconds)
         self._integral = integrate(self.gains, self._integral, target - velocity, seconds)
-        return velocity_effort(self.gains, target, self._integral, change)
+        return velocity_effort(self.gains, target, self._integral, change, lightness)
 
     def effort(self, error: float, seconds: float) -> float:
         """Returns the limited effort in N m or N for an error; see `plain_effort`."""

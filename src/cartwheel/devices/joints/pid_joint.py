@@ -55,7 +55,7 @@ class PidJoint:
         velocity = state.velocity
         if self.config.quantity == "velocity":
             error = target - velocity
-            command = self._pid.velocity(target, velocity, seconds)
+            command = self._pid.velocity(target, velocity, seconds, state.lightness)
         else:
             if joint.type != "continuous":
                 # Comparisons take a quarter of the time of `clamp`.
@@ -175,7 +175,9 @@ class PidLoop:
                 lightness=joint.lightness if config.damped else 0.0,
             )
         else:
-            command, speed = self._pid.velocity(reference, measured, seconds), measured
+            lightness = joint.lightness if config.damped else 0.0
+            command = self._pid.velocity(reference, measured, seconds, lightness)
+            speed = measured
         speed = speed if math.isfinite(speed) else 0.0
         command = self._pid.limited(command, speed)
         ahead = rate if len(self._references) > 1 else reference

@@ -57,6 +57,7 @@ class TrajectoryGoals(Component):
         reader: Reads the trajectories.
         joints: The joints, for feedback.
         running: Whether goals are accepted.
+        started: Whether the controller has started. Goals that arrive earlier wait until then.
     """
 
     def __init__(
@@ -68,12 +69,15 @@ class TrajectoryGoals(Component):
         reader: TrajectoryReader,
         joints: Sequence[JointActuator],
         running: Callable[[], bool],
+        started: Callable[[], bool],
     ) -> None:
         super().__init__(scope)
         self._config = config
         self._follower, self._reader = follower, reader
         self._joints = list(joints)
-        self._running = running
+        self._running, self._started = running, started
+        self._early: list[Goal] = []
+        """Goals that arrived before the start of the controller."""
         self._monitor = Periodic(config.monitor_rate)
         self._active: Goal | None = None
         self._path, self._goal = list(config.tolerances.path), list(config.tolerances.goal)
@@ -87,13 +91,24 @@ class TrajectoryGoals(Component):
         )
 
     def start(self, time_ns: int) -> None:
-        """Starts the feedback and the status, and aborts a goal of the time before."""
+        """Starts the feedback and the status, and follows goals that arrived before.
+
+        A goal of the time before a restart is aborted.
+        """
         self._monitor.start(time_ns)
         self._action.start(time_ns)
         self._finish("abort", INVALID_GOAL, "the controller was restarted")
+        early, self._early = self._early, []
+        for goal in early:
+            if not goal.done:
+                self._take(goal)
 
     def stop(self) -> None:
         """Ends the goal because the controller stops."""
+        early, self._early = self._early, []
+        for goal in early:
+            if not goal.done:
+                self._refuse(goal, "the controller was stopped")
         self._finish(self._config.preempted, INVALID_GOAL, "the controller was stopped")
 
     def tick(self, time_ns: int) -> None:
@@ -138,13 +153,20 @@ class TrajectoryGoals(Component):
             self._follower.hold(time_ns)
 
     def _on_goal(self, goal: Goal) -> None:
-        time_ns = self.part.time_ns
         if not self._running():
-            goal.reject(
-                self._result(INVALID_GOAL, "the controller is not running"),
-                "the controller is not running",
-            )
-            return
+            self._refuse(goal, "the controller is not running")
+        elif not self._started():
+            # It starts at its next update, from the positions of that time.
+            self._early.append(goal)
+        else:
+            self._take(goal)
+
+    def _refuse(self, goal: Goal, text: str) -> None:
+        goal.reject(self._result(INVALID_GOAL, text), text)
+
+    def _take(self, goal: Goal) -> None:
+        """Follows the trajectory of a goal, or rejects the goal."""
+        time_ns = self.part.time_ns
         try:
             if goal.goal.multi_dof_trajectory.points:
                 raise InvalidTrajectoryError(

@@ -15,7 +15,7 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
-from cartwheel.dialects.ros_control.suggestion import suggested
+from cartwheel.dialects.ros_control.suggestion import commanding, suggested
 from cartwheel.errors import PluginError
 
 
@@ -70,6 +70,9 @@ def selection(
     """
     starter = controllers_for(Path(robot.origin.file), use, launches)
     named = suggested(robot, among=starter.controllers) if starter is not None else []
+    if starter is not use and not commanding(robot, named):
+        # The launch file of another part only publishes the states of all joints.
+        starter, named = None, []
     files = tuple(each for each in named or suggested(robot) if _is_complete(each, robot))
     names = starter.spawned if starter is not None and (named or not files) else ()
     return Selection(files=files, names=names)

@@ -68,6 +68,12 @@ def suggested(robot: RobotDescription, among: Sequence[Path] | None = None) -> l
     return files_for(Path(robot.origin.file), joints, ros2=ros2)
 
 
+def commanding(robot: RobotDescription, among: Sequence[Path]) -> bool:
+    """Whether one of the files contains controllers for a robot's joints."""
+    joints = [each.name for each in robot.joints if each.type != "fixed"]
+    return any(named for ros2 in (False, True) for _, named in _fitting(among, joints, ros2=ros2))
+
+
 def lacks_controllers(robot: RobotDescription) -> bool:
     """Whether the robot has a controller manager whose tag contains no existing file."""
     managers = [tag for tag in robot.plugins if _manager(tag)]

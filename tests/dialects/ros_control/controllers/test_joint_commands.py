@@ -300,3 +300,25 @@ def test_a_file_s_controllers_may_stand_under_the_root_s_name(bench, root):
     made.world.run(2.0)
     # A spring of 500 N m/rad under the weight of the beam.
     assert made.position("beam_joint") == pytest.approx(0.3, abs=WEIGHT / 500)
+
+
+@pytest.mark.parametrize("d", [0.5, 5.0])
+def test_the_derivative_gain_of_a_velocity_does_not_overshoot(bench, d):
+    """A change of the command moves the joint by d / (J + d) of it at once, and p does the rest."""
+    limit = 'lower="-30" upper="30" effort="1e5" velocity="100"'
+    made = bench(
+        one("Effort", axis="0 0 1", limit=limit),
+        controller("effort_controllers/JointVelocityController", pid={"p": 2.0, "d": d}),
+    )
+    made.world.run(0.1)
+    made.publish("/c/command", "std_msgs/msg/Float64", data=1.0)
+    joint = made.world.session.simulation
+    speeds = []
+    for _ in range(400):
+        made.world.run(0.005)
+        joint.refresh()
+        speeds.append(float(joint.data.qvel[0]))
+    jump = next(each for each in speeds if each > 0)
+    assert jump == pytest.approx(d / (TURNED + d), abs=0.03)
+    assert max(speeds) <= 1.001
+    assert speeds[-1] == pytest.approx(1.0, abs=0.01)

@@ -70,6 +70,36 @@ def test_joints_are_where_the_trajectory_says_at_each_time(arm):
     assert max(off) < 0.01
 
 
+@pytest.mark.parametrize("earlier", [False, True])
+def test_a_goal_that_is_sent_before_the_first_step_is_followed(bench, earlier):
+    made = bench(urdf(), controllers())
+    box = made.box("/arm_controller/follow_joint_trajectory/result")
+    if earlier:
+        send(made, point(1.0, 0.4, 0.4, velocities=[0.0, 0.0]), identity="zero")
+    send(made, point(1.0, 0.0, 0.8, velocities=[0.0, 0.0]))
+    made.world.run(1.2)
+    followed = [("zero", PREEMPTED, 0)] if earlier else []
+    assert results(box) == [*followed, ("one", SUCCEEDED, 0)]
+    assert made.position("a_joint") == pytest.approx(0.8, abs=0.005)
+
+
+def test_a_goal_before_the_first_step_is_rejected_if_the_controller_stops(bench):
+    made = bench(urdf(), controllers())
+    box = made.box("/arm_controller/follow_joint_trajectory/result")
+    send(made, point(1.0, 0.0, 0.8, velocities=[0.0, 0.0]))
+    made.call(
+        "/controller_manager/switch_controller",
+        start_controllers=[],
+        stop_controllers=["arm_controller"],
+        strictness=2,
+        start_asap=False,
+        timeout=0.0,
+    )
+    made.world.run(0.5)
+    assert [(name, status) for name, status, _ in results(box)] == [("one", REJECTED)]
+    assert made.position("a_joint") == pytest.approx(0.0, abs=0.01)
+
+
 def test_a_new_goal_takes_the_place_of_the_old_one_without_a_jump(arm):
     send(arm, point(1.0, 0.0, 1.0, velocities=[0.0, 0.0]), identity="one")
     arm.world.run(0.5)

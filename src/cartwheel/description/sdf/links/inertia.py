@@ -50,6 +50,16 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
     i = link.inertial
     if i is None:
         return None
+    if i.mass == 0 and rigid and not any((*i.diagonal, *i.products)):
+        ctx.warn(
+            MASS_NOT_POSITIVE,
+            f'the mass of link "{link.name}" is 0. Gazebo Classic does not load such a model; '
+            "Cartwheel and gz-sim attach the link to another one without a mass",
+            origin=i.origin,
+            severity="warning",
+            values={"link": link.name, "stated": 0.0},
+        )
+        return None
     if not 0 < i.mass <= HEAVIEST:
         raise DescriptionError(
             f'the mass of link "{link.name}" must be above 0 and at most {HEAVIEST:g} kg '

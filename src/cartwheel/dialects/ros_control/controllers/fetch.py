@@ -32,21 +32,11 @@ class FetchTrajectoryController(JointTrajectoryController):
 
     parameters = FetchTrajectoryParameters
 
-    _awake = False
-
     def accepts_goals(self) -> bool:
         """Starts the controller, so that each goal is accepted."""
         if not self.running:
             self.robot.take_over(self.name)
-            # The goal must not be lost when the manager starts the controller at its next update.
-            super().start(self.part.time_ns)
-            self._awake = True
         return self.running
-
-    def start(self, time_ns: int) -> None:
-        if not self._awake:
-            super().start(time_ns)
-        self._awake = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

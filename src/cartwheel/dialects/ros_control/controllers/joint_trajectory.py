@@ -174,6 +174,7 @@ class JointTrajectoryController(Controller):
                 reader=self._reader,
                 joints=self._joints,
                 running=self.accepts_goals,
+                started=lambda: self.started,
             )
         )
         self._state = self.advertise(
