@@ -2,11 +2,11 @@
 
 import ast
 import socket
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 import cartwheel as cw
 from cartwheel import options
@@ -80,7 +80,7 @@ def test_the_program_names_its_flags(tmp_path, busy):
 
     def printed(*words: str) -> str:
         command = [sys.executable, "-m", "cartwheel.cli.main", "run", "--headless", *words]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        done = launching.run(command, capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 2
         return done.stderr
 

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 import cartwheel as cw
 from cartwheel.codes.command import SIMULATION_AMBIGUOUS
@@ -16,7 +17,7 @@ PROGRAM = Path(sys.executable).with_name("cartwheel")
 
 
 def cartwheel(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
+    return launching.run(
         [PROGRAM, *words], check=False, capture_output=True, text=True, timeout=120
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import fcntl
 import json
 import os
 import shutil
@@ -48,8 +49,12 @@ def modules() -> Path | str:
     home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     folder = home / "cartwheel-tests" / "foxglove"
     stamp = folder / "modules.txt"
-    if not stamp.exists() or stamp.read_text() != " ".join(MODULES):
-        folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w") as lock:
+        # Another process may be fetching them.
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if stamp.exists() and stamp.read_text() == " ".join(MODULES):
+            return folder / "node_modules"
         run = subprocess.run(
             ["npm", "install", "--no-audit", "--no-fund", "--prefix", str(folder), *MODULES],
             capture_output=True,

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from tests import launching
 from tests.reserved import free_port
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
@@ -119,7 +120,7 @@ class Master:
 @contextlib.contextmanager
 def simulation(master: Master, *arguments: str) -> Iterator[subprocess.Popen[str]]:
     """``cartwheel run --headless --ros1``, registered."""
-    process = subprocess.Popen(
+    process = launching.Popen(
         [str(PROGRAM), "run", *arguments, "--headless", "--ros1"],
         env=master.environment,
         stdin=subprocess.DEVNULL,

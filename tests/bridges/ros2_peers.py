@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import functools
 import hashlib
 import os
@@ -36,15 +37,18 @@ def fastdds_peer() -> Path:
     digest = hashlib.sha256(SOURCE.read_bytes()).hexdigest()[:16]
     cache = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "cartwheel-tests"
     program = cache / f"fastdds_peer-{digest}"
-    if not program.exists():
-        cache.mkdir(parents=True, exist_ok=True)
+    cache.mkdir(parents=True, exist_ok=True)
+    with program.with_suffix(".lock").open("w") as lock:
+        # Another process may be building it.
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if program.exists():
+            return program
         made = program.with_suffix(f".{os.getpid()}")
         subprocess.run(
             ["g++", "-O1", "-std=c++17", SOURCE, "-o", made, "-lfastrtps", "-lfastcdr"],
             check=True,
         )
-        made.replace(program)
-    return program
+        return made.replace(program)
 
 
 class Peer:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests import launching
 from tests.bridges.foxglove_client import Client, modules, unreadable
 from tests.bridges.running import Running
 from tests.coded import coded, raises
@@ -560,7 +561,7 @@ def publishers(event: dict[str, Any], topic: str) -> list[str]:
 
 
 def test_the_command_serves(folder: Path) -> None:
-    process = subprocess.Popen(
+    process = launching.Popen(
         [PROGRAM, "run", "--headless", "--foxglove", "--foxglove-port", "0"],
         stdout=subprocess.PIPE,
         text=True,

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from tests import launching
 from tests.bridges.ros1_peers import PATIENCE, PROGRAM, REASON, Master, simulation, wait_for
 
 from cartwheel.control import Running, running
@@ -42,7 +43,7 @@ def client() -> Iterator[Client]:
     with contextlib.ExitStack() as stack:
 
         def start(environment: dict[str, str], *words: str) -> subprocess.Popen[str]:
-            made = subprocess.Popen(
+            made = launching.Popen(
                 [str(PROGRAM), "gzclient", *words],
                 env=environment,
                 stdin=subprocess.DEVNULL,
@@ -105,7 +106,7 @@ def test_each_master_has_its_own(masters: list[Master], client: Client) -> None:
 
 
 def test_a_run_without_ros_is_for_those_without(masters: list[Master], client: Client) -> None:
-    process = subprocess.Popen(
+    process = launching.Popen(
         [str(PROGRAM), "run", "--headless"],
         env={k: v for k, v in masters[0].environment.items() if k != "ROS_MASTER_URI"},
         stdin=subprocess.DEVNULL,

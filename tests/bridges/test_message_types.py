@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests import launching
 from tests.bridges import ros1_peers
 from tests.bridges.foxglove_client import Client, modules
 from tests.bridges.ros1_peers import PROGRAM, PYTHON, Master, wait_for
@@ -177,7 +178,7 @@ def start(workspace: Path, tmp_path: Path) -> Iterator[Start]:
     started: list[subprocess.Popen[str]] = []
 
     def run(*arguments: str, **environment: str) -> subprocess.Popen[str]:
-        process = subprocess.Popen(
+        process = launching.Popen(
             [
                 *(PROGRAM, "run", workspace / "src/crate_description/urdf/crate.urdf"),
                 *("--headless", "--plugin", workspace / "scale.py", *arguments),
@@ -210,7 +211,7 @@ def command(tmp_path: Path, *arguments: str) -> str:
     errors: list[str] = []
 
     def done() -> tuple[str, ...]:
-        made = subprocess.run(
+        made = launching.run(
             [PROGRAM, *arguments],
             capture_output=True,
             text=True,
@@ -285,7 +286,7 @@ def _call_with_rosservice(master: Master, tmp_path: Path, manifest: str) -> str:
         (made / kind).mkdir(parents=True)
         program = [PYTHON, f"/usr/lib/genpy/{generator}"]
         for name in files:
-            subprocess.run(
+            launching.run(
                 [
                     *program,
                     *includes,
@@ -297,7 +298,7 @@ def _call_with_rosservice(master: Master, tmp_path: Path, manifest: str) -> str:
                 ],
                 check=True,
             )
-        subprocess.run([*program, "--initpy", "-p", PACKAGE, "-o", made / kind], check=True)
+        launching.run([*program, "--initpy", "-p", PACKAGE, "-o", made / kind], check=True)
     (made / "__init__.py").touch()
     script = f"""
 import sys
@@ -407,7 +408,7 @@ def test_recordings_contain_the_definitions(
 def test_a_malformed_file_is_reported_with_its_line(workspace: Path, tmp_path: Path) -> None:
     file = workspace / "src" / PACKAGE / "msg" / "Wheel.msg"
     file.write_text("uint8 side\nfloat65 load\n")
-    done = subprocess.run(
+    done = launching.run(
         [
             *(PROGRAM, "run", workspace / "src/crate_description/urdf/crate.urdf"),
             *("--headless", "--plugin", workspace / "scale.py", "--for", "0.1"),
@@ -436,7 +437,7 @@ def test_a_played_recording_is_read_without_the_workspace(
     output, _ = process.communicate(timeout=120)
     assert process.returncode == 0, output
     shutil.rmtree(workspace)
-    player = subprocess.Popen(
+    player = launching.Popen(
         [PROGRAM, "play", file, "--headless", "--loop"],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

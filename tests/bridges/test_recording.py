@@ -22,6 +22,7 @@ import pytest
 from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
+from tests import launching
 from tests.coded import coded, raises
 from tests.processes import bridges_of
 
@@ -111,7 +112,7 @@ def read_with_debian(path: Path, *options: str) -> dict[str, list[list[Any]]]:
         "    found[topic].append([t.to_nsec(), hashlib.md5(raw[1]).hexdigest(), raw[2]])\n"
         "print(json.dumps(found))\n"
     )
-    run = subprocess.run(
+    run = launching.run(
         [PYTHON, "-c", script, str(path), *options],
         capture_output=True,
         text=True,
@@ -494,7 +495,7 @@ _RUN = ["run", "--headless", "--speed", "max", "--for", "100000", "--record"]
 @pytest.mark.parametrize("name", NAMES)
 def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
-    process = subprocess.Popen(
+    process = launching.Popen(
         [PROGRAM, *_RUN, str(path), "--record-topics", "!*image*"],
         stdout=subprocess.DEVNULL,
     )
@@ -520,7 +521,7 @@ def test_a_kill_leaves_all_but_the_last_second(name: str, tmp_path: Path) -> Non
 def test_a_recorder_that_is_killed_early_has_the_beginning(name: str, tmp_path: Path) -> None:
     """As soon as it has handed on anything; the run says so and ends."""
     path = tmp_path / name
-    process = subprocess.Popen(
+    process = launching.Popen(
         [PROGRAM, "run", "--headless", "--record", str(path), "--record-topics", "/clock"],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
@@ -626,7 +627,7 @@ def _read_broken(name: str, path: Path) -> Found:
     if name == "drive.bag":
         if not HAS_ROSBAG:
             pytest.skip("Debian's python3-rosbag is not installed")
-        subprocess.run(["rosbag", "reindex", str(path)], check=True, capture_output=True)
+        launching.run(["rosbag", "reindex", str(path)], check=True, capture_output=True)
         for topic, rows in read_with_debian(path).items():
             found[topic] = [(time_ns, b"") for time_ns, _, _ in rows]
     elif name == "drive.db3":
@@ -659,7 +660,7 @@ def test_a_full_disk_ends_the_run_and_keeps_what_was_written(name: str, tmp_path
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))\n"
         "os.execv(sys.argv[1], sys.argv[1:])\n"
     )
-    run = subprocess.run(
+    run = launching.run(
         [sys.executable, "-c", script, str(PROGRAM), *_RUN, str(path), "--record-topics",
          "/clock /odom /imu/data"],
         capture_output=True, text=True, timeout=240, check=False,
@@ -751,7 +752,7 @@ def test_room_for_the_end_is_made_where_the_disk_has_none(
 
 
 def run_program(*arguments: str, folder: Path, status: int = 0) -> str:
-    done = subprocess.run(
+    done = launching.run(
         [PROGRAM, *arguments], cwd=folder, capture_output=True, text=True, timeout=120, check=False
     )
     assert done.returncode == status, done.stderr
@@ -789,7 +790,7 @@ def test_the_command_refuses(options: list[str], code: Code, tmp_path: Path) -> 
 
 def test_ctrl_c_completes_the_file(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
-    process = subprocess.Popen(
+    process = launching.Popen(
         [PROGRAM, "run", "--headless", "--speed", "max", "--record", str(path)],
         stdout=subprocess.PIPE,
         text=True,
@@ -863,7 +864,7 @@ def test_a_link_is_replaced_and_not_what_it_points_to(tmp_path: Path) -> None:
 def test_a_run_is_recorded_in_several_forms_at_once(tmp_path: Path) -> None:
     names = ("a b.mcap", "a.bag", "a.db3", "a")
     words = [word for name in names for word in ("--record", name)]
-    subprocess.run(
+    launching.run(
         [PROGRAM, "run", "--headless", "--speed", "max", "--for", "1", *words,
          "--record-topics", "/clock /odom"],
         cwd=tmp_path, check=True, stdout=subprocess.DEVNULL, timeout=300,
@@ -877,7 +878,7 @@ def test_a_run_is_recorded_in_several_forms_at_once(tmp_path: Path) -> None:
 
 
 def test_one_file_for_two_recordings_is_refused(tmp_path: Path) -> None:
-    done = subprocess.run(
+    done = launching.run(
         [PROGRAM, "run", "--headless", "--record", "a.mcap", "--record", "./a.mcap"],
         cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
     )  # fmt: skip

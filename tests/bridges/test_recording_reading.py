@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from rosbags.rosbag1 import Writer as Bag1Writer
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Bag2Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from tests import launching
 from tests.bridges.test_recording import (
     HAS_ROSBAG,
     PROGRAM,
@@ -212,7 +212,7 @@ def test_a_bag_of_ros_1_itself(compression: str, tmp_path: Path) -> None:
         "        b.write('/cmd_vel', t, rospy.Time.from_sec(100 + i * 0.01))\n"
     )
     path = tmp_path / "a.bag"
-    subprocess.run([PYTHON, "-c", script, str(path), compression], check=True)
+    launching.run([PYTHON, "-c", script, str(path), compression], check=True)
     recording = open_recording(path)
     (topic,) = recording.topics
     assert (topic.type, topic.count) == ("geometry_msgs/msg/Twist", 200)
@@ -294,7 +294,7 @@ def test_info_lists_a_recording(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"hello", b"\x89MCAP0\r\n", b"#ROSBAG V1.2\n"])
 def test_info_of_what_is_no_recording(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_bytes(content)
-    done = subprocess.run(
+    done = launching.run(
         [PROGRAM, "info", "a.mcap"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert "Traceback" not in done.stderr

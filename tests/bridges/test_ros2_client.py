@@ -26,17 +26,21 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def program() -> Path:
-    command = ["cargo", "build", "--quiet", "--locked"]
-    done = subprocess.run(
-        command,
+def build() -> subprocess.CompletedProcess[str]:
+    """Builds the program; a second process waits for the first."""
+    return subprocess.run(
+        ["cargo", "build", "--quiet", "--locked"],
         cwd=SOURCE,
         env={**os.environ, "CARGO_TARGET_DIR": str(TARGET)},
         capture_output=True,
         text=True,
         check=False,
     )
+
+
+@pytest.fixture(scope="module")
+def program() -> Path:
+    done = build()
     offline = ("Could not resolve host", "failed to download", "failed to get")
     if done.returncode and any(word in done.stderr for word in offline):
         pytest.skip("cargo cannot reach the crates that it needs")

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from tests import launching
 from tests.bridges.ros1_peers import PROGRAM, wait_for
 from tests.bridges.ros2_peers import DOMAIN, REASON, Peer
 from tests.bridges.test_recording import read_with_mcap
@@ -27,7 +28,7 @@ def start(tmp_path: object) -> Iterator[Start]:
     started: list[subprocess.Popen[str]] = []
 
     def run(*arguments: str) -> subprocess.Popen[str]:
-        process = subprocess.Popen(
+        process = launching.Popen(
             [PROGRAM, "run", "--headless", "--ros2", *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 CART_TOPIC = "/part2_cmr/cmd_vel"
@@ -29,7 +30,7 @@ class Program:
         self, *arguments: str | Path, stdin: str = "", timeout: float = 200, status: int | None = 0
     ) -> subprocess.CompletedProcess[str]:
         """Runs a command to its end and expects its status."""
-        done = subprocess.run(
+        done = launching.run(
             [PROGRAM, *map(str, arguments)],
             input=stdin,
             capture_output=True,
@@ -46,7 +47,7 @@ class Program:
 
     def start(self, *arguments: str | Path, **options: object) -> subprocess.Popen[str]:
         """Starts a command and leaves it running."""
-        process = subprocess.Popen(
+        process = launching.Popen(
             [PROGRAM, *map(str, arguments)],
             stdin=options.pop("stdin", subprocess.DEVNULL),
             stdout=options.pop("stdout", subprocess.PIPE),

@@ -1,10 +1,10 @@
 """What is printed does nothing to the terminal, whatever strangers named their things."""
 
 import os
-import subprocess
 import sys
 
 import pytest
+from tests import launching
 
 from cartwheel.cli import console
 
@@ -44,7 +44,7 @@ def test_a_name_that_is_no_utf8_is_printed(tmp_path):
 
 
 def cartwheel(*words):
-    return subprocess.run(
+    return launching.run(
         [sys.executable, "-m", "cartwheel.cli.main", *words],
         check=False,
         capture_output=True,

@@ -3,11 +3,11 @@
 import json
 import pickle
 import re
-import subprocess
 import sys
 from importlib import resources
 
 import pytest
+from tests import launching
 
 from cartwheel import codes, errors
 from cartwheel.codes import MODULES, all_codes, code_named, codes_of, explanation
@@ -73,7 +73,7 @@ def test_errors_keep_everything_on_their_way_to_another_process():
 def test_the_command_explains_lists_and_writes_json():
     def run(*words):
         command = [sys.executable, "-m", "cartwheel.cli.main", "explain", *words]
-        return subprocess.run(command, check=False, capture_output=True, text=True)
+        return launching.run(command, check=False, capture_output=True, text=True)
 
     code = code_named("CW204")
     assert run("wheel-separation-mismatch").stdout.startswith(f"# {code}\n\n{explanation(code)}")

@@ -5,6 +5,7 @@ import sys
 from unittest.mock import Mock
 
 import pytest
+from tests import launching
 from tests.coded import raises
 
 from cartwheel.codes.command import CONTROL_LIMIT
@@ -40,7 +41,7 @@ sys.stdin.read()
 
 
 def test_a_killed_process_leaves_a_stop(server, commands, eventually):
-    with subprocess.Popen(
+    with launching.Popen(
         [sys.executable, "-c", PROGRAM], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as process:
         assert process.stdout.readline() == b"published\n"

@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 from .pages import PAGES, ROOT, Command, blocks, commands
 
@@ -85,8 +86,10 @@ class Reader:
         shutil.copytree(source, self.folder)
 
     def _popen(self, text: str) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            ["bash", "-c", f"exec {text}"],
+        # Of a command in a shell, the shell would get the signals.
+        words = launching.shell(text)
+        return launching.Popen(
+            words if words[0] != "bash" else ["bash", "-c", f"exec {text}"],
             cwd=self.folder,
             env=self._environment,
             stdin=subprocess.DEVNULL,
@@ -147,8 +150,8 @@ class Reader:
     def _ask(self, command: Command) -> None:
         deadline = time.monotonic() + PATIENCE
         while True:
-            done = subprocess.run(
-                ["bash", "-c", f"set -o pipefail; {command.text}"],
+            done = launching.run(
+                launching.shell(command.text),
                 cwd=self.folder,
                 env=self._environment,
                 stdin=subprocess.DEVNULL,

@@ -1,13 +1,13 @@
 """The plugin reference says what the code does."""
 
 import contextlib
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from tests import launching
 
 from cartwheel.dialects.catalogue import all_plugins
 from cartwheel.dialects.plugin import Plugin
@@ -18,7 +18,7 @@ PLUGINS = [each for each in all_plugins() if each.__module__.startswith("cartwhe
 
 def test_the_reference_is_up_to_date() -> None:
     script = ROOT / "tools" / "make_plugin_reference.py"
-    done = subprocess.run(
+    done = launching.run(
         [sys.executable, str(script), "--check"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr

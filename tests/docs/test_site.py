@@ -2,13 +2,13 @@
 
 import os
 import re
-import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 import typer
+from tests import launching
 
 import cartwheel
 from cartwheel.cli.app import app
@@ -111,7 +111,7 @@ def test_each_option_of_each_command_is_on_its_page(staged: Path) -> None:
 
 def test_the_page_of_a_command_has_the_groups_of_its_help(staged: Path) -> None:
     page = (staged / "docs" / "commands" / "run.md").read_text()
-    shown = subprocess.run(
+    shown = launching.run(
         [sys.executable, "-m", "cartwheel.cli.main", "run", "--help"],
         capture_output=True,
         text=True,
@@ -147,8 +147,8 @@ def test_the_commands_of_written_pages_work(staged: Path) -> None:
     for name in site_pages.pages():
         if not name.startswith("codes/CW"):
             for command in shown_commands(staged / "docs" / name):
-                words = ["bash", "-c", command.text]
-                subprocess.run(words, check=True, env={**os.environ, "PATH": path})
+                words = launching.shell(command.text)
+                launching.run(words, check=True, env={**os.environ, "PATH": path})
                 ran.append(command.text)
     assert "cartwheel explain CW204" in ran
 

@@ -1,10 +1,10 @@
 """What pages quote is what the files say, and the Python they show runs."""
 
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 from .pages import DOCS, PAGES, ROOT, STEPS, Block, blocks
 
@@ -70,7 +70,7 @@ def test_the_examples_are_numbered_from_one() -> None:
 
 
 def run(script: Path, folder: Path) -> None:
-    done = subprocess.run(
+    done = launching.run(
         [sys.executable, str(script)],
         cwd=folder,
         capture_output=True,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests import launching
 from tests.bridges.test_recording_reading import COUNT, WRITERS
 from tests.coded import raises
 
@@ -217,14 +218,14 @@ def test_an_empty_recording_is_told(tmp_path: Path) -> None:
 
 
 def test_clients_reach_it(drives: Callable[[str], Drive], tmp_path: Path) -> None:
-    process = subprocess.Popen(
+    process = launching.Popen(
         [PROGRAM, "play", drives("drive.mcap").path, "--headless", "--loop"],
         stdout=subprocess.PIPE,
         text=True,
     )
 
     def command(*words: str) -> str:
-        done = subprocess.run(
+        done = launching.run(
             [PROGRAM, *words, "--sim", str(process.pid)],
             capture_output=True,
             text=True,
@@ -289,7 +290,7 @@ def test_an_incomplete_recording_is_played_with_a_warning(
     for name, content, warned in (("cut", whole[: len(whole) // 2], True), ("whole", whole, False)):
         path = tmp_path / f"{name}.mcap"
         path.write_bytes(content)
-        done = subprocess.run(
+        done = launching.run(
             [PROGRAM, "play", path, "--headless", "--speed", "max"],
             capture_output=True,
             text=True,

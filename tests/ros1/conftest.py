@@ -38,22 +38,26 @@ class Overlay:
         return ROOT / "ros1" / "devel" / "lib" / package / name
 
 
-@pytest.fixture(scope="session", autouse=True)
-def overlay() -> Overlay:
-    if shutil.which("catkin_make") is None:
-        pytest.skip("catkin is not installed (tools/setup.sh ros1 does it)")
+def build() -> subprocess.CompletedProcess[str]:
+    """Builds the overlay; a second process waits for the first."""
     venv = Path(sys.executable).parent.parent
     (ROOT / "ros1" / "build").mkdir(exist_ok=True)
     with (ROOT / "ros1" / "build" / "tests.lock").open("w") as lock:
-        # Another process of the same run may be building it.
         fcntl.flock(lock, fcntl.LOCK_EX)
-        built = subprocess.run(
+        return subprocess.run(
             [ROOT / "tools" / "build_ros1.sh"],
             env={**os.environ, "VENV": str(venv)},
             capture_output=True,
             text=True,
             check=False,
         )
+
+
+@pytest.fixture(scope="session", autouse=True)
+def overlay() -> Overlay:
+    if shutil.which("catkin_make") is None:
+        pytest.skip("catkin is not installed (tools/setup.sh ros1 does it)")
+    built = build()
     assert built.returncode == 0, built.stderr
     kept = {key: os.environ[key] for key in ("HOME", "LANG", "USER") if key in os.environ}
     shell = subprocess.run(

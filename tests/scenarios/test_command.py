@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from tests import launching
 
 from cartwheel.cli.main import run as run_command
 from cartwheel.scenarios import schema_text
@@ -155,7 +156,7 @@ def test_a_case_that_takes_too_long_is_ended(command):
 def test_ctrl_c_keeps_the_results(tmp_path):
     path = tmp_path / "drive.yaml"
     path.write_text(f"{CART}seeds: 1000\nduration: 1\nexpect: [{{stays_within: cart, z: [-1, 1]}}]")
-    process = subprocess.Popen(
+    process = launching.Popen(
         [sys.executable, "-m", "cartwheel.cli.main", "test", path.name, "-j1"],
         cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         start_new_session=True,

@@ -3,10 +3,10 @@
 import dataclasses
 import importlib.metadata
 import signal
-import subprocess
 import sys
 
 import pytest
+from tests import launching
 from tests.coded import coded
 
 import cartwheel as cw
@@ -396,7 +396,7 @@ def test_cartwheel_run_goes_on_without_a_faulty_plugin(tmp_path, strict):
     run = "import sys; sys.path.insert(0, sys.argv.pop(1))\n"
     run += "from cartwheel.cli.main import main; main()"
     options = ["--headless", "--for", "1", "--speed", "max", "--verbose"]
-    done = subprocess.run(
+    done = launching.run(
         [sys.executable, "-c", run, str(tmp_path), "run", str(robot), *options]
         + ["--strict"] * strict,
         capture_output=True,

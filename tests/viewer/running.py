@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tests import launching
+
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 
 
@@ -25,7 +27,7 @@ class Running:
 @contextlib.contextmanager
 def running(folder: Path, *arguments: str) -> Iterator[Running]:
     """Starts one, and kills it at the end."""
-    process = subprocess.Popen(
+    process = launching.Popen(
         [PROGRAM, "run", "--port", "0", "--no-open", *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

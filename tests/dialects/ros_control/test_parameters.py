@@ -1,11 +1,11 @@
 """Tables of controller parameters: what they declare, and how they are read."""
 
-import subprocess
 import sys
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 from cartwheel.codes import devices
 from cartwheel.dialects.ros_control.catalogue import controller_types
@@ -102,7 +102,7 @@ def test_each_controller_declares_what_the_checks_need(family):
 
 def test_the_page_is_up_to_date():
     script = Path(__file__).parents[3] / "tools" / "make_controller_tables.py"
-    done = subprocess.run(
+    done = launching.run(
         [sys.executable, str(script), "--check"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
