@@ -41,7 +41,9 @@ if TYPE_CHECKING:
     from cartwheel.arrays import Scan, camera_matrix, cloud, depth, image, scan
     from cartwheel.checks import check
     from cartwheel.geometry import Pose
+    from cartwheel.sweeps import sweep
 
+_ELSEWHERE = ("CartwheelError", "Pose", "TimedOutError", "check", "sweep")
 _ARRAYS = frozenset({"Scan", "camera_matrix", "cloud", "depth", "image", "scan"})
 
 __all__ = [
@@ -77,6 +79,7 @@ __all__ = [
     "depth",
     "image",
     "scan",
+    "sweep",
 ]
 __version__ = "0.1.0"
 
@@ -100,7 +103,7 @@ def __getattr__(name: str) -> Any:
         from cartwheel import arrays
 
         return getattr(arrays, name)
-    if name in __all__ and name not in ("CartwheelError", "Pose", "TimedOutError", "check"):
+    if name in __all__ and name not in _ELSEWHERE:
         from cartwheel import api
 
         return getattr(api, name)
@@ -108,6 +111,10 @@ def __getattr__(name: str) -> Any:
         from cartwheel.checks import check
 
         return check
+    if name == "sweep":
+        from cartwheel.sweeps import sweep
+
+        return sweep
     if name == "Pose":
         from cartwheel.geometry import Pose
 

@@ -22,9 +22,11 @@ LEAVES = {
     "forks",
     "options",
     "yaml_text",
+    "jobs",
 }
 MAY_IMPORT = {
     "budget": set(),
+    "jobs": set(),
     "errors": set(),
     "similar_names": set(),
     "reporting": set(),
@@ -111,6 +113,7 @@ MAY_IMPORT = {
     "scenarios": {"api", "testing", "description", "messages", "graph"},
     "batch": {"api", "messages", "arrays"},
     "gym": {"api", "batch"},
+    "sweeps": {"api"},
     "cli": {
         "description",
         "world",

@@ -191,6 +191,6 @@ def test_a_crashed_process_is_an_error_of_its_case(scenario, tmp_path, monkeypat
     found = []
     for outcome in workers.run(cases):
         found.append(outcome.status)
-        for worker in workers._workers:
+        for worker in workers._workers._workers:
             worker.process.kill()
     assert found == ["passed", "error"]

@@ -135,3 +135,4 @@ BATCH_PROCESS_ENDED = Code(
     "CW639", "batch-process-ended", "error", "a process with worlds of a batch has ended"
 )
 BATCH_CLOSED = Code("CW640", "batch-closed", "error", "a batch of worlds is used after its end")
+SWEEP_INVALID = Code("CW641", "sweep-invalid", "error", "an argument of a sweep is invalid")

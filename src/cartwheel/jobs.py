@@ -1,0 +1,168 @@
+"""Processes that do jobs in parallel. Each prepares itself once.
+
+`concurrent.futures` is not used because a crash of one of its processes ends all others, and
+because it cannot end a process that takes too long.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import signal
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection, wait
+from typing import Any, Generic, TypeVar
+
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+Prepare = Callable[[int], Callable[[Job], Result]]
+"""Called in a process with its number. Returns the function that does a job."""
+
+_LOOK = 0.25
+"""Wall time between two checks of the time limit, s."""
+_HURRY = 0.5
+"""Wall time to wait for processes after `Workers.stop`, s."""
+_END = 5.0
+"""Wall time in which a process must end, s."""
+
+
+@dataclass
+class _Worker(Generic[Job]):
+    number: int
+    process: Any
+    link: Connection
+    jobs: list[Job] = field(default_factory=list)
+    """The current job, if there is one."""
+    end: float = field(default=0.0)
+    """Time of `time.monotonic` at which the job must be done."""
+
+
+class Workers(Generic[Job, Result]):
+    """Does jobs in processes.
+
+    Args:
+        prepare: See `Prepare`. It and all jobs must be picklable.
+        lost: Returns the result of a job whose process has ended or took too long, for a reason.
+        count: Number of processes.
+        timeout: Maximum wall time of a job, s.
+        name: Name of the processes.
+    """
+
+    def __init__(
+        self,
+        prepare: Prepare[Job, Result],
+        lost: Callable[[Job, str], Result],
+        *,
+        count: int,
+        timeout: float,
+        name: str,
+    ) -> None:
+        self._prepare, self._lost = prepare, lost
+        self._count, self._timeout, self._name = count, timeout, name
+        self._context = multiprocessing.get_context("spawn")
+        self._workers: list[_Worker[Job]] = []
+        self.stopped = False
+        """Whether `stop` was called."""
+
+    def stop(self) -> None:
+        """Ends `run` soon. Callable in a signal handler."""
+        self.stopped = True
+
+    def run(self, jobs: Sequence[Job], count: int | None = None) -> Iterator[Result]:
+        """Yields the result of each job as soon as it is known. Call `close` at the end.
+
+        Args:
+            jobs: The jobs.
+            count: Maximum number of processes for them.
+        """
+        count = self._count if count is None else count
+        waiting = deque(jobs)
+        while not self.stopped and (waiting or any(each.jobs for each in self._workers)):
+            while waiting and len(self._workers) < min(count, len(jobs)):
+                self._start()
+            for worker in self._workers[:count]:
+                if not worker.jobs and waiting:
+                    worker.jobs.append(waiting.popleft())
+                    worker.end = time.monotonic() + self._timeout
+                    with contextlib.suppress(OSError):  # it has crashed, which `_result` notices
+                        worker.link.send(worker.jobs[0])
+            busy = {each.link: each for each in self._workers if each.jobs}
+            for link in wait(list(busy), _LOOK):
+                assert isinstance(link, Connection)
+                yield self._result(busy[link])
+            for worker in busy.values():
+                if worker.jobs and time.monotonic() > worker.end:
+                    yield self._replace(worker, f"it took more than {self._timeout:g} s")
+
+    def _start(self) -> None:
+        number = max([each.number for each in self._workers], default=-1) + 1
+        ours, theirs = self._context.Pipe()
+        process = self._context.Process(
+            target=_work, args=(theirs, self._prepare, number), name=f"{self._name}-{number}"
+        )
+        process.start()
+        theirs.close()
+        self._workers.append(_Worker(number, process, ours))
+
+    def _result(self, worker: _Worker[Job]) -> Result:
+        try:
+            result: Result = worker.link.recv()
+        except (EOFError, OSError):
+            worker.process.join(_END)
+            status = worker.process.exitcode
+            return self._replace(worker, f"its process ended with status {status}")
+        worker.jobs.clear()
+        return result
+
+    def _replace(self, worker: _Worker[Job], reason: str) -> Result:
+        """The result of a job whose process ended or is too slow. The process is replaced."""
+        (job,) = worker.jobs
+        _end(worker.process)
+        self._workers.remove(worker)
+        return self._lost(job, reason)
+
+    def close(self) -> None:
+        """Ends all processes."""
+        for worker in self._workers:
+            worker.link.close()
+        if self.stopped:
+            # They end by themselves, with the programs that they have started.
+            for worker in self._workers:
+                worker.process.terminate()
+            end = time.monotonic() + _HURRY
+            for worker in self._workers:
+                worker.process.join(max(0.0, end - time.monotonic()))
+            self._workers.clear()
+        for worker in self._workers:
+            if not worker.jobs:
+                worker.process.join(_END)
+            _end(worker.process)
+        self._workers.clear()
+
+
+def _end(process: Any) -> None:
+    """Ends a process. On SIGTERM, it closes what it has opened."""
+    if process.is_alive():
+        process.terminate()
+        process.join(2 * _END)
+    if process.is_alive():
+        process.kill()
+        process.join()
+
+
+def _work(link: Connection, prepare: Prepare[Any, Any], number: int) -> None:
+    """Runs in the process: receives jobs and sends results until the link is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one
+    signal.signal(signal.SIGTERM, _interrupt)
+    with contextlib.suppress(KeyboardInterrupt, EOFError, OSError):
+        do = prepare(number)
+        while True:
+            job = link.recv()
+            link.send(do(job))
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt

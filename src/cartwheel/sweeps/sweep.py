@@ -1,0 +1,145 @@
+"""Runs a function of a world for many cases."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cartwheel.errors import CartwheelError
+from cartwheel.jobs import Workers
+from cartwheel.sweeps.results import Results, Row, invalid, plain
+from cartwheel.sweeps.stored import Stored
+
+if TYPE_CHECKING:
+    from cartwheel.api import Built, World
+
+Case = Mapping[str, Any]
+Job = tuple[int, dict[str, Any]]
+Done = tuple[int, Row]
+
+
+def sweep(
+    function: Callable[[World, Case], Any],
+    cases: Iterable[Case],
+    built: Built,
+    *,
+    jobs: int | None = None,
+    timeout: float = 3600.0,
+    results: str | Path | None = None,
+    progress: bool = True,
+) -> Results:
+    """Runs a function for each case, in a new world for each, on all cores.
+
+    A case has the same result whatever the number of processes and the other cases.
+
+    Args:
+        function: Receives the world and the case. Returns a number, or a mapping of numbers, texts
+            and lists by name. An exception is the error of the case.
+        cases: The parameters of each case by name: numbers, texts, lists and mappings. The
+            parameter ``seed`` is the seed of the world, by default 0.
+        built: What `cartwheel.build` returned.
+        jobs: Number of processes, by default one for each core. 0 runs all cases in this process.
+            Otherwise, a script must call the function below ``if __name__ == "__main__":``, and the
+            function must be that of a module.
+        timeout: Maximum wall time of a case, s. A case that takes longer has an error. Without
+            effect if `jobs` is 0.
+        results: File for the results of cases that are done. If it exists, these cases are not run
+            again, except those with an error. Delete it if the function or the robots have changed.
+        progress: Whether to show a bar if standard error is a terminal.
+
+    Raises:
+        CartwheelError: A case is invalid, or the file cannot be used.
+    """
+    listed = [_case(each) for each in cases]
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    count = (cores or 1) if jobs is None else jobs
+    if count < 0:
+        raise invalid(f"the number of processes must be at least 0 (got {count})")
+    name = f"{function.__module__}.{getattr(function, '__qualname__', type(function).__name__)}"
+    stored = Stored(None if results is None else Path(results), name)
+    with contextlib.closing(stored):
+        found = stored.earlier(listed)
+        waiting = [(index, case) for index, case in enumerate(listed) if index not in found]
+        with _bar(len(listed), len(found), show=progress) as advance:
+            for index, row in _run(function, built, waiting, count, timeout):
+                stored.add(row)
+                found[index] = row
+                advance()
+    return Results([found[index] for index in range(len(listed))])
+
+
+def _case(case: Case) -> dict[str, Any]:
+    if not isinstance(case, Mapping):
+        raise invalid(f"a case must be a mapping of parameters (got {case!r:.60})")
+    made: dict[str, Any] = plain(case)
+    seed = made.get("seed", 0)
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise invalid(f'"seed" must be an integer of at least 0 (got {seed!r:.60})')
+    return made
+
+
+def _run(
+    function: Callable[[World, Case], Any], built: Built, waiting: list[Job], count: int,
+    timeout: float,
+) -> Iterator[Done]:  # fmt: skip
+    if count == 0:
+        do = _prepare(function, built, 0)
+        for job in waiting:
+            yield do(job)
+        return
+    workers: Workers[Job, Done] = Workers(
+        partial(_prepare, function, built), _lost, count=min(count, max(1, len(waiting))),
+        timeout=timeout, name="cartwheel-sweep",
+    )  # fmt: skip
+    with contextlib.closing(workers):
+        yield from workers.run(waiting)
+
+
+def _prepare(
+    function: Callable[[World, Case], Any],
+    built: Built,
+    number: int,  # noqa: ARG001
+) -> Callable[[Job], Done]:
+    return partial(_do, function, built)
+
+
+def _do(function: Callable[[World, Case], Any], built: Built, job: Job) -> Done:
+    index, case = job
+    start = time.perf_counter()
+    values: Any = {}
+    error = ""
+    try:
+        with built.world(seed=case.get("seed", 0)) as world:
+            value = plain(function(world, dict(case)))
+        values = value if isinstance(value, dict) else {"result": value}
+    except CartwheelError as failure:
+        error = f"{failure.message} [{failure.code.number}]"
+    except Exception as failure:  # noqa: BLE001 - other cases must still run
+        error = f"{type(failure).__name__}: {failure}"
+    return index, Row(case=case, values=values, error=error, seconds=time.perf_counter() - start)
+
+
+def _lost(job: Job, reason: str) -> Done:
+    index, case = job
+    return index, Row(case=case, values={}, error=f"the case was lost: {reason}")
+
+
+@contextlib.contextmanager
+def _bar(total: int, done: int, *, show: bool) -> Iterator[Callable[[], None]]:
+    """Shows the progress on standard error within the block."""
+    if not show or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
+
+    columns = (BarColumn(bar_width=None), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("cases", total=total, completed=done)
+        yield lambda: bar.advance(task)
