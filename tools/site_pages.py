@@ -6,8 +6,10 @@ explain` show the same without a site.
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -32,10 +34,13 @@ $ cartwheel explain CW204
 ```
 """
 
+_PACKAGES = ("batch", "gym", "sweeps", "testing")
+"""Packages with public names of their own."""
 _API_INTRODUCTION = """\
 # Python API
 
-The public names of the package `cartwheel`, and the diagnostics that they report.
+The public names of the package `cartwheel`, the diagnostics that they report, and the packages for
+batches, environments, parameter studies and tests.
 [From Python](python.md) shows how to use them.
 """
 
@@ -166,7 +171,19 @@ def _raised(text: str) -> str:
 def _api_page() -> str:
     names = sorted(cartwheel.__all__, key=_importance)
     names += ["errors.Diagnostic", "errors.Code", "errors.Origin"]
+    for package in _PACKAGES:
+        names += [f"{package}.{name}" for name in _public(package)]
     return "\n".join([_API_INTRODUCTION, *(f"::: cartwheel.{name}\n" for name in names)])
+
+
+def _public(package: str) -> list[str]:
+    """``__all__`` of a package, which may import what is not installed."""
+    source = Path(cartwheel.__file__).parent / package / "__init__.py"
+    for statement in ast.parse(source.read_text()).body:
+        if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "__all__":
+            found: list[str] = ast.literal_eval(statement.value)
+            return found
+    raise ValueError(f"{source} has no __all__")
 
 
 def _importance(name: str) -> tuple[bool, bool, str]:
