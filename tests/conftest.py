@@ -40,8 +40,11 @@ if os.environ.get("CARTWHEEL_CODES_ONLY"):
 GRAVITY = 9.8
 HERE = Pose()
 _TESTS = Path(__file__).parent
-_LONG = {"api", "benchmarks", "bridges", "campaign", "cli", "codes_only", "docs", "ros1", "viewer"}
-"""Folders whose tests start many processes."""
+_LONG = (
+    *("ros1", "viewer", "cli", "bridges", "docs", "testing", "api", "campaign", "benchmarks"),
+    *("scenarios", "codes_only"),
+)
+"""Folders whose tests start many processes, or wait for them."""
 _PLACE = Origin(file="test.sdf", line=1)
 
 # The same examples in each run, however long a busy machine takes to make and to try them.
@@ -66,7 +69,8 @@ def pytest_configure() -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     # Long files first, so that at the end no process runs one of them alone.
-    items.sort(key=lambda item: item.path.relative_to(_TESTS).parts[0] not in _LONG)
+    order = {name: place for place, name in enumerate(_LONG)}
+    items.sort(key=lambda item: order.get(item.path.relative_to(_TESTS).parts[0], len(order)))
     if os.environ.get("CARTWHEEL_CODES_ONLY"):
         left_out = [item for item in items if item.get_closest_marker("wording")]
         config.hook.pytest_deselected(items=left_out)
