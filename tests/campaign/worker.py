@@ -77,7 +77,6 @@ class _Worker:
         self._limited = False
 
     def run(self) -> None:
-        COUNTERS.pack_into(self._counters, 0, *self._numbers)
         given = self._task.get("inputs")
         if given is not None:
             # As in a campaign, where a seed imports what is needed before memory is limited.
@@ -85,11 +84,14 @@ class _Worker:
                 self._target.run_one(self._target.seeds()[0])
             self._limited = True
             self._limit()
+            COUNTERS.pack_into(self._counters, 0, *self._numbers)
             for file in given:
                 self._one(Path(file).read_bytes())
             return
         inputs = self._inputs()
         first = next(inputs)
+        # Seeds can take longer than an input: from here on, the time of an input holds.
+        COUNTERS.pack_into(self._counters, 0, *self._numbers)
         begin = time.monotonic()
         end = 0.0
         for data in itertools.chain([first], inputs):
