@@ -42,9 +42,10 @@ corpus: ## try all robots in FOLDER: load, stand, publish, drive, reach
 	@tools/setup.sh run
 	@$(BIN)/cartwheel corpus $(FOLDER) $(ARGS)
 
-catalogue: ## generate the tables of modules that define plugins and controllers
+catalogue: ## generate the tables of plugins and controllers, and the modules of message types
 	@tools/setup.sh lint
 	@$(BIN)/python tools/make_catalogue.py
+	@$(BIN)/python tools/make_message_modules.py
 
 docs: ## generate the plugin reference, and build the site in site/
 	@tools/setup.sh docs

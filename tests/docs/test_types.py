@@ -50,3 +50,33 @@ def test_an_error_is_found(tmp_path: Path) -> None:
         "import cartwheel as cw\nworld = cw.World('empty')\nworld.run('a second')\nworld.fly()\n"
     )
     assert {line.split(":")[1] for line in checked(tmp_path)} == {"3", "4"}
+
+
+def test_messages_have_the_types_of_their_classes(tmp_path: Path) -> None:
+    lines = {
+        "import cartwheel as cw": False,
+        "from cartwheel.msgs.nav_msgs import Odometry": False,
+        "from cartwheel.msgs.geometry_msgs import Twist, Vector3": False,
+        "world = cw.World('empty')": False,
+        "odometry = world.topic('/odom', Odometry)": False,
+        "x: float = odometry.latest.pose.pose.position.x": False,
+        "steps: str = odometry.latest.pose.pose.position.x": True,
+        "print(odometry.wait().pos)": True,
+        "assert odometry.latest is None or odometry.history()[0].header.stamp.sec == 0": False,
+        "odometry.publish(Twist())": True,
+        "print(Twist(linear=Vector3(x=0.5)).linear.x)": False,
+        "print(Twist(linear=Vector3(X=0.5)))": True,
+        "def plain(topic: cw.Topic) -> None: print(topic.latest.header)": False,
+        "def typed(topic: 'cw.Topic[Odometry]') -> None: print(topic.latest.header)": False,
+        "plain(odometry)": False,
+        "typed(odometry)": False,
+        "world.subscribe('/odom', lambda each: print(each.twist), type=Odometry)": False,
+        "world.subscribe('/odom', lambda each: print(each.x), type=Odometry)": True,
+        "print(world.mailbox('/odom', Odometry).drain()[0].twist)": False,
+        "world.advertise('/odom', Odometry).publish(Twist())": True,
+        "world.topic('/odom', int)": True,
+        "print(world.topic('/own', 'my_msgs/msg/Own').latest.field)": False,
+    }
+    (tmp_path / "user.py").write_text("\n".join(lines) + "\n")
+    found = {int(line.split(":")[1]) for line in checked(tmp_path)}
+    assert found == {number for number, wrong in enumerate(lines.values(), start=1) if wrong}

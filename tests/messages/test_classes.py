@@ -8,11 +8,13 @@ import threading
 from typing import Any
 
 import pytest
+from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 from tests.messages.cdr.test_cdr import grown
 
 from cartwheel.messages import encode_cdr, message_class, zero
 from cartwheel.messages.classes import Classes
+from cartwheel.messages.store import loaded
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
@@ -45,10 +47,27 @@ def test_constants_and_names_are_those_of_rosbags() -> None:
         assert {key: getattr(ours, key) for key in constants} == constants
 
 
-@pytest.mark.parametrize("wrong", [(1.0, 2.0), (1.0, 2.0, 3.0, 4.0)])
-def test_a_wrong_number_of_values(wrong: tuple[float, ...]) -> None:
+@pytest.mark.parametrize("name", sorted(loaded().types))
+def test_omitted_fields_are_zero_or_empty(name: str) -> None:
+    assert encode_cdr(message_class(name)()) == encode_cdr(zero(name))
+
+
+def test_default_values_are_not_shared() -> None:
+    first, second = (message_class("nav_msgs/msg/Odometry")() for _ in range(2))
+    first.pose.pose.position.x = 1.0
+    first.pose.covariance[0] = 1.0
+    assert second.pose.pose.position.x == second.pose.covariance[0] == 0.0
+
+
+@pytest.mark.parametrize("wrong", [{"w": 1.0}, {"x": 1.0, "X": 2.0}])
+def test_a_field_that_does_not_exist(wrong: dict[str, float]) -> None:
     with pytest.raises(TypeError):
-        message_class("geometry_msgs/msg/Vector3")(*wrong)
+        message_class("geometry_msgs/msg/Vector3")(**wrong)
+
+
+def test_too_many_values() -> None:
+    with pytest.raises(TypeError):
+        message_class("geometry_msgs/msg/Vector3")(1.0, 2.0, 3.0, 4.0)
 
 
 def test_a_field_that_does_not_exist_cannot_be_set() -> None:
@@ -59,7 +78,8 @@ def test_a_field_that_does_not_exist_cannot_be_set() -> None:
 
 def test_threads_convert_a_type_to_the_same_class() -> None:
     for _ in range(20):
-        classes = Classes(dict(get_typestore(Stores.ROS2_JAZZY).types), module=__name__)
+        theirs = get_typestore(Stores.ROS2_JAZZY)
+        classes = Classes(dict(theirs.types), theirs.fielddefs, module=__name__)
         start = threading.Barrier(4)
         found: list[Any] = []
 
@@ -84,8 +104,11 @@ def test_a_type_that_was_removed_can_be_defined_anew() -> None:
     class New:
         b: int
 
-    classes = Classes({"x/msg/X": Old}, module=__name__)
+    number = (Nodetype.BASE, ("int32", 0))
+    definitions = {"x/msg/X": ([], [("a", number)])}
+    classes = Classes({"x/msg/X": Old}, definitions, module=__name__)
     assert classes["x/msg/X"](a=1).a == 1
     classes.pop("x/msg/X")
     classes.update({"x/msg/X": New})
+    definitions["x/msg/X"] = ([], [("b", number)])
     assert classes["x/msg/X"](b=2).b == 2

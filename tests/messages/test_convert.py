@@ -25,7 +25,8 @@ from cartwheel.messages import (
     to_yaml,
     zero,
 )
-from cartwheel.messages.fields import Field, fields
+from cartwheel.messages.field import Field
+from cartwheel.messages.fields import fields
 
 TYPES = [
     "builtin_interfaces/msg/Duration",

@@ -8,11 +8,12 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from cartwheel.api.timing import TimedWorld
 from cartwheel.api.topics import Topic, made_message
 from cartwheel.graph import Graph, Mailbox, Publisher, Subscription
+from cartwheel.messages.typed import M, Message, name_of
 from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
@@ -53,15 +54,26 @@ class MessagingWorld(TimedWorld):
         """Names of the topics with a publisher or a subscriber, sorted."""
         return tuple(info.name for info in self.graph.topics())
 
-    def topic(self, name: str, *, type: str | None = None, keep: int | None = None) -> Topic:
+    @overload
+    def topic(self, name: str, type: type[M], *, keep: int | None = None) -> Topic[M]: ...
+    @overload
+    def topic(
+        self, name: str, type: str | None = None, *, keep: int | None = None
+    ) -> Topic[Any]: ...
+    def topic(
+        self, name: str, type: type[Message] | str | None = None, *, keep: int | None = None
+    ) -> Topic[Any]:
         """Subscribes to a topic, and returns an object with its messages.
+
+        With a class of `cartwheel.msgs` as `type`, the messages have this class for type checkers:
+        ``world.topic("/odom", Odometry)``.
 
         A sensor without subscribers produces no data, so call the method before the run whose
         messages you need. Further calls with the same name return the same object.
 
         Args:
             name: Topic name.
-            type: As in `advertise`. Required if the topic does not exist yet.
+            type: Class or name of the message type. Required if the topic does not exist yet.
             keep: Number of messages that `Topic.history` keeps; None for 1000, or 10 for images and
                 point clouds.
 
@@ -69,11 +81,12 @@ class MessagingWorld(TimedWorld):
             UnknownNameError: The topic does not exist and no type is given, or the type does not
                 exist.
             SimulationError: The world is closed.
-            GraphError: The topic has a different type, or the definition of the type is invalid.
+            GraphError: The topic has a different type, `type` is not a message type, or its
+                definition is invalid.
             CartwheelError: `keep` is out of range.
         """
         self.check_open()
-        full = None if type is None else self.message_class(type).__msgtype__
+        full = self._full_name(type)
         if keep is not None:
             check_size(keep)
         with self.used():
@@ -88,6 +101,10 @@ class MessagingWorld(TimedWorld):
             found.keep(keep)
         return found
 
+    def _full_name(self, kind: type[Message] | str | None) -> str | None:
+        """The name of a type that a program gives; None if it gives none."""
+        return None if kind is None else str(self.message_class(name_of(kind)).__msgtype__)
+
     @functools.cached_property
     def _known_topics(self) -> dict[str, Topic]:
         return {}
@@ -100,8 +117,20 @@ class MessagingWorld(TimedWorld):
         for name in [name for name, each in self._known_topics.items() if each is topic]:
             del self._known_topics[name]
 
+    @overload
     def subscribe(
-        self, topic: str, callback: Callable[[Any], None], *, type: str | None = None
+        self, topic: str, callback: Callable[[M], object], *, type: type[M]
+    ) -> Subscription: ...
+    @overload
+    def subscribe(
+        self, topic: str, callback: Callable[[Any], object], *, type: str | None = None
+    ) -> Subscription: ...
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callable[[Any], object],
+        *,
+        type: type[Message] | str | None = None,
     ) -> Subscription:
         """Calls `callback` with each message during `run`.
 
@@ -111,7 +140,7 @@ class MessagingWorld(TimedWorld):
         Args:
             topic: Topic name.
             callback: Receives each message. It must not change the message.
-            type: As in `advertise`. Required if the topic does not exist yet.
+            type: As for `topic`.
 
         Returns:
             The subscription; `close` ends it.
@@ -120,7 +149,7 @@ class MessagingWorld(TimedWorld):
             UnknownNameError: The topic does not exist and no type is given, or the type does not
                 exist.
             SimulationError: The world is closed.
-            GraphError: The topic has a different type, or the definition of the type is invalid.
+            GraphError: As for `topic`.
         """
         self.check_open()
         simulation = self.session.simulation
@@ -131,26 +160,30 @@ class MessagingWorld(TimedWorld):
             except BaseException as error:  # noqa: BLE001 - raised by `run`
                 simulation.faults.defer(error)
 
-        full = None if type is None else self.message_class(type).__msgtype__
-        return self.graph.subscribe(topic, guarded, type_name=full)
+        return self.graph.subscribe(topic, guarded, type_name=self._full_name(type))
 
-    def advertise(self, topic: str, type: str) -> Publisher:
+    @overload
+    def advertise(self, topic: str, type: type[M]) -> Publisher[M]: ...
+    @overload
+    def advertise(self, topic: str, type: str) -> Publisher[Any]: ...
+    def advertise(self, topic: str, type: type[Message] | str) -> Publisher[Any]:
         """Advertises a topic, and returns its publisher.
 
         `Publisher.publish` raises a `GraphError` for a value that is not a message of the type.
 
         Args:
             topic: Topic name.
-            type: ``geometry_msgs/msg/Twist``, or a type that a package of the workspace defines.
+            type: A class of `cartwheel.msgs`, or a name such as ``geometry_msgs/msg/Twist``, also
+                of a type that a package of the workspace defines.
 
         Raises:
             UnknownNameError: The type does not exist.
             SimulationError: The world is closed.
-            GraphError: The topic exists with a different type, or the definition of the type is
-                invalid.
+            GraphError: The topic exists with a different type, `type` is not a message type, or
+                its definition is invalid.
         """
         self.check_open()
-        full = self.message_class(type).__msgtype__
+        full = str(self.message_class(name_of(type)).__msgtype__)
         return self.graph.advertise(topic, full, checked=True)
 
     def message_class(self, type: str) -> Any:
@@ -163,9 +196,15 @@ class MessagingWorld(TimedWorld):
             UnknownNameError: The type does not exist.
             GraphError: The definition of the type is invalid.
         """
-        return self.graph.types.message_class(str(type))
+        return self.graph.types.message_class(name_of(type))
 
-    def mailbox(self, topic: str, *, size: int = 1000) -> Mailbox:
+    @overload
+    def mailbox(self, topic: str, type: type[M], *, size: int = 1000) -> Mailbox[M]: ...
+    @overload
+    def mailbox(self, topic: str, type: str | None = None, *, size: int = 1000) -> Mailbox[Any]: ...
+    def mailbox(
+        self, topic: str, type: type[Message] | str | None = None, *, size: int = 1000
+    ) -> Mailbox[Any]:
         """Buffers the topic's messages, to be read after `run`.
 
         `get` waits only if a different thread runs the world, by default for at most 30 s. In the
@@ -173,17 +212,21 @@ class MessagingWorld(TimedWorld):
         None at once.
 
         Args:
-            topic: Name of an existing topic.
+            topic: Topic name.
+            type: As for `topic`.
             size: Capacity in messages, at least 1. A full mailbox drops the oldest message.
 
         Raises:
-            UnknownNameError: The topic does not exist.
+            UnknownNameError: The topic does not exist and no type is given, or the type does not
+                exist.
             SimulationError: The world is closed.
+            GraphError: As for `topic`.
             CartwheelError: `size` is out of range.
         """
         self.check_open()
         check_size(size)
-        return self.graph.mailbox(topic, size=size, can_come=self._run_by_another)
+        full = self._full_name(type)
+        return self.graph.mailbox(topic, size=size, type_name=full, can_come=self._run_by_another)
 
     def _run_by_another(self) -> bool:
         """Whether a different thread ran the world last and is still alive."""

@@ -100,6 +100,9 @@ class Recording:
     ) -> Iterator[RecordedMessage]:
         """Yields messages in the order of time.
 
+        The messages have no static types. For a type checker, annotate the variable:
+        ``odometry: Odometry = recorded.message``.
+
         Args:
             topics: Names of topics; without any, all topics with ROS messages of known types.
             start: Time of the first message, s; None for the start of the recording.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Generic, Self
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from cartwheel.errors import GraphError, Value
 from cartwheel.geometry import Array
 from cartwheel.graph import check_message
 from cartwheel.messages import from_dict, from_flat
+from cartwheel.messages.typed import M
 from cartwheel.similar_names import meant, suggestion
 from cartwheel.simulation.alarms import Alarm
 from cartwheel.simulation.clock import NANOSECONDS
@@ -61,11 +62,14 @@ class _Received:
         self.messages = deque(self.messages, maxlen=size)
 
 
-class Topic:
+class Topic(Generic[M]):
     """A topic of a world, and its newest messages.
 
     `World.topic` creates it and subscribes to the topic, so that its sensor produces data. It keeps
     the newest 1000 messages, of images and point clouds the newest 10.
+
+    For type checkers, ``Topic[Odometry]`` has messages of this class of `cartwheel.msgs`, and a
+    `Topic` that was created without a class has messages of any type.
     """
 
     def __init__(
@@ -96,7 +100,7 @@ class Topic:
             self._received.keep(size)
 
     @property
-    def _messages(self) -> deque[tuple[int, Any]]:
+    def _messages(self) -> deque[tuple[int, M]]:
         return self._received.messages
 
     @property
@@ -105,8 +109,12 @@ class Topic:
         return self._received.count
 
     @property
-    def latest(self) -> Any:
-        """The newest message; None if there is none yet. Do not change it."""
+    def latest(self) -> M | Any:
+        """The newest message; None if there is none yet. Do not change it.
+
+        Type checkers check the fields of the message, but not whether there is a message: after a
+        run, a topic with a rate has one. `wait` always returns a message.
+        """
         return self._messages[-1][1] if self._messages else None
 
     @property
@@ -114,7 +122,7 @@ class Topic:
         """Simulation time at which the newest message was published, s."""
         return self._messages[-1][0] / NANOSECONDS if self._messages else None
 
-    def history(self, size: int | None = None) -> list[Any]:
+    def history(self, size: int | None = None) -> list[M]:
         """The newest messages that are kept, oldest first.
 
         Args:
@@ -164,7 +172,7 @@ class Topic:
             series |= columns
         return Plot(np.array(self.times(size)), series, title=self.name)
 
-    def _newest(self, size: int | None) -> Sequence[tuple[int, Any]]:
+    def _newest(self, size: int | None) -> Sequence[tuple[int, M]]:
         if size is None:
             return list(self._messages)
         check_size(size)
@@ -186,7 +194,7 @@ class Topic:
             )
         return arrays.array(self.latest)
 
-    def wait(self, timeout: float = TIMEOUT) -> Any:
+    def wait(self, timeout: float = TIMEOUT) -> M:
         """Runs the world until the next message, and returns it.
 
         Args:
@@ -202,7 +210,7 @@ class Topic:
         self._world._until(lambda: self.count > before, timeout=timeout)
         if self.count == before:
             raise self._silent(timeout)
-        return self.latest
+        return self._messages[-1][1]
 
     def _silent(self, timeout: float) -> Exception:
         graph = self._world.graph
@@ -231,11 +239,17 @@ class Topic:
             f'no message on "{self.name}" was published within {timeout:g} s: {text}', values, hint
         )
 
-    def publish(self, message: Any = None, **fields: Any) -> None:
+    def publish(self, message: M | Mapping[str, Any] | None = None, **fields: Any) -> None:
         """Publishes a message; see `World.publish`."""
         self._world.publish(self.name, message, **fields)
 
-    def hold(self, message: Any = None, *, rate: float = RATE, **fields: Any) -> Hold:
+    def hold(
+        self,
+        message: M | Mapping[str, Any] | None = None,
+        *,
+        rate: float = RATE,
+        **fields: Any,
+    ) -> Hold:
         """Publishes a message now, and then at a rate while the world runs.
 
         Devices execute the message in the step in which it is published. A reset starts the periods

@@ -6,7 +6,9 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import Generic
+
+from cartwheel.messages.typed import M
 
 TIMEOUT = 30.0
 """Default time for which `Mailbox.get` waits, s."""
@@ -14,7 +16,7 @@ _LOOK = 1.0
 """Interval in s at which `can_come` is checked."""
 
 
-class Mailbox:
+class Mailbox(Generic[M]):
     """Stores the newest messages for one reader. When full, it drops and counts the oldest.
 
     Args:
@@ -24,14 +26,14 @@ class Mailbox:
 
     def __init__(self, size: int, *, can_come: Callable[[], bool] | None = None) -> None:
         self._can_come = can_come
-        self._messages: deque[Any] = deque(maxlen=size)
+        self._messages: deque[M] = deque(maxlen=size)
         self._condition = threading.Condition()
         self._closed = False
         self.dropped = 0
         """Number of messages dropped because the reader was too slow."""
         self.on_close: Callable[[], None] = lambda: None
 
-    def put(self, message: Any) -> None:
+    def put(self, message: M) -> None:
         """Adds a message without waiting."""
         with self._condition:
             if len(self._messages) == self._messages.maxlen:
@@ -39,7 +41,7 @@ class Mailbox:
             self._messages.append(message)
             self._condition.notify()
 
-    def get(self, timeout: float = TIMEOUT) -> Any | None:
+    def get(self, timeout: float = TIMEOUT) -> M | None:
         """Returns the oldest unread message as soon as one is available.
 
         Args:
@@ -61,7 +63,7 @@ class Mailbox:
                 self._condition.wait(left)
             return self._messages.popleft() if self._messages else None
 
-    def drain(self) -> list[Any]:
+    def drain(self) -> list[M]:
         """Returns all unread messages, oldest first, without waiting."""
         with self._condition:
             messages = list(self._messages)

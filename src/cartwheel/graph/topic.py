@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Generic, Literal
 
 from cartwheel.calls import Post
 from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
 from cartwheel.messages import CdrCache, type_name
+from cartwheel.messages.typed import M
 
 if TYPE_CHECKING:
     from cartwheel.graph.graph import Graph
@@ -127,7 +128,7 @@ def deliver_changed(topic: Topic, message: Any, cdr: CdrCache) -> None:
     topic.deliver(message)
 
 
-class Publisher:
+class Publisher(Generic[M]):
     """Publishes on one topic. Create messages only while `wanted` is true.
 
     Attributes:
@@ -166,7 +167,7 @@ class Publisher:
         if self.qos == "latched":
             self._topic.latched = message
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: M) -> None:
         """Delivers a message to all subscribers at once. Call it on the owner's thread."""
         self.sent += 1
         topic = self._topic
@@ -184,10 +185,10 @@ class Publisher:
         self._graph._remove_publisher(self._topic, self)
 
 
-class CheckedPublisher(Publisher):
+class CheckedPublisher(Publisher[M]):
     """A publisher for the code of users. It refuses values that are not messages of its type."""
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: M) -> None:
         """See `Publisher.publish`.
 
         Raises:

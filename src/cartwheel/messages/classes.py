@@ -7,10 +7,14 @@ messages contain no references to themselves.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import keyword
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import msgspec
+
+from cartwheel.messages.field import Field, empty, field_of
 
 FILLER = "structure_needs_at_least_one_member"
 """Byte that ROS 2 adds to a message without fields. Its value has no meaning."""
@@ -21,21 +25,44 @@ class Classes(dict[str, Any]):
 
     Args:
         classes: The classes of rosbags.
+        definitions: Constants and fields by type, in the form of rosbags.
         module: Name of the module in which `pickle` finds the classes by their names.
     """
 
-    def __init__(self, classes: dict[str, Any], *, module: str) -> None:
+    def __init__(
+        self, classes: dict[str, Any], definitions: Mapping[str, Any], *, module: str
+    ) -> None:
         super().__init__(classes)
+        self._definitions = definitions
         self._module = module
         self._converted: dict[str, Any] = {}
+        self._stated: dict[str, Mapping[str, Any]] = {}
 
     def __getitem__(self, name: str) -> Any:
         made = self._converted.get(name)
         if made is None:
-            made = _convert(super().__getitem__(name), self._module)
+            made = _convert(super().__getitem__(name), self._module, self._fields(name), self.empty)
             # If another thread has just converted it, its class is used.
             made = self._converted.setdefault(name, made)
         return made
+
+    def state_defaults(self, name: str, defaults: Mapping[str, Any]) -> None:
+        """Sets the default values that a definition states, before the class is looked up."""
+        self._stated[name] = defaults
+
+    def empty(self, name: str) -> Any:
+        """Creates a message whose fields have their default values."""
+        made = self[name]
+        if issubclass(made, msgspec.Struct):
+            return made()
+        return made(*(empty(field, self.empty) for field in self._fields(name)))
+
+    def _fields(self, name: str) -> list[Field]:
+        stated = self._stated.get(name, {})
+        return [
+            dataclasses.replace(field_of(field, described), default=stated.get(field))
+            for field, described in self._definitions[name][1]
+        ]
 
     def pop(self, name: str, *default: Any) -> Any:
         """Removes a type, which may then be defined anew."""
@@ -43,11 +70,15 @@ class Classes(dict[str, Any]):
         return super().pop(name, *default)
 
 
-def _convert(given: Any, module: str) -> Any:
+def _convert(
+    given: Any, module: str, described: Sequence[Field], make: Callable[[str], Any]
+) -> Any:
     """Creates the class of a type from a dataclass of rosbags, with its constants.
 
+    Fields that are omitted when a message is created have their default values, as in ROS.
+
     Types with fields that are named after Python keywords keep their dataclass, whose constructor
-    accepts these names.
+    accepts these names and requires all fields.
     """
     fields = {
         field.name: field
@@ -63,14 +94,22 @@ def _convert(given: Any, module: str) -> Any:
         for name, value in vars(given).items()
         if name not in _OWN and name not in fields and not callable(value)
     }
+    values = (0,) if FILLER in fields else (_default(field, make) for field in described)
     return msgspec.defstruct(
         given.__name__,
-        [(name, Any, 0) if name == FILLER else (name, Any) for name in fields],
+        [(name, Any, value) for name, value in zip(fields, values, strict=True)],
         # The functions of the module `dataclasses`, such as `replace`, support the class.
         namespace={**kept, "__dataclass_fields__": fields},
         module=module,
         gc=False,
     )
+
+
+def _default(field: Field, make: Callable[[str], Any]) -> Any:
+    """The default value of a field for msgspec. Mutable values are created anew."""
+    if field.array or field.kind == "message":
+        return msgspec.field(default_factory=functools.partial(empty, field, make))
+    return empty(field, make)
 
 
 _OWN = frozenset({"__annotations__", "__dict__", "__module__", "__weakref__", "__hash__"})

@@ -11,7 +11,8 @@ import numpy as np
 from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
 from cartwheel.messages.classes import FILLER
-from cartwheel.messages.fields import Field, fields
+from cartwheel.messages.field import Field, empty
+from cartwheel.messages.fields import fields
 from cartwheel.messages.store import message_class
 from cartwheel.similar_names import meant, suggestion
 
@@ -159,7 +160,7 @@ def _message(cls: Any, given: Any, path: str) -> Any:
         values[name] = _value(field, value, f"{path}{name}")
     for field in wanted:
         if values[field.name] is None:
-            values[field.name] = _empty(field)
+            values[field.name] = empty(field, zero)
     if FILLER in cls.__dataclass_fields__:
         return cls(**{FILLER: 0})
     return cls(**values)
@@ -337,24 +338,6 @@ def _int(field: Field, value: Any, path: str) -> int:
             values={"field": path.rstrip("."), "value": _shown(value)},
         )
     return int(value)
-
-
-def _empty(field: Field) -> Any:
-    if field.default is not None:
-        if not field.array:
-            return field.default
-        if field.kind == "string":
-            return list(field.default)
-        return np.array(field.default, dtype=field.type)
-    if field.array:
-        if field.kind == "message":
-            return [zero(field.type) for _ in range(field.length or 0)]
-        if field.kind == "string":
-            return [""] * (field.length or 0)
-        return np.zeros(field.length or 0, dtype=field.type)
-    if field.kind == "message":
-        return zero(field.type)
-    return {"string": "", "bool": False, "int": 0, "float": 0.0}[field.kind]
 
 
 def _where(path: str) -> str:

@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from cartwheel.messages.fields import Field, fields
+from cartwheel.messages.field import Field
+from cartwheel.messages.fields import fields
 
 SHOWN = 64
 """Maximum number of array elements to print: enough for a covariance, but not for an image."""

@@ -55,6 +55,9 @@ def register(definitions: Iterable[Definition]) -> None:
             # rosbags writes constants into Python code, where infinity and NaN have no literal.
             made.register({each.name: ([one for one in constants if one not in odd], fields)})
             made.fielddefs[each.name] = (constants, made.fielddefs[each.name][1])
+            made.types.state_defaults(
+                each.name, {field.name: field.default for field in each.fields}
+            )
             for name, _, value in odd:
                 setattr(made.types[each.name], name, value)
             _accept_keywords(made.types[each.name], [field.name for field in each.fields])

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.messages.fields import Field, fields
+from cartwheel.messages.field import Field
+from cartwheel.messages.fields import fields
 
 
 def unfit(message: Any, *, most: float, unset: bool = False) -> str:

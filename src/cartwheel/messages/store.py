@@ -76,7 +76,7 @@ def loaded() -> Any:
     # rosbags shares its table of types between stores, so read it before types are added.
     _of_rosbags()
     made = get_typestore(Stores.ROS2_JAZZY)
-    made.types = Classes(made.types, module=__name__)
+    made.types = Classes(made.types, made.fielddefs, module=__name__)
     return made
 
 

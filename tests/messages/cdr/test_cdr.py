@@ -19,7 +19,8 @@ from cartwheel.messages import (
     store,
     zero,
 )
-from cartwheel.messages.fields import Field, fields
+from cartwheel.messages.field import Field
+from cartwheel.messages.fields import fields
 
 TYPES = sorted(store().fielddefs)
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from cartwheel.messages.fields import CODES, Field
+from cartwheel.messages.field import CODES, Field
 
 Writer = Callable[[Any, list[Any], int], int]
 """Writes a message at an offset: appends its parts to a list, and returns the offset after it."""

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from cartwheel.messages.classes import FILLER
-from cartwheel.messages.fields import CODES, Field, field_of
+from cartwheel.messages.field import CODES, Field, field_of
 from cartwheel.messages.learnt import learnt
 from cartwheel.messages.store import loaded, message_class
 

@@ -20,7 +20,7 @@ from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.cdr.compiled import check_count, compiled
 from cartwheel.messages.classes import FILLER
-from cartwheel.messages.fields import CODES, Field, field_of
+from cartwheel.messages.field import CODES, Field, field_of
 from cartwheel.messages.store import loaded, message_class
 
 _HEAD = b"\0\1\0\0"

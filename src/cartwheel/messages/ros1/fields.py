@@ -13,7 +13,8 @@ from typing import Literal
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.classes import FILLER
-from cartwheel.messages.fields import Field, field_of, fields
+from cartwheel.messages.field import Field, field_of
+from cartwheel.messages.fields import fields
 from cartwheel.messages.ros1.types import ros1_store
 from cartwheel.messages.store import type_name
 

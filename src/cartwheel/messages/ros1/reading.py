@@ -13,7 +13,7 @@ from cartwheel.codes.graph import MESSAGE_NOT_DECODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.classes import FILLER
 from cartwheel.messages.convert import zero
-from cartwheel.messages.fields import CODES, Field
+from cartwheel.messages.field import CODES, Field
 from cartwheel.messages.ros1.fields import Pair, pairs
 from cartwheel.messages.store import loaded, message_class, type_name
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
-from cartwheel.messages.fields import CODES, Field
+from cartwheel.messages.field import CODES, Field
 from cartwheel.messages.ros1.fields import HEADER, pairs
 
 _COUNT = struct.Struct("<I")

@@ -1,0 +1,35 @@
+"""Message types of actionlib_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.msgs import builtin_interfaces, std_msgs
+
+@dataclass
+class GoalID:
+    __msgtype__: ClassVar[str]
+    stamp: builtin_interfaces.Time = ...
+    id: str = ...
+
+@dataclass
+class GoalStatus:
+    __msgtype__: ClassVar[str]
+    PENDING: ClassVar[int]
+    ACTIVE: ClassVar[int]
+    PREEMPTED: ClassVar[int]
+    SUCCEEDED: ClassVar[int]
+    ABORTED: ClassVar[int]
+    REJECTED: ClassVar[int]
+    PREEMPTING: ClassVar[int]
+    RECALLING: ClassVar[int]
+    RECALLED: ClassVar[int]
+    LOST: ClassVar[int]
+    goal_id: GoalID = ...
+    status: int = ...
+    text: str = ...
+
+@dataclass
+class GoalStatusArray:
+    __msgtype__: ClassVar[str]
+    header: std_msgs.Header = ...
+    status_list: list[GoalStatus] = ...

@@ -1,0 +1,17 @@
+"""Message types of actuator_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.msgs import std_msgs
+
+@dataclass
+class Actuators:
+    __msgtype__: ClassVar[str]
+    header: std_msgs.Header = ...
+    position: NDArray[np.float64] = ...
+    velocity: NDArray[np.float64] = ...
+    normalized: NDArray[np.float64] = ...

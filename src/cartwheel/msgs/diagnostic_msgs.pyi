@@ -1,0 +1,31 @@
+"""Message types of diagnostic_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cartwheel.msgs import std_msgs
+
+@dataclass
+class DiagnosticArray:
+    __msgtype__: ClassVar[str]
+    header: std_msgs.Header = ...
+    status: list[DiagnosticStatus] = ...
+
+@dataclass
+class DiagnosticStatus:
+    __msgtype__: ClassVar[str]
+    OK: ClassVar[int]
+    WARN: ClassVar[int]
+    ERROR: ClassVar[int]
+    STALE: ClassVar[int]
+    level: int = ...
+    name: str = ...
+    message: str = ...
+    hardware_id: str = ...
+    values: list[KeyValue] = ...
+
+@dataclass
+class KeyValue:
+    __msgtype__: ClassVar[str]
+    key: str = ...
+    value: str = ...

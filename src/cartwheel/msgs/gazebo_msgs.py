@@ -1,0 +1,5 @@
+"""Message types of gazebo_msgs. Written by `make catalogue`; do not edit."""
+
+from cartwheel.messages.modules import module_functions
+
+__getattr__, __dir__ = module_functions("gazebo_msgs")

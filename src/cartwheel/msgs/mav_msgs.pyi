@@ -1,0 +1,17 @@
+"""Message types of mav_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.msgs import std_msgs
+
+@dataclass
+class Actuators:
+    __msgtype__: ClassVar[str]
+    header: std_msgs.Header = ...
+    angles: NDArray[np.float64] = ...
+    angular_velocities: NDArray[np.float64] = ...
+    normalized: NDArray[np.float64] = ...

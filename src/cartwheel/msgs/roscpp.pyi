@@ -1,0 +1,29 @@
+"""Message types of roscpp. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+@dataclass
+class Logger:
+    __msgtype__: ClassVar[str]
+    name: str = ...
+    level: str = ...
+
+@dataclass
+class GetLoggers_Request:
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLoggers_Response:
+    __msgtype__: ClassVar[str]
+    loggers: list[Logger] = ...
+
+@dataclass
+class SetLoggerLevel_Request:
+    __msgtype__: ClassVar[str]
+    logger: str = ...
+    level: str = ...
+
+@dataclass
+class SetLoggerLevel_Response:
+    __msgtype__: ClassVar[str]

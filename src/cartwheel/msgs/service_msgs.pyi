@@ -1,0 +1,21 @@
+"""Message types of service_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.msgs import builtin_interfaces
+
+@dataclass
+class ServiceEventInfo:
+    __msgtype__: ClassVar[str]
+    REQUEST_SENT: ClassVar[int]
+    REQUEST_RECEIVED: ClassVar[int]
+    RESPONSE_SENT: ClassVar[int]
+    RESPONSE_RECEIVED: ClassVar[int]
+    event_type: int = ...
+    stamp: builtin_interfaces.Time = ...
+    client_gid: NDArray[np.uint8] = ...
+    sequence_number: int = ...

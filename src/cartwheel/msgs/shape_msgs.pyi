@@ -1,0 +1,46 @@
+"""Message types of shape_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cartwheel.msgs import geometry_msgs
+
+@dataclass
+class Mesh:
+    __msgtype__: ClassVar[str]
+    triangles: list[MeshTriangle] = ...
+    vertices: list[geometry_msgs.Point] = ...
+
+@dataclass
+class MeshTriangle:
+    __msgtype__: ClassVar[str]
+    vertex_indices: NDArray[np.uint32] = ...
+
+@dataclass
+class Plane:
+    __msgtype__: ClassVar[str]
+    coef: NDArray[np.float64] = ...
+
+@dataclass
+class SolidPrimitive:
+    __msgtype__: ClassVar[str]
+    BOX: ClassVar[int]
+    SPHERE: ClassVar[int]
+    CYLINDER: ClassVar[int]
+    CONE: ClassVar[int]
+    PRISM: ClassVar[int]
+    BOX_X: ClassVar[int]
+    BOX_Y: ClassVar[int]
+    BOX_Z: ClassVar[int]
+    SPHERE_RADIUS: ClassVar[int]
+    CYLINDER_HEIGHT: ClassVar[int]
+    CYLINDER_RADIUS: ClassVar[int]
+    CONE_HEIGHT: ClassVar[int]
+    CONE_RADIUS: ClassVar[int]
+    PRISM_HEIGHT: ClassVar[int]
+    type: int = ...
+    dimensions: NDArray[np.float64] = ...
+    polygon: geometry_msgs.Polygon = ...

@@ -1,0 +1,12 @@
+"""Message types of unique_identifier_msgs. Written by `make catalogue`; do not edit."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+@dataclass
+class UUID:
+    __msgtype__: ClassVar[str]
+    uuid: NDArray[np.uint8] = ...

@@ -1,0 +1,114 @@
+"""Writes src/cartwheel/msgs: a module and its stub for each package with built-in message types.
+
+Usage: python tools/make_message_modules.py [--check]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import cartwheel.messages
+from cartwheel.messages.field import Field
+from cartwheel.messages.fields import fields
+from cartwheel.messages.store import store
+
+TARGET = Path(cartwheel.messages.__file__).parents[1] / "msgs"
+MODULE = '''"""Message types of {package}. Written by `make catalogue`; do not edit."""
+
+from cartwheel.messages.modules import module_functions
+
+__getattr__, __dir__ = module_functions("{package}")
+'''
+STUB = '''"""Message types of {package}. Written by `make catalogue`; do not edit."""
+
+'''
+SCALARS = {"bool": "bool", "int": "int", "float": "float", "string": "str"}
+
+
+def module_files() -> dict[str, str]:
+    """The contents of all generated files by name."""
+    made: dict[str, str] = {}
+    for package, names in groupby(sorted(store().types), key=lambda name: name.split("/")[0]):
+        made[f"{package}.py"] = MODULE.format(package=package)
+        made[f"{package}.pyi"] = _stub(package, list(names))
+    return made
+
+
+def _stub(package: str, names: Iterable[str]) -> str:
+    classes = ["\n".join(_class(package, name)) for name in names]
+    text = "\n\n".join(classes)
+    others = sorted(
+        {field.type.split("/")[0] for name in names for field in fields(name) if "/" in field.type}
+        - {package}
+    )
+    imports = ["from dataclasses import dataclass", "from typing import ClassVar"]
+    if "NDArray" in text:
+        imports += ["", "import numpy as np", "from numpy.typing import NDArray"]
+    if others:
+        imports += ["", *_import(others)]
+    return STUB.format(package=package) + "\n".join(imports) + "\n\n" + text + "\n"
+
+
+def _import(packages: list[str]) -> list[str]:
+    line = f"from cartwheel.msgs import {', '.join(packages)}"
+    if len(line) <= 100:
+        return [line]
+    return ["from cartwheel.msgs import (", *(f"    {each}," for each in packages), ")"]
+
+
+def _class(package: str, name: str) -> Iterator[str]:
+    """The stub of a class. All fields have default values, which stubs write as an ellipsis."""
+    yield "@dataclass"
+    yield f"class {name.split('/')[2]}:"
+    yield "    __msgtype__: ClassVar[str]"
+    for constant, _, value in store().fielddefs[name][0]:
+        yield f"    {constant}: ClassVar[{type(value).__name__}]"
+    for field in fields(name):
+        yield f"    {field.name}: {_type(package, field)} = ..."
+
+
+def _type(package: str, field: Field) -> str:
+    if field.kind == "message":
+        other, _, rest = field.type.partition("/")
+        one = rest.partition("/")[2]
+        one = one if other == package else f"{other}.{one}"
+    else:
+        one = SCALARS[field.kind]
+    if not field.array:
+        return one
+    if field.kind in ("message", "string"):
+        return f"list[{one}]"
+    return f"NDArray[np.{'bool_' if field.kind == 'bool' else field.type}]"
+
+
+def _differences(made: dict[str, Any]) -> list[str]:
+    present = {
+        path.name: path.read_text()
+        for path in TARGET.glob("*.py*")
+        if path.is_file() and path.name != "__init__.py"
+    }
+    return sorted(
+        name for name in made.keys() | present.keys() if made.get(name) != present.get(name)
+    )
+
+
+def main() -> None:
+    made = module_files()
+    different = _differences(made)
+    if "--check" in sys.argv[1:]:
+        if different:
+            sys.exit(f"{', '.join(different)} in {TARGET} is old: run `make catalogue`")
+        return
+    for name in different:
+        if name in made:
+            (TARGET / name).write_text(made[name])
+        else:
+            (TARGET / name).unlink()
+
+
+if __name__ == "__main__":
+    main()
