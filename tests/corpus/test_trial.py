@@ -645,3 +645,46 @@ def test_the_integral_of_ros_control_without_a_limit_corrects_no_error(tmp_path,
     (reach,) = verdict.reaches
     assert abs(reach.error) == pytest.approx(0.98 * abs(math.sin(reach.reached)) / 3.0, rel=0.02)
     assert verdict.good, verdict.faults
+
+
+BOAT = (
+    '<link name="base"><inertial><mass value="20"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    '<collision><geometry><box size="1 0.4 0.05"/></geometry></collision></link>'
+)
+SCREW = (
+    '<link name="{name}"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/>'
+    '</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'
+    '<child link="{name}"/><origin xyz="-0.5 {y} 0"/><axis xyz="1 0 0"/></joint>'
+    '<gazebo><plugin name="gz::sim::systems::Thruster" filename="gz-sim-thruster-system">'
+    "<joint_name>{joint}</joint_name><propeller_diameter>0.1</propeller_diameter>{more}</plugin>"
+    "</gazebo>"
+)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "",
+        "<use_angvel_cmd>true</use_angvel_cmd><thrust_coefficient>-0.1</thrust_coefficient>",
+        "<topic>left</topic><max_thrust_cmd>2</max_thrust_cmd>",
+    ],
+)
+def test_thrusters_push_a_boat_in_water(tried, more):
+    port = SCREW.format(name="port", joint="port_joint", y=0.1, more=more)
+    starboard = SCREW.format(name="starboard", joint="starboard_joint", y=-0.1, more="")
+    found = tried(BOAT, port, starboard)
+    assert found.good and found.moves
+    assert found.stand.state == "floats"
+    assert [spin.joint for spin in found.spins] == ["port_joint", "starboard_joint"]
+    for spin in found.spins:
+        assert spin.effort and spin.follows is (spin.measured * spin.commanded > 0)
+    # The whole boat accelerates at 0.5 m/s² for 0.1 s, and the propeller as it turns the boat.
+    assert found.spins[1].measured > 0.05
+
+
+def test_a_thruster_without_its_joint_is_a_fault_of_the_file(tried):
+    found = tried(BOAT, SCREW.format(name="port", joint="no_joint", y=0.1, more=""))
+    assert found.outcome == "file" and not found.moves
+    assert [(fault.test, fault.subject) for fault in found.faults] == [
+        ("plugin", "gz-sim-thruster-system")
+    ]

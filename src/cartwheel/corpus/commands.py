@@ -9,6 +9,7 @@ from typing import Any
 
 from cartwheel.api import Model, World
 from cartwheel.corpus.motion import degree, positions, resistance
+from cartwheel.corpus.thrusters import thruster_topics
 from cartwheel.corpus.verdict import RISEN, Flight, Spin
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -53,8 +54,9 @@ def spins(
     by_effort: list[tuple[TopicInfo, tuple[str, ...]]] = []
     by_position = {each.owner for each in world.graph.joint_inputs.all()}
     controllers = {each.node: each for each in started}
+    thrusters = thruster_topics(world, model, robot)
     for info in world.graph.topics():
-        if info.type not in (_FLOAT, _FLOATS):
+        if info.type not in (_FLOAT, _FLOATS) or info.name in thrusters:
             continue
         for node in info.subscribers:
             owner = controllers.get(node)

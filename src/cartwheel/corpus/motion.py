@@ -11,6 +11,7 @@ from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.heading import heading
 from cartwheel.corpus.limits import StatedLimits
+from cartwheel.corpus.thrusters import has_thrusters
 from cartwheel.corpus.verdict import Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.devices.drives.drive import Drives
@@ -66,6 +67,7 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         tilt=_between(rotate(start.orientation, (0, 0, 1)), rotate(after.orientation, (0, 0, 1))),
         speed=math.dist(before.position, after.position),
         turn=_turned(before, after),
+        floats=has_thrusters(description),
     )
 
 

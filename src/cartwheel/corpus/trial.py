@@ -18,6 +18,7 @@ from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
+from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
 from cartwheel.description.launches import LaunchUse, chosen, launches_near, root_of
@@ -43,6 +44,9 @@ _LISTENING = 1.0
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
+_WATER = """<sdf version="1.9"><world name="water"><gravity>0 0 -9.8</gravity>
+<plugin name="buoyancy" filename="gz-sim-buoyancy-system"/></world></sdf>"""
+"""A world filled with water, for robots with thrusters."""
 
 
 def try_robot(
@@ -90,7 +94,7 @@ def try_robot(
         selected = selection(robot, use, launches)
         controllers, spawned = selected.files, selected.names
     try:
-        with World(lenient=True) as world:
+        with World(_WATER if has_thrusters(robot) else "empty", lenient=True) as world:
             pose = _place(robot)
             # A ground_plane already exists.
             name = f"{robot.name}_tried" if robot.name in world.models else robot.name
@@ -215,7 +219,10 @@ def _moved(
     gains = _gains(robot, started)
     verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot, gains)))
     yield verdict
-    yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
+    verdict = replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
+    yield verdict
+    pushes = tuple(thrusts(world, model, robot))
+    yield replace(verdict, spins=(*verdict.spins, *pushes))
 
 
 def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:

@@ -43,12 +43,16 @@ class Stand:
     """The root's speed during the last second, m/s."""
     turn: float
     """The root's angular speed during the last second, rad/s."""
+    floats: bool = False
+    """Whether it was tested in water, where it need not stand."""
 
     @property
     def state(self) -> str:
-        """``fixed``, ``yes``, or what the robot did instead."""
+        """``fixed``, ``floats``, ``yes``, or what the robot did instead."""
         if self.fixed:
             return "fixed"
+        if self.floats:
+            return "floats"
         if self.speed > CREEPING or self.turn > CREEPING:
             return "moves"
         if self.tilt > TILTED:
@@ -232,8 +236,8 @@ class Verdict:
 
     @property
     def stands(self) -> bool:
-        """Whether it stands, or is fixed to the world."""
-        return self.stand is not None and self.stand.state in ("fixed", "yes")
+        """Whether it stands, floats, or is fixed to the world."""
+        return self.stand is not None and self.stand.state in ("fixed", "floats", "yes")
 
     @property
     def outcome(self) -> Outcome:

@@ -15,6 +15,7 @@ from cartwheel.dialects.catalogue import (
     short_name,
     unloadable,
 )
+from cartwheel.dialects.gz.fluids.buoyancy import float_model
 from cartwheel.dialects.gz.sensor_tags import own_tag, publishes
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
@@ -74,11 +75,12 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             and not any(plugin_named(tag.filename, more) for tag in one.plugins)
         ]
         plugins += _serve(part, shared, alone, systems)
+        floating = list(float_model(part, shared))
     except BaseException:
         for created in plugins:
             created.close()
         raise
-    return list(plugins)
+    return [*plugins, *floating]
 
 
 def _serve(

@@ -29,7 +29,7 @@ from cartwheel.description.model import (
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.shapes.outline import solid
 from cartwheel.errors import DescriptionError, Origin, Value
-from cartwheel.geometry import Pose, matrix_from_quat
+from cartwheel.geometry import Pose, Vec3, matrix_from_quat
 
 Array = NDArray[np.float64]
 WATER = 1000.0
@@ -157,6 +157,17 @@ def inertial_of(
         iyz=float(total[1, 2]),
         origin=origin,
     )
+
+
+def volume_of(shape: Shape) -> tuple[float, Vec3]:
+    """Volume of a shape in m³, and its centre in the shape's frame in m; 0 for open shapes.
+
+    Raises:
+        MeshError: The mesh cannot be read.
+    """
+    volume, centre, _ = _solid(shape)
+    x, y, z = centre.tolist()
+    return volume, (x, y, z)
 
 
 def _solid(shape: Shape) -> tuple[float, Array, Array]:

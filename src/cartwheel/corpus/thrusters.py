@@ -1,0 +1,96 @@
+"""Commands to the thrusters of a boat or an underwater vehicle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from cartwheel.api import Model, World
+from cartwheel.corpus.verdict import Spin
+from cartwheel.description.model import Joint, RobotDescription
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.gz.fluids.thruster import ThrusterParameters, ThrusterSystem, topics
+from cartwheel.dialects.tags import read
+from cartwheel.errors import PluginError
+from cartwheel.geometry import rotate
+
+_ACCELERATION = 0.5
+"""Acceleration of the robot's own mass by the commanded thrust, m/s²."""
+_SECONDS = 0.1
+"""Before the robot has turned or drifted much."""
+
+
+def has_thrusters(robot: RobotDescription) -> bool:
+    """Whether a robot moves in water."""
+    return any(plugin_named(tag.filename) is ThrusterSystem for tag in robot.plugins)
+
+
+def thrusts(world: World, model: Model, robot: RobotDescription) -> Iterator[Spin]:
+    """Commands each thruster alone, in both directions.
+
+    The velocity is that of the propeller along its axis: half of the difference between both
+    directions, so that weight and buoyancy have no influence.
+    """
+    for topic, joint, config in _thrusters(world, model, robot):
+        command = min(_command(config, robot.mass), config.most, -config.least)
+        if command <= 0:
+            # It works in one direction only.
+            command = config.most if config.most > 0 else config.least
+        sense = -1.0 if config.by_speed and _coefficient(config) < 0 else 1.0
+        speeds = [
+            _pushed(world, model, joint, topic, sign * sense * command) for sign in (1.0, -1.0)
+        ]
+        yield Spin(
+            topic=topic,
+            joint=joint.name,
+            commanded=command,
+            measured=(speeds[0] - speeds[1]) / 2,
+            effort=True,
+        )
+
+
+def thruster_topics(world: World, model: Model, robot: RobotDescription) -> set[str]:
+    """The topics of the commands to thrusters."""
+    return {topic for topic, _, _ in _thrusters(world, model, robot)}
+
+
+def _thrusters(
+    world: World, model: Model, robot: RobotDescription
+) -> Iterator[tuple[str, Joint, ThrusterParameters]]:
+    """The topic, the joint and the tags of each thruster that was loaded."""
+    live = {info.name for info in world.graph.topics() if info.subscribers}
+    for tag in robot.plugins:
+        if plugin_named(tag.filename) is not ThrusterSystem:
+            continue
+        try:
+            config, _ = read(ThrusterParameters, tag.element)
+        except PluginError:
+            continue
+        joint = robot.joint(config.joint.strip())
+        topic, _, _ = topics(model.name, config)
+        if joint is not None and topic in live:
+            yield topic, joint, config
+
+
+def _command(config: ThrusterParameters, mass: float) -> float:
+    """A force in N, or the speed in rad/s that causes it."""
+    force = _ACCELERATION * mass
+    if not config.by_speed:
+        return force
+    factor = abs(config.density * _coefficient(config)) * config.diameter**4
+    return math.sqrt(force / factor) if factor else 0.0
+
+
+def _coefficient(config: ThrusterParameters) -> float:
+    return config.alpha_1 if config.coefficient is None else config.coefficient
+
+
+def _pushed(world: World, model: Model, joint: Joint, topic: str, command: float) -> float:
+    """Velocity of a propeller along its axis after a constant command from rest, m/s."""
+    world.reset()
+    world.publish(topic, {"data": command})
+    world.run(_SECONDS)
+    link = model.link(joint.child)
+    axis = rotate(link.pose.orientation, rotate(joint.pose.orientation, joint.axis.xyz))
+    velocity = link.velocity.linear
+    return sum(a * b for a, b in zip(axis, velocity, strict=True))

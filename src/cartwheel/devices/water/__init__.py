@@ -1,0 +1,1 @@
+"""Buoyancy, hydrodynamic forces and thrusters of boats and underwater vehicles."""

@@ -1,0 +1,1 @@
+"""Plugins of gz-sim for the forces of water and air."""
