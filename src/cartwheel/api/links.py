@@ -27,7 +27,7 @@ from cartwheel.api.inertials import (
 )
 from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.surfaces import friction_of, with_friction
-from cartwheel.api.values import Vector, vector
+from cartwheel.api.values import Vector, instance, invalid, vector
 from cartwheel.description.model import Link as Description
 from cartwheel.description.model import Rgba, RobotDescription
 from cartwheel.geometry import Array, Pose, Vec3
@@ -292,6 +292,78 @@ class Link:
                 at=point,
                 duration_ns=duration,
             )
+
+    # -- attached links
+
+    def attach(self, other: Link) -> None:
+        """Fixes another link to this one in their current relative pose, as a fixed joint does.
+
+        If one of the links cannot move, it holds the other one. Attached links still collide. Two
+        links that are attached already keep their pose of now. The attachment ends with `detach`,
+        `World.reset`, or when one of the models is deleted. A link can be attached to any number of
+        others.
+
+        The first attachments compile the models again, which takes some milliseconds.
+
+        Args:
+            other: A link of the same world, of any model.
+
+        Raises:
+            CartwheelError: `other` is this link, or not a link of this world, or neither link can
+                move.
+            UnknownNameError: A model or a link does not exist any more.
+            SimulationError: The world is closed.
+        """
+        with self._world.used(change=True) as simulation:
+            one, two = self._place(simulation), self._other(other)._place(simulation)
+            attachments = simulation.attachments
+            if one == two or not (attachments.movable(one) or attachments.movable(two)):
+                rule = "must be another link, and one of the two must be movable"
+                raise invalid("other", rule, other)
+            attachments.attach(one, two)
+
+    def detach(self, other: Link | None = None) -> None:
+        """Releases links that `attach` has fixed. Does nothing if they are not attached.
+
+        Args:
+            other: The other link; None for all links that are attached to this one.
+
+        Raises:
+            CartwheelError: `other` is not a link of this world.
+            UnknownNameError: A model or a link does not exist any more.
+            SimulationError: The world is closed.
+        """
+        with self._world.used(change=True) as simulation:
+            one = self._place(simulation)
+            if other is not None:
+                simulation.attachments.detach(one, self._other(other)._place(simulation))
+                return
+            for name in tuple(simulation.attachments.attached(one)):
+                model, _, link = name.partition("::")
+                simulation.attachments.detach(one, (model, link))
+
+    @property
+    def attached(self) -> tuple[Link, ...]:
+        """The links that `attach` has fixed to this one.
+
+        Raises:
+            UnknownNameError: The model or the link does not exist any more.
+        """
+        with self._world.lock:
+            simulation = self._world.session.simulation
+            names = simulation.attachments.attached(self._place(simulation))
+            places = (name.partition("::") for name in names)
+            return tuple(Link(self._world, model, link) for model, _, link in places)
+
+    def _other(self, other: Link) -> Link:
+        other = instance(other, Link, "other", 'model.link("base_link")')
+        if other._world is not self._world:
+            raise invalid("other", "must be a link of the same world", other)
+        return other
+
+    def _place(self, simulation: Simulation) -> tuple[str, str]:
+        simulation.truth.link(self.model, self.name)
+        return self.model, self.name
 
     def contacts(self) -> tuple[Contact, ...]:
         """All contacts of the link, with the link as the first one; see `World.contacts`."""

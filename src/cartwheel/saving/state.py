@@ -147,6 +147,7 @@ def objects(session: Session) -> Iterator[tuple[str, Any]]:
     for resident in population.everyone():
         yield from _objects_of(resident)
     yield "forces", simulation.forces
+    yield "attachments", simulation.attachments
     yield "watch", population.watch
     yield "separation", population.separation
     for kind, shared in session.shared.objects():

@@ -15,6 +15,7 @@ from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
 from cartwheel.simulation.limits import check_steps
+from cartwheel.simulation.models.attachments import Attachments
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.ground_truth import GroundTruth
 from cartwheel.simulation.models.models import Models
@@ -63,6 +64,8 @@ class Simulation(Models):
         self.engine.on_fault = self.faults.disable
         self.truth = GroundTruth(self.engine, self._population, self.forces)
         """The exact state of the models."""
+        self.attachments = Attachments(self.engine, self._population.house.part)
+        """Links that a program has attached."""
         self.alarms = Alarms(self.engine, partial(self.faults.fail, "an action"))
         self._population.start(attach_world)
         try:
@@ -279,6 +282,7 @@ class Simulation(Models):
             seed: New seed for all noise, at least 0; None for the same seed.
         """
         population = self._population
+        self.attachments.release()
         population.return_to_start()
         self.engine.rewind(keep_time=keep_time, prepare=population.rewind_servos)
         if seed is not None:
