@@ -15,7 +15,6 @@ from cartwheel.simulation.clock import Task, Topic, always
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.faults import Faults
 from cartwheel.simulation.limits import check_steps
-from cartwheel.simulation.models.attachments import Attachments
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.ground_truth import GroundTruth
 from cartwheel.simulation.models.models import Models
@@ -64,8 +63,6 @@ class Simulation(Models):
         self.engine.on_fault = self.faults.disable
         self.truth = GroundTruth(self.engine, self._population, self.forces)
         """The exact state of the models."""
-        self.attachments = Attachments(self.engine, self._population.house.part)
-        """Links that a program has attached."""
         self.alarms = Alarms(self.engine, partial(self.faults.fail, "an action"))
         self._population.start(attach_world)
         try:
@@ -156,8 +153,7 @@ class Simulation(Models):
                 due = change
             if alarm is not None and alarm < due:
                 due = alarm
-            # Without tasks, commands still do not wait longer than until the next check.
-            # Comparisons take a quarter of the time of `min`.
+            # Commands wait at most until the next check. Comparisons are faster than `min`.
             if watch.due < due:  # noqa: PLR1730
                 due = watch.due
             count = due - engine.step

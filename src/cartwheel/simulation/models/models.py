@@ -11,6 +11,7 @@ from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Pose, Vec3
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.limits import STRONGEST, check_pose, number, numbers
+from cartwheel.simulation.models.attachments import Attachments
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.occupied_space import Space, occupied
@@ -38,6 +39,8 @@ class Models(Run):
         self.engine = engine
         self.forces = Forces(engine)
         self._population = Population(engine, self.forces, attach, compiler)
+        self.attachments = Attachments(engine, self._population.house.part)
+        """Links that a program has attached to each other."""
 
     @property
     def population(self) -> Population:
