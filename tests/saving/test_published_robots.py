@@ -1,0 +1,47 @@
+"""A saved world of a robot that others published continues bit for bit."""
+
+import os
+from pathlib import Path
+
+import pytest
+from tests.golden.adapter import robots_in
+from tests.saving.continuing import compare
+from tests.saving.journeys import ROBOTS
+
+import cartwheel as cw
+
+CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROBOTS.parents[3] / "shared" / "corpus"))
+PACKAGES = sorted(each.name for each in CORPUS.iterdir() if each.is_dir()) if CORPUS.is_dir() else []
+PARTS = 4
+"""Tests of a package, each of a part of its robots."""
+SLOW, SHORT = {"large_model.urdf.xacro", "turtlebot3_waffle.urdf.xacro"}, (0.35, 0.1)
+"""Robots with many links or large images, and the times for which they are simulated, s."""
+
+pytestmark = pytest.mark.skipif(not PACKAGES, reason=f"no robots of others in {CORPUS}")
+
+
+@pytest.fixture(scope="module")
+def robots():
+    """Found once, and not while tests are collected: that expands all descriptions."""
+    return robots_in(CORPUS)
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("package", PACKAGES or ["none"])
+def test_each_robot_of_a_package_continues(package, part, robots, elsewhere):
+    of_package = [each for each in robots if each.relative_to(CORPUS).parts[0] == package]
+    assert of_package
+    left_out, simulated = {}, 0
+    for file in of_package[part::PARTS]:
+        try:
+            left_out[file] = compare(file, elsewhere, SHORT if file.name in SLOW else (1.0, 0.5))
+            simulated += 1
+        except cw.CartwheelError as error:
+            error.add_note(f"in {file}")
+            if error.code.name in ("state-mismatch", "simulation-diverged"):
+                raise
+        except AssertionError as error:
+            error.add_note(f"in {file}")
+            raise
+    assert not any(left_out.values()), left_out
+    assert simulated or len(of_package) <= PARTS
