@@ -11,7 +11,9 @@ from tests.saving.journeys import ROBOTS
 import cartwheel as cw
 
 CORPUS = Path(os.environ.get("CARTWHEEL_CORPUS", ROBOTS.parents[3] / "shared" / "corpus"))
-PACKAGES = sorted(each.name for each in CORPUS.iterdir() if each.is_dir()) if CORPUS.is_dir() else []
+PACKAGES = (
+    sorted(each.name for each in CORPUS.iterdir() if each.is_dir()) if CORPUS.is_dir() else []
+)
 PARTS = 4
 """Tests of a package, each of a part of its robots."""
 SLOW, SHORT = {"large_model.urdf.xacro", "turtlebot3_waffle.urdf.xacro"}, (0.35, 0.1)

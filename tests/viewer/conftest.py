@@ -153,10 +153,16 @@ def new_page(browser):
     return page
 
 
-def open_page(browser, arena, *, shadows=False):
-    """A page that shows the scene; shadows would double the time of each image."""
+def open_page(browser, arena, *, lit=False):
+    """A page that shows the scene, by default with simple lights.
+
+    Without a GPU, shadows double the time of each image. To prepare the light of the surroundings
+    takes as long as 70 images, for each page.
+    """
     scene = arena.viewer._page.server.scene
-    scene.configure_default_lights(enabled=True, cast_shadow=shadows)
+    if not lit:
+        scene.configure_default_lights(enabled=True, cast_shadow=False)
+        scene.configure_environment_map(None)
     page = new_page(browser)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(error.stack))
@@ -173,7 +179,7 @@ def open_page(browser, arena, *, shadows=False):
 
 @pytest.fixture(scope="module")
 def shared_page(browser, arena, request):
-    page = open_page(browser, arena, shadows=getattr(request.module, "SHADOWS", False))
+    page = open_page(browser, arena, lit=getattr(request.module, "LIT", False))
     yield page
     page.close()
     assert page.faults == []

@@ -18,7 +18,8 @@ from tests.viewer.conftest import (
 from cartwheel.geometry import Pose
 
 RED, BLUE = 0, 2
-SHADOWS = True
+LIT = True
+"""With the lights that users have."""
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -81,7 +82,7 @@ def test_links_follow_the_simulation(page, arena):
 
 
 def test_two_browsers_see_the_same(browser, arena, page):
-    second = open_page(browser, arena, shadows=True)
+    second = open_page(browser, arena, lit=True)
     close_notes(page)
     close_notes(second)
     hide_frustum(second)
