@@ -28,7 +28,7 @@ from tests.processes import bridges_of
 
 import cartwheel as cw
 from cartwheel.bridges.recording import Recorder, writing
-from cartwheel.bridges.recording.backlog import ROOM, Backlog
+from cartwheel.bridges.recording.backlog import ROOM, WIDTH, Backlog
 from cartwheel.bridges.recording.formats import encoding_for
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.patterns import Patterns
@@ -419,12 +419,14 @@ def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
 ) -> None:
     real = Backlog.get
 
-    def slow(self: Backlog[Any], timeout: float) -> list[Any]:
+    def slow(self: Backlog, timeout: float) -> list[Any]:
         time.sleep(0.02)
         return real(self, timeout)
 
+    defaults = Backlog.__init__.__kwdefaults__
+    assert defaults["room"] == ROOM
     monkeypatch.setattr(Backlog, "get", slow)
-    monkeypatch.setattr(Backlog.__init__, "__kwdefaults__", {"room": ROOM, "count": 5})
+    monkeypatch.setattr(Backlog.__init__, "__kwdefaults__", defaults | {"count": 5})
     path = tmp_path / "slow.mcap"
     with cw.World("empty") as world:
         with world.record(path, topics=["/clock"]) as recorder:
@@ -436,13 +438,13 @@ def test_a_slow_disk_holds_the_simulation_and_loses_nothing(
     assert len(slow_disk) == 1
 
 
-def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
-    backlog = Backlog[int](room=3000)
+def test_a_backlog_counts_bytes() -> None:
+    backlog = Backlog(room=3000)
     put = [0]
 
     def fill() -> None:
         for number in range(10):
-            backlog.put(number, 1000)
+            backlog.put(number, 5 * number, bytes(1000))
             put[0] += 1
 
     thread = threading.Thread(target=fill)
@@ -450,12 +452,45 @@ def test_a_backlog_counts_bytes(tmp_path: Path) -> None:
     taken: list[int] = []
     while len(taken) < 10:
         items = backlog.get(10.0)
-        assert 0 < len(items) <= 3
-        taken += [number for number, _ in items]
-        backlog.done(sum(size for _, size in items))
+        assert 0 < len(items) <= 3 * WIDTH
+        taken += items[0::WIDTH]
+        assert items[1::WIDTH] == [5 * number for number in items[0::WIDTH]]
+        backlog.done(items[2::WIDTH])
     thread.join(120)
     assert put == [10]
     assert taken == list(range(10))
+
+
+def test_a_backlog_loses_nothing_between_two_threads() -> None:
+    """The two threads share a list without a lock, and switch often."""
+    backlog, count = Backlog(room=1 << 20, count=500), 50_000
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        thread = threading.Thread(
+            target=lambda: [backlog.put(i % 7, i, str(i).encode()) for i in range(count)]
+        )
+        thread.start()
+        taken: list[Any] = []
+        while len(taken) < count * WIDTH:
+            items = backlog.get(10.0)
+            assert items and len(items) <= 501 * WIDTH
+            taken += items
+            backlog.done(items[2::WIDTH])
+        thread.join(120)
+    finally:
+        sys.setswitchinterval(interval)
+    assert taken == [each for i in range(count) for each in (i % 7, i, str(i).encode())]
+
+
+def test_a_closed_backlog_takes_nothing() -> None:
+    backlog = Backlog()
+    backlog.put(1, 2, b"3")
+    backlog.close()
+    backlog.put(4, 5, b"6")
+    assert backlog.get(0.0) == [1, 2, b"3"]
+    assert backlog.get(0.0) == []
+    assert not backlog.is_open
 
 
 def test_a_message_that_cannot_be_encoded_costs_itself_alone(tmp_path: Path) -> None:
@@ -734,7 +769,7 @@ def test_room_for_the_end_is_made_where_the_disk_has_none(
             text = noise.randbytes(40).hex()
             message = message_class("std_msgs/msg/String")(data=text)
             data = encode_ros1(message) if wanted == "ros1" else encode_cdr(message)
-            writer.write(channels[step % 20], step * 10**6, data)
+            writer.write([channels[step % 20]], [step * 10**6], [data])
             if step % 25 == 0:
                 writer.flush()
     writer.abandon()

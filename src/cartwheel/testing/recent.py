@@ -132,7 +132,8 @@ class Recent:
         for time_ns, topic, kind, latched, message in (*first, *later):
             if topic not in channels:
                 channels[topic] = writer.add(topic, kind, latched=latched)
-            writer.write(channels[topic], time_ns, made.encode(message, counts[topic]))
+            data = made.encode(message, counts[topic])
+            writer.write([channels[topic]], [time_ns], [data])
             counts[topic] += 1
             if topic.endswith("robot_description"):
                 name = f"{topic.strip('/').replace('/', '.')}.xml"

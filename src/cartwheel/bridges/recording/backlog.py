@@ -4,73 +4,76 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import deque
-from typing import Generic, TypeVar
-
-T = TypeVar("T")
+from collections.abc import Callable
+from typing import Any
 
 ROOM = 64 << 20
 """Approximate maximum size of queued messages in bytes."""
 COUNT = 20_000
 """Maximum number of queued messages."""
-_BATCH = 1000
-"""Number of queued messages at which the reader is woken at once."""
+_BATCHES = 20
+"""The reader is woken at once at this part of the room."""
 _LINGER = 0.02
 """Interval in s at which the reader takes the queued messages."""
-_SMALL = 256
-"""Approximate size of a queued message in bytes, without its data."""
+WIDTH = 3
+"""Number of values of a message in the list that `Backlog.get` returns."""
 
 
-class Backlog(Generic[T]):
+class Backlog:
     """A queue whose writer waits while it is full. It has one writer and one reader.
 
-    The two do not share a lock while the queue is neither full nor awaited. A count of bytes is
-    changed by only one of them.
+    A message is three successive values of one list, which Python appends in one operation. Thus
+    neither thread locks the list, and no object is made that Python's garbage collector visits.
+    Each message counts as its size and the part of the room that bounds the number of messages.
 
     Args:
-        room: Approximate maximum size of the queued items in bytes.
-        count: Maximum number of queued items.
+        room: Approximate maximum size of the queued messages in bytes.
+        count: Maximum number of queued messages.
+        on_wait: Called after `put` has waited, with the total time in s.
     """
 
-    def __init__(self, *, room: int = ROOM, count: int = COUNT) -> None:
+    def __init__(
+        self,
+        *,
+        room: int = ROOM,
+        count: int = COUNT,
+        on_wait: Callable[[float], None] = lambda _: None,
+    ) -> None:
         self._room = room
-        self._count = count
-        self._batch = max(1, min(_BATCH, count // 2))
-        self._items: deque[tuple[T, int]] = deque()
+        self._each = -(-room // count)
+        self._batch = max(1, room // _BATCHES)
+        self._on_wait = on_wait
+        self._items: list[Any] = []
         self._put = 0
-        """Bytes that were put so far."""
+        """Bytes that were put so far; changed only by the writer."""
         self._written = 0
-        """Bytes of the items that were written."""
+        """Bytes of the messages that were written; changed only by the reader."""
+        self._limit = min(self._batch, room)
+        """Value of `_put` at which the writer wakes the reader, and waits if the queue is full."""
         self._called = False
-        """Whether the reader was woken for the items in the queue."""
+        """Whether the reader was woken for the messages in the queue."""
         self._changed = threading.Condition()
         self._open = True
         self.waited = 0.0
         """Wall time in s for which `put` has waited."""
 
-    def put(self, item: T, size: int) -> None:
-        """Adds an item as soon as there is space. Does nothing after `close`.
+    def put(self, number: int, time_ns: int, data: bytes | str) -> None:
+        """Adds a message as soon as there is space. Does nothing after `close`.
 
         Args:
-            item: The item.
-            size: Size of its data in bytes.
+            number: Number of its topic.
+            time_ns: Its time.
+            data: Its bytes.
         """
-        items, waiting = self._items, self._put - self._written
-        if waiting >= self._room or len(items) >= self._count:
-            self._wait()
-        if not self._open:
+        put = self._put
+        if put >= self._limit and not self._call():
             return
-        size += _SMALL
-        self._put += size
-        items.append((item, size))
-        # This is `_is_due` inlined, which saves a call per message.
-        if (len(items) >= self._batch or waiting + size > self._room // 4) and not self._called:
-            with self._changed:
-                self._called = True
-                self._changed.notify_all()
+        self._put = put + len(data) + self._each
+        self._items.extend((number, time_ns, data))
 
-    def get(self, timeout: float) -> list[tuple[T, int]]:
-        """Returns the queued items with their sizes, at most `_LINGER` s after the first was added.
+    def get(self, timeout: float) -> list[Any]:
+        """Returns the queued messages, at most `_LINGER` s after the first was added: for each
+        message its number, its time and its data.
 
         Returns an empty list after `timeout` s or once closed.
 
@@ -79,19 +82,22 @@ class Backlog(Generic[T]):
         """
         deadline = time.monotonic() + timeout
         with self._changed:
-            while self._open and not self._is_due:
+            while self._open and not self._called:
                 left = min(deadline - time.monotonic(), _LINGER)
                 if left <= 0:
                     break
-                waited = not self._changed.wait(left)
-                if waited and self._items:
+                if not self._changed.wait(left) and self._items:
                     break
             self._called = False
-            # The writer may append meanwhile.
-            return [self._items.popleft() for _ in range(len(self._items))]
+        # The writer may append meanwhile.
+        count = len(self._items)
+        taken = self._items[:count]
+        del self._items[:count]
+        return taken
 
-    def done(self, size: int) -> None:
-        """Releases the space of items that were written: the sum of their sizes from `get`."""
+    def done(self, data: list[bytes | str]) -> None:
+        """Releases the space of messages that were written."""
+        size = sum(map(len, data)) + len(data) * self._each
         with self._changed:
             self._written += size
             self._changed.notify_all()
@@ -101,23 +107,30 @@ class Backlog(Generic[T]):
         return self._open
 
     def close(self) -> None:
-        """Rejects new items. Queued items can still be read."""
+        """Rejects new messages. Queued messages can still be read."""
         with self._changed:
             self._open = False
+            self._limit = -1
             self._changed.notify_all()
 
-    def _wait(self) -> None:
-        begin = time.perf_counter()
+    def _call(self) -> bool:
+        """Wakes the reader, and waits while the queue is full. Returns whether it is open."""
+        waited = 0.0
         with self._changed:
             self._called = True
             self._changed.notify_all()
-            self._changed.wait_for(lambda: not self._is_full or not self._open)
-        self.waited += time.perf_counter() - begin
-
-    @property
-    def _is_due(self) -> bool:
-        return len(self._items) >= self._batch or self._put - self._written > self._room // 4
+            if self._is_full:
+                begin = time.perf_counter()
+                self._changed.wait_for(lambda: not self._is_full or not self._open)
+                waited = time.perf_counter() - begin
+            is_open = self._open
+            if is_open:
+                self._limit = min(self._put + self._batch, self._written + self._room)
+        if waited:
+            self.waited += waited
+            self._on_wait(self.waited)
+        return is_open
 
     @property
     def _is_full(self) -> bool:
-        return self._put - self._written >= self._room or len(self._items) >= self._count
+        return self._put - self._written >= self._room

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -77,7 +78,11 @@ class BagWriter:
         self._connections.append(_Connection(number, topic, latched, schema))
         return number
 
-    def write(self, channel: int, time_ns: int, data: bytes) -> None:
+    def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        for each in zip(channels, times, data, strict=True):
+            self._write(*each)
+
+    def _write(self, channel: int, time_ns: int, data: bytes) -> None:
         into = self._connections[channel]
         if self._chunk and len(self._chunk) + len(data) > CHUNK:
             self.flush()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -84,7 +84,11 @@ class Db3Writer:
         self._topics.append(TopicCount(topic, schema.name, schema.hash, latched))
         return number - 1
 
-    def write(self, channel: int, time_ns: int, data: bytes) -> None:
+    def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        for each in zip(channels, times, data, strict=True):
+            self._write(*each)
+
+    def _write(self, channel: int, time_ns: int, data: bytes) -> None:
         self._run(
             "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
             (channel + 1, time_ns, data),

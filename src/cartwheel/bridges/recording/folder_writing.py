@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -41,8 +41,8 @@ class FolderWriter:
         self._topics.append(TopicCount(topic, schema.name, schema.hash, latched))
         return self._mcap.add(topic, type_name, latched=latched)
 
-    def write(self, channel: int, time_ns: int, data: bytes) -> None:
-        self._mcap.write(channel, time_ns, data)
+    def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        self._mcap.write(channels, times, data)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         self._mcap.attach(name, media_type, data, time_ns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -126,26 +126,32 @@ class McapWriter:
         self._channels.append(_Channel(number, known[1], made))
         return number - 1
 
-    def write(self, channel: int, time_ns: int, data: bytes) -> None:
-        # This runs for each message, so it avoids calls.
-        into, size = self._channels[channel], len(data)
-        if self._size + size > CHUNK and self._chunk:
-            self.flush()
-        chunk = self._chunk
-        if not into.is_stated:
-            into.is_stated = True
-            chunk += (into.schema, into.record)
-            self._size += len(into.schema) + len(into.record)
-        into.count = count = into.count + 1
-        into.index += (time_ns, self._size)
-        number = count & 0xFFFFFFFF
-        chunk += (_head(_MESSAGE, _FIELDS + size, into.number, number, time_ns, time_ns), data)
-        self._size += _HEAD.size + size
-        # Comparisons take a quarter of the time of `min` and `max`.
-        if time_ns < self._first:  # noqa: PLR1730
-            self._first = time_ns
-        if time_ns > self._last:  # noqa: PLR1730
-            self._last = time_ns
+    def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        # The loop runs for each message, so it uses local names and avoids calls.
+        known, chunk, end, place = self._channels, self._chunk, self._size, _HEAD.size
+        for number, time_ns, each in zip(channels, times, data, strict=True):
+            into, size = known[number], len(each)
+            if end + size > CHUNK and chunk:
+                self._size = end
+                self.flush()
+                chunk, end = self._chunk, 0
+            if not into.is_stated:
+                into.is_stated = True
+                chunk += (into.schema, into.record)
+                end += len(into.schema) + len(into.record)
+            into.count = count = into.count + 1
+            into.index += (time_ns, end)
+            head = _head(
+                _MESSAGE, _FIELDS + size, into.number, count & 0xFFFFFFFF, time_ns, time_ns
+            )
+            chunk += (head, each)
+            end += place + size
+            # Comparisons take a quarter of the time of `min` and `max`.
+            if time_ns < self._first:  # noqa: PLR1730
+                self._first = time_ns
+            if time_ns > self._last:  # noqa: PLR1730
+                self._last = time_ns
+        self._size = end
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         times = struct.pack("<QQ", time_ns, time_ns)

@@ -12,7 +12,7 @@ from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph
 from cartwheel.bridges.mirror import offered_by_others
-from cartwheel.bridges.recording.backlog import Backlog
+from cartwheel.bridges.recording.backlog import WIDTH, Backlog
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.formats import (
     Encoding,
@@ -20,14 +20,13 @@ from cartwheel.bridges.recording.formats import (
     encoding_for,
     reason_of,
 )
+from cartwheel.bridges.recording.output import NEW_FILE, Output, attached
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.tap import READER, Tap
-from cartwheel.bridges.recording.writing import Writer, open_writer
 from cartwheel.codes.recording import (
     DISK_SLOW,
     MESSAGE_NOT_RECORDED,
     RECORDING_BROKE_OFF,
-    RECORDING_SPLIT,
     TOPIC_PATTERN_UNMATCHED,
 )
 from cartwheel.errors import (
@@ -37,15 +36,11 @@ from cartwheel.errors import (
     UnknownNameError,
     one_line,
 )
+from cartwheel.graph import TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, zero
 
-FLUSH = 0.5
-"""Wall time in s after which recorded data is passed to the operating system. A killed recorder
-may lose at most 1 s. The remaining half is a reserve for busy machines."""
 _LONG_WAIT = 1.0
 """Total waiting time of the simulation in s from which it is reported."""
-
-
 _AT_ONCE = 100
 """Number of messages that are written without looking at the clock."""
 
@@ -61,11 +56,6 @@ class Summary:
     """Size of the messages in bytes."""
     waited: float
     """Wall time in s for which the simulation has waited for the disk."""
-
-
-_Item = tuple[Tap | None, int, bytes | str]
-"""Topic, time in ns, and an encoded message, or a text to be attached. Without a topic, a new file
-begins, because time jumped back."""
 
 
 class Recorder:
@@ -109,29 +99,30 @@ class Recorder:
         self._time_ns = time_ns
         self._patterns = Patterns(topics)
         self._encoding: Encoding = encoding_for(self.path, encoding)
-        self._overwrite = overwrite
-        self._notes = dict(notes or {})
         self._report = report
         self._on_failure = on_failure
         self._codec = codec(self._encoding, graph.cdr.encode)
         self._is_ros1 = self._encoding == "ros1"
         self._pack = graph.cdr.encode
-        self._counts: dict[str, int] = {}
-        """Number of messages of each channel that were encoded for the current file, for ROS 1."""
-        self._backlog = Backlog[_Item]()
+        self._counts: dict[int, int] = {}
+        """Number of messages of each topic that were encoded for the current file, for ROS 1."""
+        self._backlog = Backlog(on_wait=self._waited)
         self._taps: dict[str, Tap] = {}
+        self._known: list[Tap] = []
+        """The last tap of each topic and type, by its number in the backlog."""
         self._survey_due = False
         self._surveyor: int | None = None
         self._time = -1
-        self._files: list[Path] = []
-        self._writer: Writer | None = None
-        self._channels: dict[str, int] = {}
         self._refused: set[str] = set()
-        self._messages = 0
-        self._size = 0
-        self._topics: set[str] = set()
         self._has_warned = False
-        self._flush_due = 0.0
+        self._output = Output(
+            self.path,
+            self._encoding,
+            overwrite=overwrite,
+            notes=dict(notes or {}),
+            taps=self._known,
+            warn=self._warn,
+        )
         self.failure: RecordingError | None = None
         """The error that ended the recording, or None."""
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
@@ -143,7 +134,7 @@ class Recorder:
         Raises:
             RecordingError: The file cannot be written.
         """
-        self._begin(self.path)
+        self._output.begin()
         self._graph.on_change.append(self._changed)
         self._survey()
         self._prepare()
@@ -180,53 +171,73 @@ class Recorder:
     @property
     def summary(self) -> Summary:
         """Result of the recording so far."""
+        output = self._output
         return Summary(
-            files=tuple(self._files),
-            messages=self._messages,
-            topics=len(self._topics),
-            size=self._size,
+            files=tuple(output.files),
+            messages=output.messages,
+            topics=len(output.topics),
+            size=output.size,
             waited=self._backlog.waited,
         )
 
     # -- on the owner's thread
 
-    def take(self, tap: Tap, message: Any) -> None:
-        """Encodes and queues a message. Waits if too many messages are queued.
+    def _take_of(self, tap: Tap) -> Callable[[Any], None]:
+        """Returns the function that receives the messages of a tap.
 
-        Messages are encoded here, because keeping their many objects until the recorder's thread
-        encodes them takes several times as long, in Python's garbage collector.
+        It encodes and queues a message, and waits if too many messages are queued. Messages are
+        encoded here, because keeping their many objects until the recorder's thread encodes them
+        takes several times as long, in Python's garbage collector.
         """
-        time_ns = self._time_ns()
-        if time_ns < self._time:
-            self._restart(tap, time_ns)
-        self._time = time_ns
-        if tap.latched:
-            tap.last = message
-        self._put(tap, time_ns, message)
+        # Local names instead of attributes, because this runs for each message.
+        now, pack, put, number = self._time_ns, self._pack, self._backlog.put, tap.number
+        is_special = tap.describes or self._is_ros1
+
+        def take(message: Any) -> None:
+            time_ns = now()
+            if time_ns < self._time:
+                self._restart(tap, time_ns)
+            self._time = time_ns
+            if is_special or tap.latched:
+                self._put(tap, time_ns, message)
+                return
+            try:
+                data = pack(message)
+            except CartwheelError as error:
+                self._refuse(tap, error)
+                return
+            put(number, time_ns, data)
+
+        return take
 
     def _restart(self, tap: Tap, time_ns: int) -> None:
         """Begins a new file with the latched messages, except that of a tap, which follows."""
         self._counts.clear()
-        self._backlog.put((None, time_ns, b""), 0)
+        self._backlog.put(NEW_FILE, time_ns, b"")
         for other in self._taps.values():
             if other.last is not None and other is not tap:
                 self._put(other, time_ns, other.last)
 
     def _put(self, tap: Tap, time_ns: int, message: Any) -> None:
+        """Queues a message that is latched, or attached, or encoded for ROS 1."""
+        if tap.latched:
+            tap.last = message
         try:
             if self._is_ros1:
-                count = self._counts.get(tap.key, 0) + 1
+                count = self._counts.get(tap.number, 0) + 1
                 data = self._codec.encode(message, count)
-                self._counts[tap.key] = count
+                self._counts[tap.number] = count
             else:
                 data = self._pack(message)
         except CartwheelError as error:
             self._refuse(tap, error)
             return
-        self._backlog.put((tap, time_ns, data), len(data))
+        self._backlog.put(tap.number, time_ns, data)
         if tap.describes:
-            self._backlog.put((tap, time_ns, message.data), len(data))
-        if self._backlog.waited > _LONG_WAIT and not self._has_warned:
+            self._backlog.put(attached(tap.number), time_ns, message.data)
+
+    def _waited(self, seconds: float) -> None:
+        if seconds > _LONG_WAIT and not self._has_warned:
             self._has_warned = True
             self._warn(
                 DISK_SLOW.diagnostic(
@@ -279,7 +290,18 @@ class Recorder:
                 tap.latched = topics[name].qos == "latched"
         for name, info in topics.items():
             if name not in self._taps and self._patterns.match(name):
-                self._taps[name] = Tap(self._graph, info, self.take)
+                self._taps[name] = tap = self._tap(info)
+                tap.open(self._graph, self._take_of(tap))
+
+    def _tap(self, info: TopicInfo) -> Tap:
+        """Creates the tap of a topic. A topic that returns keeps its channel in the file."""
+        for number, known in enumerate(self._known):
+            if (known.topic, known.type) == (info.name, info.type):
+                self._known[number] = tap = Tap(info, number)
+                return tap
+        tap = Tap(info, len(self._known))
+        self._known.append(tap)
+        return tap
 
     def _prepare(self) -> None:
         """Prepares the encoding of each type, which would otherwise delay its first message.
@@ -297,22 +319,21 @@ class Recorder:
     # -- on the recorder's thread
 
     def _run(self) -> None:
-        self._flush_due = time.monotonic() + FLUSH
+        output, backlog = self._output, self._backlog
         try:
             while True:
-                was_open = self._backlog.is_open
-                items = self._backlog.get(max(0.0, self._flush_due - time.monotonic()))
-                for begin in range(0, len(items), _AT_ONCE):
-                    some = items[begin : begin + _AT_ONCE]
-                    for (tap, time_ns, data), _ in some:
-                        self._write(tap, time_ns, data)
-                    self._backlog.done(sum(size for _, size in some))
-                    self._flush_if_due()
-                self._flush_if_due()
+                was_open = backlog.is_open
+                items = backlog.get(max(0.0, output.flush_due - time.monotonic()))
+                for begin in range(0, len(items), WIDTH * _AT_ONCE):
+                    some = items[begin : begin + WIDTH * _AT_ONCE]
+                    numbers, times, data = (some[place::WIDTH] for place in range(WIDTH))
+                    output.write(numbers, times, data)
+                    backlog.done(data)
+                    output.flush_if_due()
+                output.flush_if_due()
                 if not was_open and not items:
                     break
-            if self._writer is not None:
-                self._writer.close()
+            output.close()
         except OSError as error:
             self._fail(reason_of(error), hint=_HINT)
         except CartwheelError as error:
@@ -321,75 +342,15 @@ class Recorder:
             self._fail(one_line(error))
 
     def _fail(self, why: str, *, hint: str | None = None) -> None:
-        kept = 0
-        if self._writer is not None:
-            with suppress(OSError):
-                self._writer.abandon()
-            # Its last chunk may have been removed to make space for the end of the file.
-            kept = self._writer.kept_ns
+        kept, path = self._output.abandon(), self._output.files[-1]
         self.failure = RecordingError(
-            f'the recording "{self._files[-1]}" stopped at {kept / 1e9:.3f} s: {why}',
+            f'the recording "{path}" stopped at {kept / 1e9:.3f} s: {why}',
             code=RECORDING_BROKE_OFF,
             hint=hint,
-            values={"path": str(self._files[-1]), "time": kept / 1e9, "reason": why},
+            values={"path": str(path), "time": kept / 1e9, "reason": why},
         )
         self._backlog.close()
         self._on_failure(self.failure)
-
-    def _flush_if_due(self) -> None:
-        if time.monotonic() >= self._flush_due:
-            if self._writer is not None:
-                self._writer.flush()
-            self._flush_due = time.monotonic() + FLUSH
-
-    def _write(self, tap: Tap | None, time_ns: int, data: bytes | str) -> None:
-        if tap is None:
-            self._begin_next(time_ns)
-            return
-        writer = self._writer
-        assert writer is not None
-        if isinstance(data, str):
-            name = f"{tap.topic.strip('/').replace('/', '.')}.xml"
-            writer.attach(name, "application/xml", data.encode(), time_ns)
-            return
-        channel = self._channels.get(tap.key)
-        if channel is None:
-            channel = writer.add(tap.topic, tap.type, latched=tap.latched)
-            self._channels[tap.key] = channel
-            self._topics.add(tap.topic)
-        writer.write(channel, time_ns, data)
-        self._messages += 1
-        self._size += len(data)
-
-    def _begin_next(self, time_ns: int) -> None:
-        """Begins a new file, because time jumped back and messages would no longer be in order."""
-        if self._writer is not None:
-            self._writer.close()
-            self._writer = None
-        number = len(self._files)
-        while True:
-            path = self.path.with_name(f"{self.path.stem}_{number}{self.path.suffix}")
-            if self._overwrite or not path.exists():
-                break
-            number += 1
-        self._begin(path)
-        self._warn(
-            RECORDING_SPLIT.diagnostic(
-                f"time jumped back to {time_ns / 1e9:.3f} s, so the recording "
-                f'continues in "{path}"',
-                values={"path": str(path), "time": time_ns / 1e9},
-            )
-        )
-
-    def _begin(self, path: Path) -> None:
-        self._channels.clear()
-        self._writer = open_writer(
-            path,
-            self._encoding,
-            overwrite=self._overwrite,
-            notes=self._notes,
-        )
-        self._files.append(path)
 
     def _warn(self, diagnostic: Diagnostic) -> None:
         self._report(replace(diagnostic, message=f"recording: {diagnostic.message}"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -18,27 +17,32 @@ class Tap:
     """Subscription of one topic.
 
     Args:
-        graph: Graph with the topic.
         info: The topic.
-        take: Receives the tap and each message.
+        number: Number of the topic and its type.
     """
 
-    def __init__(
-        self, graph: BridgedGraph, info: TopicInfo, take: Callable[[Tap, Any], None]
-    ) -> None:
+    def __init__(self, info: TopicInfo, number: int) -> None:
+        self.number = number
         self.type = info.type
         self.latched = info.qos == "latched"
         self.topic = info.name
-        self.key = f"{self.topic} {self.type}"
-        """Identifies the channel in the file."""
         self.describes = self.type == _STRING and self.topic.endswith("robot_description")
         """Whether the messages are also stored as attachments."""
         self.last: Any = None
         """The last message of a latched topic."""
-        self._subscription: BridgedSubscription = graph.subscribe(
-            info.name, functools.partial(take, self), type_name=info.type, node=READER
-        )
+        self._subscription: BridgedSubscription | None = None
+
+    def open(self, graph: BridgedGraph, take: Callable[[Any], None]) -> None:
+        """Subscribes.
+
+        Args:
+            graph: Graph with the topic.
+            take: Receives each message.
+        """
+        self._subscription = graph.subscribe(self.topic, take, type_name=self.type, node=READER)
 
     def close(self) -> None:
         """Unsubscribes."""
-        self._subscription.close()
+        if self._subscription is not None:
+            self._subscription.close()
+            self._subscription = None

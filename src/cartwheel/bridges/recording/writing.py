@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -35,8 +35,13 @@ class Writer(Protocol):
             UnknownNameError: The encoding does not support the type.
         """
 
-    def write(self, channel: int, time_ns: int, data: bytes) -> None:
-        """Writes an encoded message.
+    def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        """Writes encoded messages.
+
+        Args:
+            channels: Channel of each message.
+            times: Time of each message, ns.
+            data: Bytes of each message.
 
         Raises:
             OSError: The file cannot be written.

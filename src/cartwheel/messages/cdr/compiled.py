@@ -7,24 +7,29 @@ one topic rarely differ in these, so the layouts and the bytes of strings are ca
 from __future__ import annotations
 
 import keyword
-import struct
-from collections.abc import Callable, Iterator, Sequence
+import sys
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from cartwheel.messages.cdr.layouts import (
+    HEAD,
+    Item,
+    Layouts,
+    check_count,
+    grouped,
+    has_constant,
+    length_of,
+)
 from cartwheel.messages.field import CODES, Field
 
 Writer = Callable[[Any, list[Any], int], int]
 """Writes a message at an offset: appends its parts to a list, and returns the offset after it."""
+Encoder = Callable[[Any], bytes]
+"""Returns the bytes of a message, with the encapsulation header."""
 
-_SHORT = 64
-"""Maximum length in characters of a cached string, such as a frame name."""
-_SMALL = 512
-"""Number of elements from which an array is left to another writer, which does not copy it."""
-_KEPT = 256
-"""Maximum number of cached layouts of a part."""
 _FIRST = "m"
 """Name of the message in the generated code."""
 
@@ -33,42 +38,55 @@ _FIRST = "m"
 class _Part:
     """Successive fields that one call packs."""
 
-    items: list[_Item] = field(default_factory=list)
-    listed: _Item | None = None
+    items: list[Item] = field(default_factory=list)
+    listed: Item | None = None
     """The list of messages that follows the part."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Item:
-    """A field, and the expression that reads it in the generated code."""
-
-    field: Field
-    value: str
-    code: str = ""
-    """`struct` code of a number."""
-
-    @property
-    def is_text(self) -> bool:
-        return self.field.kind == "string"
-
-
-def compiled(
+def compiled_writer(
     flat: Sequence[tuple[str, Field, str]], write_others: Writer, writer_of: Callable[[str], Writer]
-) -> Writer | None:
-    """Compiles the writer of a message type. None if a field is not supported.
+) -> Writer:
+    """Compiles the writer of a message type, for messages in other ones.
 
     Args:
         flat: Path, description and `struct` code of each field, in byte order.
-        write_others: Writes messages with long strings or large arrays.
+        write_others: Writes messages with long strings or large arrays. Returned if a field is not
+            supported.
         writer_of: Returns the writer of a nested type.
     """
-    if not all(_is_supported(path, described) for path, described, _ in flat):
-        return None
-    source = _Source(flat, writer_of)
-    names = source.names | {"others": write_others, "asarray": np.asarray, "ndarray": np.ndarray}
-    exec(source.text, names)  # noqa: S102 - the names in it are identifiers
-    write: Writer = names["write"]
+    if not _are_supported(flat):
+        return write_others
+    write: Writer = _Source(flat, writer_of, whole=False).function(write_others)
     return write
+
+
+def compiled_encoder(
+    flat: Sequence[tuple[str, Field, str]], write_others: Writer, writer_of: Callable[[str], Writer]
+) -> Encoder:
+    """Compiles the encoder of a message type; see `compiled_writer`.
+
+    It needs no list of parts, unless the message contains a list of messages.
+    """
+    encode_others = joined(write_others)
+    if not _are_supported(flat):
+        return encode_others
+    encode: Encoder = _Source(flat, writer_of, whole=True).function(encode_others)
+    return encode
+
+
+def joined(write: Writer) -> Encoder:
+    """Returns the encoder for the messages that a writer writes."""
+
+    def encode(message: Any) -> bytes:
+        parts: list[Any] = [HEAD]
+        write(message, parts, 0)
+        return b"".join(parts)
+
+    return encode
+
+
+def _are_supported(flat: Sequence[tuple[str, Field, str]]) -> bool:
+    return all(_is_supported(path, described) for path, described, _ in flat)
 
 
 def _is_supported(path: str, described: Field) -> bool:
@@ -81,43 +99,90 @@ def _is_supported(path: str, described: Field) -> bool:
 
 
 class _Source:
-    """Source text of the writer of a message type."""
+    """Source text of the writer or of the encoder of a message type.
+
+    Args:
+        flat: See `compiled_writer`.
+        writer_of: See `compiled_writer`.
+        whole: Whether the function is the encoder.
+    """
 
     def __init__(
-        self, flat: Sequence[tuple[str, Field, str]], writer_of: Callable[[str], Writer]
+        self,
+        flat: Sequence[tuple[str, Field, str]],
+        writer_of: Callable[[str], Writer],
+        *,
+        whole: bool,
     ) -> None:
-        self.names: dict[str, Any] = {}
+        self._names: dict[str, Any] = {
+            "asarray": np.asarray,
+            "check_count": check_count,
+            "head": HEAD,
+            "join": b"".join,
+            "ndarray": np.ndarray,
+        }
         """Global names of the text."""
         self._lines: list[str] = []
         self._read: dict[str, str] = {"": _FIRST}
         """Local variables, by the path of the value."""
+        self._whole = whole
         self._parts = [_Part()]
         for path, described, code in flat:
             self._add(path, described, code)
+        self._is_single = len(self._parts) == 1
+        if not self._whole and not self._is_single:
+            self._lines.insert(0, "start, mark = at, len(parts)")
         for number, part in enumerate(self._parts):
             if part.items or part.listed is not None:
                 self._pack(number, part, writer_of)
-        lines = ("start, mark = at, len(parts)", *self._lines, "return at")
-        self.text = "\n    ".join((f"def write({_FIRST}, parts, at):", *lines))
+        if not whole:
+            self._lines.append("return at")
+        elif not self._is_single:
+            self._lines.append("return join(parts)")
+
+    def function(self, others: Callable[..., Any]) -> Any:
+        """The compiled function. It calls `others` for long strings and large arrays."""
+        arguments = _FIRST if self._whole else f"{_FIRST}, parts, at"
+        text = "\n    ".join((f"def write({arguments}):", *self._lines))
+        names = self._names | {"others": others}
+        exec(text, names)  # noqa: S102 - the names in it are identifiers
+        return names["write"]
 
     def _add(self, path: str, described: Field, code: str) -> None:
         if code:
             value = "" if code == "x" else self._expression(path)
-            self._parts[-1].items.append(_Item(described, value, code))
+            self._parts[-1].items.append(Item(described, value, code))
             return
-        item = _Item(described, self._local(path))
+        item = Item(described, self._local(path))
         if described.kind == "message":
             self._parts[-1].listed = item
             self._parts.append(_Part())
             return
         if described.array and not item.is_text:
-            kind = f"dtype_{item.value}"
-            self.names[kind] = np.dtype(described.type).newbyteorder("<")
-            self._lines += (
-                f"if type({item.value}) is not ndarray or {item.value}.dtype != {kind}:",
-                f"    {item.value} = asarray({item.value}, dtype={kind})",
-            )
+            self._read_array(item)
         self._parts[-1].items.append(item)
+
+    def _read_array(self, item: Item) -> None:
+        """Makes a local variable an array with the type of its field."""
+        value, kind, same = item.value, f"dtype_{item.value}", f"same_{item.value}"
+        own = np.dtype(item.field.type)
+        self._names |= {kind: own.newbyteorder("<"), same: own}
+        # numpy has one object for each type in the machine's byte order. Comparing it by identity
+        # takes a third of the time.
+        is_own = sys.byteorder == "little"
+        if_other = f"{value}.dtype is not {same} and " if is_own else ""
+        self._lines += (
+            f"if {value}.__class__ is not ndarray or ({if_other}{value}.dtype != {kind}):",
+            f"    {value} = asarray({value}, dtype={kind})",
+        )
+        if item.is_fixed:
+            size, described = f"bytes_{value}", f"field_{value}"
+            self._names[described] = item.field
+            self._lines += (
+                f"{size} = {value}.tobytes()",
+                f"if len({size}) != {item.size}:",
+                f"    check_count({described}, {value}.size)",
+            )
 
     def _expression(self, path: str) -> str:
         """Expression for a value, whose parent is a local variable."""
@@ -138,160 +203,65 @@ class _Source:
             count, described = f"count{number}", f"field{number}"
             self._lines.append(f"{count} = len({listed.value})")
             if listed.field.length is not None or listed.field.most:
-                self.names |= {described: listed.field, "check_count": check_count}
+                self._names[described] = listed.field
                 self._lines.append(f"check_count({described}, {count})")
             if listed.field.length is None:
-                items.append(_Item(listed.field, count, "I"))
+                items.append(Item(listed.field, count, "I"))
+        is_first = self._whole and number == 0
         if items:
-            self._pack_items(number, items)
+            self._pack_items(number, items, is_first=is_first)
+        elif is_first:
+            self._lines.append("parts, at = [head], 0")
         if listed is not None:
             write = f"write{number}"
-            self.names[write] = writer_of(listed.field.type)
+            self._names[write] = writer_of(listed.field.type)
             self._lines += (f"for each in {listed.value}:", f"    at = {write}(each, parts, at)")
 
-    def _pack_items(self, number: int, items: Sequence[_Item]) -> None:
-        groups = list(_grouped(items))
-        layouts, known, make = _Layouts(groups), f"known{number}", f"make{number}"
-        self.names |= {known: layouts.known, make: layouts.make}
-        key = ", ".join(("at & 7", *(_length(item) for item in items if not item.code)))
-        unpacked, arguments = ["pack", "size"], []
+    def _pack_items(self, number: int, items: Sequence[Item], *, is_first: bool) -> None:
+        """Packs a part. The offset of the first part of a whole message is always 0."""
+        groups = list(grouped(items))
+        values = [length_of(item) for item in items if not item.code and not item.is_fixed]
+        keys = values if is_first else ["at & 7", *values]
+        layouts = Layouts(groups, is_first=is_first, is_single=len(keys) == 1)
+        pack, size = f"pack{number}", f"size{number}"
+        unpacked, arguments = [pack, size], ["head"] if is_first else []
         for index, group in enumerate(groups):
-            if _has_constant(group):
-                unpacked.append(f"k{index}")
-                arguments.append(f"k{index}")
+            if has_constant(group):
+                unpacked.append(f"text{number}_{index}")
+                arguments.append(unpacked[-1])
             last = group[-1]
             if last.code:
                 arguments += [last.value] if last.value else []
+            elif last.is_fixed:
+                arguments.append(f"bytes_{last.value}")
             elif not last.is_text:
                 arguments.append(f"{last.value}.tobytes()")
-        self._lines += (
-            f"key = {key}",
-            f"layout = {known}.get(key)",
-            "if layout is None:",
-            f"    layout = {make}(key)",
-            "    if layout is None:",
-            "        del parts[mark:]",
-            f"        return others({_FIRST}, parts, start)",
-            f"{', '.join(unpacked)} = layout",
-            f"parts.append(pack({', '.join(arguments)}))",
-            "at += size",
-        )
+        known, make, key = f"known{number}", f"make{number}", ", ".join(keys)
+        self._names |= {known: layouts.known, make: layouts.make}
+        if keys:
+            self._lines += (
+                "try:",
+                f"    {', '.join(unpacked)} = {known}[{key}]",
+                "except KeyError:",
+                f"    layout = {make}({key})",
+                "    if layout is None:",
+                *(f"        {line}" for line in self._fallback()),
+                f"    {', '.join(unpacked)} = layout",
+            )
+        else:
+            # All messages have the same layout.
+            self._names |= dict(zip(unpacked, layouts.make(), strict=True))
+        packed = f"{pack}({', '.join(arguments)})"
+        if is_first:
+            self._lines.append(
+                f"return {packed}" if self._is_single else f"parts, at = [{packed}], {size}"
+            )
+        else:
+            self._lines += (f"parts.append({packed})", f"at += {size}")
 
-
-def _length(item: _Item) -> str:
-    """Expression for what the layout of a string or an array depends on."""
-    if not item.field.array:
-        return item.value
-    return f"tuple({item.value})" if item.is_text else f"{item.value}.size"
-
-
-def _grouped(items: Sequence[_Item]) -> Iterator[list[_Item]]:
-    """Splits fields into numbers, and strings with the array that follows them."""
-    group: list[_Item] = []
-    for item in items:
-        if item.code and group:
-            yield group
-            group = []
-        group.append(item)
-        if not item.is_text:
-            yield group
-            group = []
-    if group:
-        yield group
-
-
-def _has_constant(group: Sequence[_Item]) -> bool:
-    """Whether a group begins with bytes that depend only on the layout."""
-    first = group[0]
-    return not first.code and (first.is_text or first.field.length is None)
-
-
-class _Layouts:
-    """Layouts of a part, by its offset, its strings, and the lengths of its arrays."""
-
-    def __init__(self, groups: Sequence[Sequence[_Item]]) -> None:
-        self._groups = groups
-        self.known: dict[Any, Any] = {}
-
-    def make(self, key: Any) -> Any:
-        """Creates the layout for a key: the function that packs, the size, and constant bytes.
-
-        Returns None for long strings and large arrays.
-
-        Raises:
-            ValueError: An array does not have the number of elements that its type needs.
-        """
-        start, *lengths = key if isinstance(key, tuple) else (key,)
-        if not all(map(_is_short, lengths)):
-            return None
-        left = iter(lengths)
-        form, at, constants = "<", start, []
-        for group in self._groups:
-            constant = b""
-            for item in group:
-                if item.code:
-                    size = struct.calcsize(f"<{item.code}")
-                    form += f"{-at % size}x{item.code}"
-                    at += -at % size + size
-                    continue
-                length = next(left)
-                if item.is_text:
-                    constant += _texts(item.field, length, at + len(constant))
-                    continue
-                constant += _count(item.field, length, at + len(constant))
-            if not group[-1].code:
-                if _has_constant(group):
-                    constants.append(constant)
-                    form += f"{len(constant)}s"
-                at += len(constant)
-                if not group[-1].is_text:
-                    size = np.dtype(group[-1].field.type).itemsize
-                    gap = -at % size if length else 0
-                    form += f"{gap}x{length * size}s"
-                    at += gap + length * size
-        layout = (struct.Struct(form).pack, at - start, *constants)
-        if len(self.known) >= _KEPT:
-            self.known.clear()
-        self.known[key] = layout
-        return layout
-
-
-def _is_short(length: Any) -> bool:
-    if isinstance(length, int):
-        return length < _SMALL
-    if isinstance(length, tuple):
-        return len(length) <= _SHORT and all(map(_is_short, length))
-    return len(length) <= _SHORT
-
-
-def _texts(described: Field, value: Any, at: int) -> bytes:
-    if not described.array:
-        return _text(value, at)
-    made = _count(described, len(value), at)
-    for text in value:
-        made += _text(text, at + len(made))
-    return made
-
-
-def _text(text: str, at: int) -> bytes:
-    data = text.encode()
-    return b"%b%b%b\0" % (bytes(-at % 4), struct.pack("<I", len(data) + 1), data)
-
-
-def _count(described: Field, count: int, at: int) -> bytes:
-    """The number of elements with its padding, or nothing if the type states it."""
-    check_count(described, count)
-    return bytes(-at % 4) + struct.pack("<I", count) if described.length is None else b""
-
-
-def check_count(described: Field, count: int) -> None:
-    """Refuses a number of elements that the type does not allow.
-
-    Raises:
-        ValueError: See above.
-    """
-    if described.length is None:
-        if described.most and count > described.most:
-            raise ValueError(f"{described.name} has at most {described.most} values (got {count})")
-    elif count != described.length:
-        raise ValueError(f"{described.name} must have {described.length} values (got {count})")
+    def _fallback(self) -> tuple[str, ...]:
+        if self._whole:
+            return (f"return others({_FIRST})",)
+        if self._is_single:
+            return (f"return others({_FIRST}, parts, at)",)
+        return ("del parts[mark:]", f"return others({_FIRST}, parts, start)")

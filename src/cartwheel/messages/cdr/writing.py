@@ -18,13 +18,17 @@ import numpy as np
 
 from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
-from cartwheel.messages.cdr.compiled import check_count, compiled
+from cartwheel.messages.cdr.compiled import (
+    Encoder,
+    Writer,
+    compiled_encoder,
+    compiled_writer,
+)
+from cartwheel.messages.cdr.layouts import check_count
 from cartwheel.messages.classes import FILLER
 from cartwheel.messages.field import CODES, Field, field_of
 from cartwheel.messages.store import loaded, message_class
 
-_HEAD = b"\0\1\0\0"
-"""Encapsulation header."""
 _SHARED = 4096
 """Minimum size in bytes of an array that is passed on without a copy."""
 _SHORT = 64
@@ -32,8 +36,6 @@ _SHORT = 64
 
 _Parts = list[Any]
 """Bytes and views of arrays, to be joined."""
-_Writer = Callable[[Any, _Parts, int], int]
-"""Writes a part of a message at an offset. Returns the offset after it."""
 
 
 def encode_cdr(message: Any) -> bytes:
@@ -42,23 +44,21 @@ def encode_cdr(message: Any) -> bytes:
     Raises:
         GraphError: A value does not fit its field.
     """
-    parts: _Parts = [_HEAD]
     try:
-        _plan(message.__msgtype__)(message, parts, 0)
+        return _encoders[message.__class__](message)
     except (struct.error, TypeError, AttributeError, ValueError, OverflowError) as error:
         raise GraphError(
             f"ROS 2 cannot represent this {message.__msgtype__}: {error}",
             code=MESSAGE_NOT_ENCODABLE,
             values={"type": message.__msgtype__},
         ) from error
-    return b"".join(parts)
 
 
 class _Plan:
     """Writes messages of one type."""
 
     def __init__(self, name: str) -> None:
-        writers: list[_Writer] = []
+        writers: list[Writer] = []
         row: list[tuple[str, str]] = []
         for path, field, code in _flat(name, ""):
             if code:
@@ -79,9 +79,20 @@ class _Plan:
 
 
 @functools.cache
-def _plan(name: str) -> _Writer:
-    plan = _Plan(name)
-    return compiled(list(_flat(name, "")), plan, _plan) or plan
+def _plan(name: str) -> Writer:
+    return compiled_writer(list(_flat(name, "")), _Plan(name), _plan)
+
+
+class _Encoders(dict[type, Encoder]):
+    """Encoders by the class of messages, which is found faster than by the name of the type."""
+
+    def __missing__(self, kind: Any) -> Encoder:
+        name = kind.__msgtype__
+        made = self[kind] = compiled_encoder(list(_flat(name, "")), _Plan(name), _plan)
+        return made
+
+
+_encoders = _Encoders()
 
 
 def _flat(name: str, prefix: str) -> Iterator[tuple[str, Field, str]]:
@@ -139,7 +150,7 @@ def _aligned(codes: list[str], start: int) -> struct.Struct:
 _COUNTS = tuple(_aligned(["I"], start) for start in range(4))
 
 
-def _counted(field: Field, path: str) -> _Writer:
+def _counted(field: Field, path: str) -> Writer:
     get = attrgetter(path)
     write = _wide_text_writer if field.wide else _text_writer
     if not field.array:
@@ -159,7 +170,7 @@ def _text(text: str, start: int) -> bytes:
 _short_text = functools.lru_cache(maxsize=1024)(_text)
 
 
-def _text_writer(get: Callable[[Any], Any]) -> _Writer:
+def _text_writer(get: Callable[[Any], Any]) -> Writer:
     def write_text(message: Any, parts: _Parts, at: int) -> int:
         text = get(message)
         made = _short_text(text, at & 3) if len(text) <= _SHORT else _text(text, at & 3)
@@ -169,7 +180,7 @@ def _text_writer(get: Callable[[Any], Any]) -> _Writer:
     return write_text
 
 
-def _wide_text_writer(get: Callable[[Any], Any]) -> _Writer:
+def _wide_text_writer(get: Callable[[Any], Any]) -> Writer:
     """ROS 2 writes each UTF-16 code unit as four bytes. Source: rosidl_typesupport_fastrtps."""
 
     def write_text(message: Any, parts: _Parts, at: int) -> int:
@@ -182,7 +193,7 @@ def _wide_text_writer(get: Callable[[Any], Any]) -> _Writer:
     return write_text
 
 
-def _list_writer(field: Field, get: Callable[[Any], Any], write: _Writer) -> _Writer:
+def _list_writer(field: Field, get: Callable[[Any], Any], write: Writer) -> Writer:
     def write_list(message: Any, parts: _Parts, at: int) -> int:
         values = get(message)
         at = _write_count(field, len(values), parts, at)
@@ -193,7 +204,7 @@ def _list_writer(field: Field, get: Callable[[Any], Any], write: _Writer) -> _Wr
     return write_list
 
 
-def _array_writer(field: Field, get: Callable[[Any], Any]) -> _Writer:
+def _array_writer(field: Field, get: Callable[[Any], Any]) -> Writer:
     dtype = np.dtype(field.type).newbyteorder("<")
     last = dtype.itemsize - 1
 
