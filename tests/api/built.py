@@ -1,6 +1,7 @@
 """What processes of `test_built` run; they import this file."""
 
 import hashlib
+import pickle
 
 import numpy as np
 
@@ -25,3 +26,7 @@ def drive(built, seed=0, seconds=0.5):
             for message in box.drain():
                 found.update(encode_cdr(message))
         return found.hexdigest(), float(np.abs(data.qpos).sum())
+
+
+def drive_pickled(data):
+    return drive(pickle.loads(data))

@@ -3,17 +3,21 @@
 import copy
 import multiprocessing
 import pickle
+import shutil
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.api.built import drive
+from tests.api.built import drive, drive_pickled
 from tests.coded import raises
 from tests.devices.cameras.sensors import pixels_of, sensor, take
 
 import cartwheel as cw
 from cartwheel.codes.world import MODEL_NAME_TAKEN
 from cartwheel.simulation.models import compilations
+
+ROBOT = Path(__file__).parents[2] / "robots" / "rosbots_description"
 
 
 @pytest.fixture(scope="module")
@@ -75,6 +79,18 @@ def test_visuals_are_compiled_in_advance(request):
     with built.world() as world:
         take(world, "/rosbots/camera1/image_raw")
     assert compiled == []
+
+
+def test_without_its_files_it_has_the_same_bits(tmp_path):
+    """As on another computer: a process that has read none of them."""
+    package = shutil.copytree(ROBOT, tmp_path / ROBOT.name)
+    built = cw.build("empty", {"robot": package / "urdf" / "rosbots.xacro", "z": 0.05})
+    built.compile_visuals()
+    data = pickle.dumps(built)
+    shutil.rmtree(package)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        found = pool.apply(drive_pickled, [data])
+    assert found == drive(cw.build("empty", {"robot": "rosbots.xacro", "z": 0.05}))
 
 
 def test_a_world_changes_no_other(built):

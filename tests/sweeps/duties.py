@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import shutil
 import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 import cartwheel as cw
 
@@ -39,3 +42,25 @@ def _exit() -> None:
 
 def _sleep() -> None:
     time.sleep(600)
+
+
+def waiting(world: cw.World, case: Mapping[str, Any]) -> dict[str, Any]:
+    """Drives; then, from case 2, waits until the file ``go`` exists."""
+    folder = Path(case["folder"])
+    with (folder / "starts").open("a") as file:
+        file.write(f"{case['n']} {os.getpid()}\n")
+    found = drive(world, {"speed": 0.1 * case["n"]})
+    end = time.monotonic() + 120
+    while case["n"] >= 2 and not (folder / "go").exists():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return found
+
+
+def without_files(world: cw.World, case: Mapping[str, Any]) -> float:
+    """Deletes the robot's files before the first image; returns the spread of its pixels."""
+    shutil.rmtree(case["folder"], ignore_errors=True)
+    assert not Path(case["folder"]).exists()
+    image = world.topic(case["topic"])
+    world.run(0.2)
+    return float(np.std(image.array()))

@@ -16,21 +16,11 @@ from tests.sweeps.duties import counted, drive
 
 import cartwheel as cw
 from cartwheel.codes.command import RESULTS_INVALID
+from cartwheel.codes.wires import PACKAGE_MISSING
 from cartwheel.codes.world import SWEEP_INVALID
+from cartwheel.sweeps.results import Results, Row
 
-GYRO = """<sdf version="1.7"><model name="gyro"><static>true</static><pose>0 5 0 0 0 0</pose>
-<link name="link"><sensor name="imu" type="imu"><update_rate>100</update_rate><imu>
-<angular_velocity><z><noise type="gaussian"><mean>0</mean><stddev>0.1</stddev></noise></z>
-</angular_velocity></imu><plugin name="gyro" filename="libgazebo_ros_imu_sensor.so"><ros>
-<remapping>~/out:=/gyro</remapping></ros></plugin></sensor></link></model></sdf>"""
 CASES = [{"speed": speed, "seed": seed} for speed in (0.2, 0.6) for seed in (0, 1, 2)]
-
-
-@pytest.fixture(scope="module")
-def built(tmp_path_factory):
-    file = tmp_path_factory.mktemp("sweep") / "gyro.sdf"
-    file.write_text(GYRO)
-    return cw.build("empty", ["rosbots.xacro", file])
 
 
 def test_the_table_is_the_same_with_any_number_of_processes(built, tmp_path):
@@ -146,12 +136,18 @@ def test_equal_cases_have_results_of_their_own(built, tmp_path):
 
 def test_tables_of_other_libraries(built):
     found = cw.sweep(drive, CASES[:2], built, jobs=0)
-    for name in ("pandas", "pyarrow"):
-        try:
-            __import__(name)
-        except ModuleNotFoundError:
-            with pytest.raises(ModuleNotFoundError):
-                found.to_pandas() if name == "pandas" else found.to_arrow()
-            continue
-        table = found.to_pandas() if name == "pandas" else found.to_arrow()
-        assert list(table["x"].to_numpy()) == found.columns()["x"]
+    columns = found.columns()
+    frame, table = found.to_pandas(), found.to_arrow()
+    assert list(frame.columns) == table.column_names == list(columns)
+    for name, values in columns.items():
+        assert list(frame[name]) == table[name].to_pylist() == values
+
+
+def test_tables_that_cannot_be_made(monkeypatch):
+    rows = [Row(case={"n": n}, values={"x": x}) for n, x in enumerate((1.5, "far"))]
+    with raises(SWEEP_INVALID):
+        Results(rows).to_arrow()
+    for name, method in (("pandas", Results.to_pandas), ("pyarrow", Results.to_arrow)):
+        monkeypatch.setitem(sys.modules, name, None)
+        with raises(PACKAGE_MISSING, package=name):
+            method(Results(rows))

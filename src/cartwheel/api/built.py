@@ -38,6 +38,7 @@ class Built:
         self._readings = Readings()
         self._models: tuple[str, ...] = ()
         self._diagnostics: tuple[Diagnostic, ...] = ()
+        self._visuals = False
 
     @property
     def models(self) -> tuple[str, ...]:
@@ -77,11 +78,24 @@ class Built:
             raise
         return made
 
+    def compile_visuals(self) -> None:
+        """Compiles the visuals, as `build` does with ``visuals=True``.
+
+        Afterwards, its worlds need no files of their robots, also on another computer. Without
+        effect on results.
+
+        Raises:
+            WorldError: A visual cannot be built.
+        """
+        if not self._visuals:
+            self._compile(visuals=True)
+
     def _compile(self, *, visuals: bool) -> None:
         with self.world() as world:
             self._models, self._diagnostics = world.models, world.diagnostics
             if visuals:
                 world.session.simulation.engine.visuals.current()
+        self._visuals = visuals
         self._compiler.complete = self._readings.complete = True
 
 

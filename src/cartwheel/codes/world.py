@@ -136,3 +136,6 @@ BATCH_PROCESS_ENDED = Code(
 )
 BATCH_CLOSED = Code("CW640", "batch-closed", "error", "a batch of worlds is used after its end")
 SWEEP_INVALID = Code("CW641", "sweep-invalid", "error", "an argument of a sweep is invalid")
+CLUSTER_UNUSABLE = Code(
+    "CW642", "cluster-unusable", "error", "a Ray cluster cannot run the cases of a sweep"
+)

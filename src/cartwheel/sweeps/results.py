@@ -8,6 +8,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from cartwheel.codes.wires import PACKAGE_MISSING
 from cartwheel.codes.world import SWEEP_INVALID
 from cartwheel.errors import CartwheelError
 
@@ -72,21 +73,31 @@ class Results(Sequence[Row]):
         """The table as a ``pandas.DataFrame``.
 
         Raises:
-            ModuleNotFoundError: pandas is not installed.
+            CartwheelError: pandas is not installed.
         """
-        import pandas
-
+        try:
+            import pandas
+        except ImportError as error:
+            raise _missing("pandas", error) from None
         return pandas.DataFrame(self.columns())
 
     def to_arrow(self) -> Any:
         """The table as a ``pyarrow.Table``.
 
         Raises:
-            ModuleNotFoundError: pyarrow is not installed.
+            CartwheelError: pyarrow is not installed, or a column contains values of several kinds.
         """
-        import pyarrow
-
-        return pyarrow.table(self.columns())
+        try:
+            import pyarrow
+        except ImportError as error:
+            raise _missing("pyarrow", error) from None
+        arrays: dict[str, Any] = {}
+        for name, values in self.columns().items():
+            try:
+                arrays[name] = pyarrow.array(values)
+            except (pyarrow.ArrowInvalid, pyarrow.ArrowTypeError) as error:
+                raise invalid(f'the column "{name}" cannot be one of Arrow: {error}') from None
+        return pyarrow.table(arrays)
 
 
 def plain(value: Any) -> Any:
@@ -108,6 +119,15 @@ def plain(value: Any) -> Any:
     raise invalid(
         f"cases and results must consist of numbers, texts, lists and mappings (got a "
         f"{type(value).__name__})"
+    )
+
+
+def _missing(package: str, error: ImportError) -> CartwheelError:
+    return CartwheelError(
+        f"this table requires the package {package}: {error}",
+        code=PACKAGE_MISSING,
+        hint=f"Install it with: pip install {package}",
+        values={"package": package},
     )
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import CartwheelError
 from cartwheel.jobs import Workers
+from cartwheel.sweeps.cluster import ClusterWorkers
 from cartwheel.sweeps.results import Results, Row, invalid, plain
 from cartwheel.sweeps.stored import Stored
 
@@ -30,13 +31,15 @@ def sweep(
     built: Built,
     *,
     jobs: int | None = None,
+    cluster: str | None = None,
     timeout: float = 3600.0,
     results: str | Path | None = None,
     progress: bool = True,
 ) -> Results:
     """Runs a function for each case, in a new world for each, on all cores.
 
-    A case has the same result whatever the number of processes and the other cases.
+    A case has the same result whatever the number of processes and the other cases, also on a
+    cluster.
 
     Args:
         function: Receives the world and the case. Returns a number, or a mapping of numbers, texts
@@ -47,6 +50,11 @@ def sweep(
         jobs: Number of processes, by default one for each core. 0 runs all cases in this process.
             Otherwise, a script must call the function below ``if __name__ == "__main__":``, and the
             function must be that of a module.
+        cluster: Address of a Ray cluster that runs the cases, on all its processors or `jobs` of
+            them. "auto" is the cluster to which this computer belongs, or that of the environment
+            variable ``RAY_ADDRESS``. "local" starts a cluster on this computer for the sweep. If
+            the program is already connected to Ray, this connection is used. The visuals of `built`
+            are compiled, so that the cluster needs no files of the world and its robots.
         timeout: Maximum wall time of a case, s. A case that takes longer has an error. Without
             effect if `jobs` is 0.
         results: File for the results of cases that are done. If it exists, these cases are not run
@@ -54,20 +62,22 @@ def sweep(
         progress: Whether to show a bar if standard error is a terminal.
 
     Raises:
-        CartwheelError: A case is invalid, or the file cannot be used.
+        CartwheelError: A case is invalid, or the file or the cluster cannot be used.
     """
     listed = [_case(each) for each in cases]
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    count = (cores or 1) if jobs is None else jobs
-    if count < 0:
-        raise invalid(f"the number of processes must be at least 0 (got {count})")
+    least = 0 if cluster is None else 1
+    if jobs is not None and jobs < least:
+        raise invalid(f"the number of processes must be at least {least} (got {jobs})")
     name = f"{function.__module__}.{getattr(function, '__qualname__', type(function).__name__)}"
     stored = Stored(None if results is None else Path(results), name)
     with contextlib.closing(stored):
         found = stored.earlier(listed)
         waiting = [(index, case) for index, case in enumerate(listed) if index not in found]
         with _bar(len(listed), len(found), show=progress) as advance:
-            for index, row in _run(function, built, waiting, count, timeout):
+            prepare = partial(_prepare, function, built)
+            if cluster is not None and waiting:
+                built.compile_visuals()
+            for index, row in _run(prepare, waiting, jobs, cluster, timeout):
                 stored.add(row)
                 found[index] = row
                 advance()
@@ -85,20 +95,28 @@ def _case(case: Case) -> dict[str, Any]:
 
 
 def _run(
-    function: Callable[[World, Case], Any], built: Built, waiting: list[Job], count: int,
-    timeout: float,
+    prepare: Callable[[int], Callable[[Job], Done]], waiting: list[Job], jobs: int | None,
+    cluster: str | None, timeout: float,
 ) -> Iterator[Done]:  # fmt: skip
-    if count == 0:
-        do = _prepare(function, built, 0)
-        for job in waiting:
-            yield do(job)
+    workers: Workers[Job, Done] | ClusterWorkers[Job, Done]
+    if not waiting:
         return
-    workers: Workers[Job, Done] = Workers(
-        partial(_prepare, function, built), _lost, count=min(count, max(1, len(waiting))),
-        timeout=timeout, name="cartwheel-sweep",
-    )  # fmt: skip
+    if cluster is not None:
+        workers = ClusterWorkers(prepare, _lost, address=cluster, count=jobs, timeout=timeout)
+    elif jobs == 0:
+        yield from map(prepare(0), waiting)
+        return
+    else:
+        count = min(_cores() if jobs is None else jobs, len(waiting))
+        workers = Workers(prepare, _lost, count=count, timeout=timeout, name="cartwheel-sweep")
     with contextlib.closing(workers):
         yield from workers.run(waiting)
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _prepare(
