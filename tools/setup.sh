@@ -74,6 +74,19 @@ in_archive() {
     }
 }
 
+# Installs Cartwheel with extras. uv takes a sixth of pip's processor time, partly because it does not
+# compile the packages, of which tests use a part. It does not know pip's settings of indexes.
+install_python() {
+    pip="$venv/bin/python -m pip"
+    export PIP_DISABLE_PIP_VERSION_CHECK=1
+    if [ -n "$1" ] && ! $pip config list 2>/dev/null | grep -Eq '[.:](extra-)?index-url=|[.:]no-index=|[.:]constraint='; then
+        $pip install --quiet --only-binary :all: uv >/dev/null 2>&1 &&
+            UV_SYSTEM_CERTS=true "$venv/bin/uv" pip install --quiet --no-cache --python "$venv/bin/python" -e ".$1" &&
+            return 0
+    fi
+    $pip install --quiet -e ".$1"
+}
+
 # Required packages.
 needed=""
 if ! command -v "$python" >/dev/null 2>&1; then needed="python3 python3-venv"
@@ -114,12 +127,13 @@ if [ "$purpose" = test ] || [ "$purpose" = ros1 ]; then
     fi
 fi
 
-# All packages in one request.
+# All packages in one request. Python packages can be installed meanwhile, if Python is there.
 # shellcheck disable=SC2086 # they are words
 if [ -n "$needed" ]; then
     install $needed $wanted || exit 1
 elif [ -n "$wanted" ]; then
-    install $wanted || say "$loss"
+    { install $wanted || say "$loss"; } &
+    trap wait EXIT
 fi
 
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || {
@@ -140,6 +154,6 @@ if [ ! -e "$stamp" ] || [ pyproject.toml -nt "$stamp" ]; then
     # A virtual environment whose creation was interrupted has no pip.
     "$venv/bin/python" -m pip --version >/dev/null 2>&1 || "$python" -m venv --clear "$venv"
     say "installing Cartwheel${extras:+ with its tools} into $venv"
-    "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -e ".$extras"
+    install_python "$extras"
     touch "$stamp"
 fi
