@@ -42,9 +42,11 @@ HERE = Pose()
 _TESTS = Path(__file__).parent
 _LONG = (
     *("ros1", "viewer", "cli", "bridges", "docs", "testing", "api", "campaign", "benchmarks"),
-    *("scenarios", "codes_only"),
+    *("scenarios", "codes_only", "saving"),
 )
-"""Folders whose tests start many processes, or wait for them."""
+"""Folders whose tests start many processes, wait for them, or take long."""
+_SPREAD = ("tests/docs/test_commands.py",)
+"""Files whose tests need not run in the same process, and take long together."""
 _PLACE = Origin(file="test.sdf", line=1)
 
 # The same examples in each run, however long a busy machine takes to make and to try them.
@@ -75,6 +77,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         left_out = [item for item in items if item.get_closest_marker("wording")]
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if not item.get_closest_marker("wording")]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """With ``--dist loadfile``, the tests of some files are distributed one by one."""
+    if config.getvalue("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = str(super()._split_scope(nodeid))
+            return nodeid if file in _SPREAD else file
+
+    return Scheduling(config, log)
 
 
 @pytest.fixture(scope="session", autouse=True)
