@@ -262,6 +262,21 @@ def test_skidding_wheels_may_be_said_to_be_as_far_apart_as_friction_asks(told, b
         assert finding.instead == f"<wheelSeparation>{TRACK:g}</wheelSeparation>"
 
 
+def test_the_driven_wheels_on_both_axles_of_a_car_do_not_skid(told):
+    """Unlike those of a skid-steered robot, they need no larger separation."""
+    wheels = "".join(
+        f"<{side}_joint>{end}_{side}_joint</{side}_joint>"
+        for side in ("left", "right")
+        for end in ("front", "rear")
+    )
+    stated = {
+        name: ACKERMANN[name] for name in ACKERMANN if name not in ("left_joint", "right_joint")
+    }
+    text = plugin("gz-sim-ackermann-steering-system", **{**stated, "wheel_separation": 1.5 * TRACK})
+    (finding,) = told(car(text.replace("</plugin>", wheels + "</plugin>")))
+    assert finding.instead == f"<wheel_separation>{TRACK:g}</wheel_separation>"
+
+
 def test_wheels_that_stand_beside_their_joints_may_be_stated_either_way(told):
     """The tyres of the rear axle are 0.05 m further out than their joints."""
     drive = {**REAR, "wheel_diameter": 2 * RADIUS}

@@ -23,8 +23,9 @@ from cartwheel.codes.robot import (
     WHEELS_SWAPPED,
 )
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
-from cartwheel.corpus import try_robot
+from cartwheel.corpus import trial, try_robot
 from cartwheel.corpus.trial import _listened
+from cartwheel.description import load_text
 from cartwheel.description.launches import launches_near
 
 INERTIA = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
@@ -688,3 +689,72 @@ def test_a_thruster_without_its_joint_is_a_fault_of_the_file(tried):
     assert [(fault.test, fault.subject) for fault in found.faults] == [
         ("plugin", "gz-sim-thruster-system")
     ]
+
+
+LEGS = (
+    '<link name="base"><inertial><origin xyz="0.12 0 0"/><mass value="2"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02"/>'
+    '</inertial><collision><geometry><box size="0.3 0.2 0.1"/></geometry></collision></link>'
+    '<link name="upper"><inertial><origin xyz="0 0 -0.2"/><mass value="0.5"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial><collision><origin xyz="0 0 -0.25"/>'
+    '<geometry><box size="0.05 0.05 0.5"/></geometry></collision></link>'
+    '<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>'
+    '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
+) + ARM[ARM.index("<transmission") :]
+
+
+def test_the_joints_of_a_robot_that_lies_on_them_are_moved_above_the_ground(tmp_path, tried):
+    """It stands on one leg, falls, and lies on it. Its controller is too weak to lift it."""
+    path = tmp_path / "leg.yaml"
+    path.write_text(PID.format(p=20.0))
+    found = tried(LEGS.format(kind="Effort"), controllers=[path])
+    assert found.stand.state in ("tips", "moves", "sinks")
+    (reach,) = found.reaches
+    assert reach.arrived and found.moves
+    assert {fault.test for fault in found.faults} == {"stand"}
+
+
+def test_an_arm_that_hangs_far_below_its_base_is_tested_above_the_ground(tmp_path, tried):
+    """The ground would press its lowest part, 8 m below the base, upwards."""
+    path = tmp_path / "arm.yaml"
+    path.write_text(PID.format(p=500.0))
+    ball = (
+        '<link name="ball"><inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/>'
+        '</inertial><collision><geometry><sphere radius="0.1"/></geometry></collision></link>'
+        '<joint name="rope" type="fixed"><parent link="base"/><child link="ball"/>'
+        '<origin xyz="0 0 -8"/></joint>'
+    )
+    found = tried(ARM.format(kind="Effort"), ball, controllers=[path])
+    assert found.good, found.faults
+    place = trial._place(load_text(_text(ARM.format(kind="Effort"), ball), file="robot.urdf"))
+    assert place.z - 8.1 >= trial._HIGH - 0.01
+
+
+MOTOR = (
+    '<gazebo><plugin name="m" filename="gz-sim-multicopter-motor-model-system"><jointName>{joint}'
+    "</jointName><linkName>base</linkName><turningDirection>ccw</turningDirection>"
+    "<timeConstantUp>{up}</timeConstantUp><actuator_number>0</actuator_number></plugin></gazebo>"
+)
+
+
+def test_a_motor_that_is_not_loaded_is_a_fault(tried):
+    """The error is in the line of its tag, not in that of the plugin."""
+    body = BOX.format(name="base", at="0 0 0", size="0.2 0.2 0.1")
+    found = tried(body, "\n", MOTOR.format(joint="none", up="\nfast"))
+    (fault,) = found.faults
+    assert (fault.test, fault.source) == ("plugin", "file")
+    assert not found.moves and found.outcome == "file"
+
+
+def test_another_plugin_that_is_not_loaded_is_not_why_no_controller_starts(tried):
+    lost = (
+        '<gazebo><plugin name="truth" filename="libgazebo_ros_p3d.so"><bodyName>none</bodyName>'
+        "<topicName>truth</topicName></plugin></gazebo>"
+    )
+    found = tried(ARM.format(kind="Effort"), lost, controllers=[])
+    reasons = {fault.test: fault.code for fault in found.faults}
+    assert reasons["controller"] is CONTROLLERS_NOT_FOUND
+
+
+def _text(*parts):
+    return f'<robot name="robot">{"".join(parts)}</robot>'

@@ -235,3 +235,75 @@ def test_an_expression_decides_which_elements_are_read(package):
 </launch>"""
     (use,) = launches_near(package(sim_dot_launch=text))
     assert use.arguments == {"side": "a"}
+
+
+VARIANTS = """<launch>
+  <arg name="size" default="small"/>
+  <arg name="colour" default="arm"/>
+  <param name="robot_description" command="xacro $(find arm)/urdf/arm_$(arg size).urdf.xacro
+      size:=$(arg size) colour:=$(arg colour)"/>
+  <include file="$(find arm)/launch/control.launch">
+    <arg name="size" value="$(arg size)"/>
+  </include>
+</launch>"""
+SIZED = """<launch>
+  <arg name="size"/>
+  <rosparam file="$(find arm)/config/$(arg size).yaml"/>
+</launch>"""
+VARIANTS_ROS2 = """import os
+def generate_launch_description():
+    size = LaunchConfiguration("size")
+    share = FindPackageShare("arm")
+    text = Command(["xacro ", share, "/urdf/arm_", size, ".urdf.xacro"])
+    return LaunchDescription([DeclareLaunchArgument("size", default_value="small")])
+"""
+MODEL = """<launch>
+  <arg name="model" default="$(env SOME_UNSET_MODEL)"/>
+  <param name="robot_description" command="xacro $(find arm)/urdf/arm_$(arg model).urdf.xacro"/>
+</launch>"""
+SIZES = ["arm_large.old.urdf.xacro", "arm_large.urdf.xacro", "arm_small.urdf.xacro"]
+ANY = MODEL.replace("arm_$(arg model).urdf.xacro", "$(arg model).xacro")
+
+
+@pytest.fixture
+def sizes(package):
+    """A package with robots in three sizes, and launch files by name."""
+
+    def write(**launch):
+        folder = package(**launch)
+        for size in ("small", "large", "large.old"):
+            (folder / f"urdf/arm_{size}.urdf.xacro").write_text(ROBOT)
+            (folder / f"config/{size}.yaml").write_text("c: {type: a/B}")
+        (folder / "urdf/leg_large.urdf.xacro").write_text(ROBOT)
+        return folder
+
+    return write
+
+
+def test_a_launch_file_starts_robots_of_other_sizes_with_other_arguments(sizes):
+    folder = sizes(sim_dot_launch=VARIANTS, control_dot_launch=SIZED)
+    uses = [each for each in launches_near(folder) if each.description is not None]
+    found = {each.description.name: each for each in uses}
+    assert sorted(found) == SIZES
+    assert len(uses) == 3
+    for size in ("small", "large", "large.old"):
+        use = found[f"arm_{size}.urdf.xacro"]
+        assert use.arguments == {"size": size, "colour": "arm"}
+        assert [each.name for each in use.controllers] == [f"{size}.yaml"]
+
+
+def test_a_python_launch_file_starts_robots_of_other_sizes(sizes):
+    uses = launches_near(sizes(sim_dot_launch_dot_py=VARIANTS_ROS2))
+    assert sorted(each.description.name for each in uses) == SIZES
+
+
+def test_a_name_with_an_unknown_part_is_any_such_name(sizes, monkeypatch):
+    monkeypatch.delenv("SOME_UNSET_MODEL", raising=False)
+    uses = launches_near(sizes(sim_dot_launch=MODEL))
+    assert sorted(each.description.name for each in uses) == SIZES
+    assert {each.unknown for each in uses} == {1}
+
+
+def test_a_name_of_which_nothing_is_known_is_no_name(sizes, monkeypatch):
+    monkeypatch.delenv("SOME_UNSET_MODEL", raising=False)
+    assert launches_near(sizes(sim_dot_launch=ANY)) == ()

@@ -55,6 +55,18 @@ class Stated:
     """Formats a number as replacement text."""
     place: Place
 
+    def steered_by(self, other: Stated) -> bool:
+        """Whether one of the wheels is mounted on a steering joint, from which `other` measures the
+        wheelbase. Such wheels do not slide, even if there are several on a side.
+        """
+        wheels = self.first + self.second
+        steering = [name for name in other.first if name not in wheels]
+        return (
+            other.measure == "base"
+            and other.robot is self.robot
+            and any(_is_steered(self.robot, name, steering) for name in wheels)
+        )
+
 
 _MEASURES: Mapping[str, Measure] = {
     "wheel_separation": "apart",

@@ -9,7 +9,7 @@ from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.movers import is_known, managers, moving_plugins
 from cartwheel.corpus.verdict import Verdict
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.errors import Code, Diagnostic
 
@@ -109,7 +109,7 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
                 each
                 for each in said
                 if each.code in (running.PLUGIN_LEFT_OUT, running.PLUGIN_FAILED)
-                and each.origin == tag.origin
+                and each.values.get("plugin") == tag.filename
             )
         else:
             reason = devices.PLUGIN_UNKNOWN.diagnostic(
@@ -146,12 +146,17 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         ]
         reason = (
             _first(replaced)
-            or _coded(said, _CONTROL)
+            or _first(each for each in said if each.code in _CONTROL and _concerns(each, tag))
             or devices.CONTROLLERS_NOT_FOUND.diagnostic(
                 "no file contains controllers for this controller manager", origin=tag.origin
             )
         )
         yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _concerns(each: Diagnostic, tag: PluginTag) -> bool:
+    """Whether a diagnostic may be about a plugin: it is not about another one."""
+    return each.values.get("plugin", tag.filename) == tag.filename
 
 
 def _measured(

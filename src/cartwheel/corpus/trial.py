@@ -22,7 +22,7 @@ from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
 from cartwheel.description.launches import LaunchUse, chosen, launches_near, root_of
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.joint_controller import (
@@ -111,6 +111,8 @@ def try_robot(
             )
             for found in _moved(verdict, world, model, robot, standing):
                 verdict = replace(found, diagnostics=world.diagnostics)
+        if _lies(verdict):
+            verdict = _hung(verdict, robot, controllers)
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
     findings = _Findings(file, arguments, package_path, controllers)
@@ -173,12 +175,10 @@ def _described(verdict: Verdict, robot: RobotDescription) -> Verdict:
 def _place(robot: RobotDescription) -> Pose:
     """The pose at which the lowest collision touches the ground; well above it for a fixed robot.
 
-    An arm may extend below the ground at zero.
+    An arm may extend below its base.
     """
     if robot.static:
         return robot.pose
-    if any(joint.parent == "world" for joint in robot.joints):
-        return Pose((0.0, 0.0, _HIGH)) @ robot.pose
     clouds = [
         solid.placed(robot.pose @ link.pose)
         for link in robot.links
@@ -186,6 +186,9 @@ def _place(robot: RobotDescription) -> Pose:
         if (solid := solid_of(collision, link.name)) is not None
     ]
     box = bounds(clouds)
+    if any(joint.parent == "world" for joint in robot.joints):
+        lowest = 0.0 if box is None else float(np.round(box[0][2], 6))
+        return Pose((0.0, 0.0, _HIGH + max(0.0, -lowest))) @ robot.pose
     if box is None:
         return robot.pose
     x, y, z = robot.pose.position
@@ -216,13 +219,48 @@ def _moved(
         yield verdict
         verdict = replace(verdict, flights=tuple(commands.flights(world, model, robot)))
         yield verdict
+    if _lies(verdict):
+        return
+    moved = verdict
+    for moved in _joints_moved(verdict, world, model, robot):
+        yield moved
+    pushes = tuple(thrusts(world, model, robot))
+    yield replace(moved, spins=(*moved.spins, *pushes))
+
+
+def _joints_moved(
+    verdict: Verdict, world: World, model: Model, robot: RobotDescription
+) -> Iterator[Verdict]:
+    started = _controllers(world).started
     gains = _gains(robot, started)
     verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot, gains)))
     yield verdict
-    verdict = replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
-    yield verdict
-    pushes = tuple(thrusts(world, model, robot))
-    yield replace(verdict, spins=(*verdict.spins, *pushes))
+    yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
+
+
+def _lies(verdict: Verdict) -> bool:
+    """Whether a robot without wheels fell. It lies on its joints, which cannot move freely."""
+    stand = verdict.stand
+    return stand is not None and stand.state in ("tips", "sinks", "moves") and not verdict.drives
+
+
+def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]) -> Verdict:
+    """The verdict on a robot whose root is fixed above the ground while its joints are moved."""
+    roots = {link.name for link in robot.links} - {joint.child for joint in robot.joints}
+    hook = Joint(
+        name="hung_from_world",
+        type="fixed",
+        parent="world",
+        child=min(roots, default=robot.canonical_link),
+        origin=robot.origin,
+    )
+    hung = replace(robot, joints=(*robot.joints, hook))
+    with World("empty", lenient=True) as world:
+        model = world.spawn(hung, name=f"{robot.name}_hung", z=_HIGH, controllers=controllers)
+        # The controllers start with the simulation.
+        world.run(_LISTENING)
+        *_, moved = _joints_moved(verdict, world, model, robot)
+    return moved
 
 
 def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:

@@ -44,15 +44,15 @@ class PropellerTags:
         "timeConstantUp",
         default=1 / 80,
         unit="s",
-        least=SMALLEST,
-        doc="Time constant while the speed increases.",
+        least=0.0,
+        doc="Time constant while the speed increases. 0: at once.",
     )
     down: float = tag(
         "timeConstantDown",
         default=1 / 40,
         unit="s",
-        least=SMALLEST,
-        doc="Time constant while the speed decreases.",
+        least=0.0,
+        doc="Time constant while the speed decreases. 0: at once.",
     )
     drag: float = tag(
         "rotorDragCoefficient",

@@ -80,6 +80,12 @@ def test_a_speed_rises_and_falls_with_its_own_time_constant():
     assert next_speed(10.0, 0.0, DOWN, UP, DOWN) == pytest.approx(10 * math.exp(-1))
 
 
+@pytest.mark.parametrize("constant", [0.0, 1e-320, 1e-10])
+def test_a_speed_without_a_time_constant_changes_at_once(constant):
+    assert next_speed(0.0, 10.0, 0.005, constant, DOWN) == 10.0
+    assert next_speed(10.0, 1.0, 0.005, UP, constant) == 1.0
+
+
 def test_many_propellers_have_the_bits_of_one():
     speeds, targets, along = np.random.default_rng(2).normal(0, 50, (3, 100))
     each = config(max_airspeed=60.0, counterclockwise=False)
@@ -215,7 +221,7 @@ def test_new_gazebos_motor_listens_under_the_models_name_by_default(make):
 @pytest.mark.parametrize(
     ("old", "new", "parameter"),
     [
-        ("<timeConstantUp>0.02", "<timeConstantUp>0", "timeConstantUp"),
+        ("<timeConstantUp>0.02", "<timeConstantUp>-0.1", "timeConstantUp"),
         ("<motorNumber>0", "<motorNumber>-1", "motorNumber"),
         (">ccw<", ">left<", "turningDirection"),
     ],

@@ -243,6 +243,8 @@ class _Reader:
         name = _text(words.get("name", first))
         if "default_value" in words and name not in self.defaults:
             self.defaults[name] = _joined(words["default_value"])
+        if not self._depth and name not in self._given and name in self.defaults:
+            self._facts.defaults[name] = _joined(self.defaults[name])
         return _NOTHING
 
     def setting(self, first: Any, places: list[Any], _: dict[str, Any]) -> Any:

@@ -9,7 +9,7 @@ from pathlib import Path
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.launches.python_launch import read_python
-from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse
+from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse, beside
 from cartwheel.description.launches.xml_launch import read_xml
 
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
@@ -17,6 +17,8 @@ _MOST = 500
 """Maximum number of launch files in a folder."""
 _INCLUDES = 60
 """Maximum number of files that a launch file may include, also indirectly."""
+_VARIANTS = 20
+"""Maximum number of other values of its arguments with which a launch file is read."""
 _LEVELS = 4
 """Number of folders above a description that are searched for its package."""
 
@@ -33,25 +35,62 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
     packages: dict[Path, Packages] = {}
     for path in _files(folder):
         near = packages.setdefault(path.parent, Packages(path, package_path))
-        facts = Facts(find=near.found, read=_read, home=package_above(path.parent))
-        _read(path, {}, facts, 0)
-        described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
-        if not described and facts.yamls:
-            described.append((None, {}))
-        for description, arguments in described:
-            known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
-            found.append(
-                LaunchUse(
-                    file=path,
-                    description=description,
-                    arguments=known,
-                    unknown=len(arguments) - len(known),
-                    controllers=tuple(dict.fromkeys(facts.yamls)),
-                    spawned=tuple(dict.fromkeys(facts.spawned)),
-                    simulated=facts.simulated,
-                )
-            )
+        facts = _facts(path, near, {})
+        found += _uses(path, facts)
+        known = {description for description, _ in facts.descriptions}
+        for given in _others(facts):
+            other = _facts(path, near, given)
+            new = [each for each in other.descriptions if each[0] not in known]
+            known |= {description for description, _ in new}
+            other.descriptions = new
+            found += _uses(path, other) if new else []
     return tuple(found)
+
+
+def _facts(path: Path, packages: Packages, arguments: Mapping[str, str]) -> Facts:
+    """The contents of a launch file that is started with these arguments."""
+    facts = Facts(find=packages.found, read=_read, home=package_above(path.parent))
+    _read(path, arguments, facts, 0)
+    return facts
+
+
+def _others(facts: Facts) -> list[dict[str, str]]:
+    """Arguments with which a launch file may start other robots.
+
+    For example, a launch file starts ``arm_$(arg size).urdf.xacro``, where the default of the
+    argument is ``small``, and there is a file ``arm_large.urdf.xacro``. Whether the argument is in
+    the name shows when the launch file is read again.
+    """
+    found = [
+        {name: word}
+        for description, _ in facts.descriptions
+        for name, value in sorted(facts.defaults.items())
+        if value and UNKNOWN not in value
+        for file, word in beside(description, value).items()
+        if file != description
+    ]
+    return found[:_VARIANTS]
+
+
+def _uses(path: Path, facts: Facts) -> list[LaunchUse]:
+    described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
+    if not described and facts.yamls:
+        described.append((None, {}))
+    found = []
+    for description, arguments in described:
+        known = {name: text for name, text in arguments.items() if UNKNOWN not in text}
+        found.append(
+            LaunchUse(
+                file=path,
+                description=description,
+                arguments=known,
+                unknown=len(arguments) - len(known),
+                controllers=tuple(dict.fromkeys(facts.yamls)),
+                spawned=tuple(dict.fromkeys(facts.spawned)),
+                simulated=facts.simulated,
+            )
+        )
+    return found
 
 
 def root_of(description: Path) -> Path | None:

@@ -24,6 +24,29 @@ _WORLD = re.compile(r"gazebo|gz_|empty_world|ignition")
 _CONTROLLER_SPAWNERS = frozenset({"spawner", "spawner.py", "controller_manager", "unspawner"})
 
 
+def beside(file: Path, word: str) -> dict[Path, str]:
+    """The descriptions in a file's folder whose names differ from its name only in a word.
+
+    Returns:
+        What stands for the word, by file.
+    """
+    first, *rest = (re.escape(part) for part in file.name.split(word))
+    if not rest:
+        return {}
+    pattern = re.compile(first + r"(?P<word>[\w.-]+)" + "(?P=word)".join(rest))
+    try:
+        names = sorted(each.name for each in file.parent.iterdir())
+    except OSError:
+        return {}
+    return {
+        file.parent / name: found["word"]
+        for name in names
+        if name.endswith(SUFFIXES)
+        and (found := pattern.fullmatch(name)) is not None
+        and is_file(file.parent / name)
+    }
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LaunchUse:
     """A robot description in a launch file, including what the launch file includes."""
@@ -61,6 +84,8 @@ class Facts:
     simulated: bool = False
     count: int = 0
     """Number of files that were read."""
+    defaults: dict[str, str] = field(default_factory=dict)
+    """The arguments of the launch file itself that have their default, such as the robot's type."""
 
     def package(self, name: str) -> str:
         """The folder of a package as text, with an unknown part if it is not found."""
@@ -95,9 +120,19 @@ class Facts:
         self.add(file, arguments)
 
     def add(self, file: Path | None, arguments: Mapping[str, str]) -> None:
-        """Adds a description with arguments, if the file exists."""
-        if file is not None and UNKNOWN not in str(file) and is_file(file):
-            self.descriptions.append((file, dict(arguments)))
+        """Adds a description with arguments, if the file exists.
+
+        If a part of the file's name is unknown, as in ``robot_$(env MODEL).xacro``, it may be any
+        of the files with such a name.
+        """
+        if file is None or UNKNOWN in str(file.parent):
+            return
+        if UNKNOWN not in file.name:
+            if is_file(file):
+                self.descriptions.append((file, dict(arguments)))
+        elif re.search(r"\w{3}", file.stem.replace(UNKNOWN, " ")):
+            known = {**arguments, "": UNKNOWN}
+            self.descriptions += [(each, dict(known)) for each in beside(file, UNKNOWN)]
 
     def node(self, package: str, executable: str, words: list[str]) -> None:
         """Adds what a node with these arguments starts: models or controllers."""

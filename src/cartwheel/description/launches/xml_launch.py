@@ -84,6 +84,8 @@ class _Reader:
             self._arguments[name] = self._value(node, "value")
         elif name not in self._given and "default" in node.attributes:
             self._arguments[name] = self._value(node, "default")
+            if not self._depth:
+                self._facts.defaults[name] = self._arguments[name]
 
     def _parameter(self, node: Node) -> None:
         facts = self._facts

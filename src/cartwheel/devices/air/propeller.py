@@ -187,8 +187,13 @@ def next_speed(speed: Number, target: Number, seconds: float, rise: float, fall:
         speed: The present speed, rad/s.
         target: The commanded speed, rad/s.
         seconds: The time.
-        rise: Time constant while the target is larger than the speed, s.
+        rise: Time constant while the target is larger than the speed, s; 0: at once.
         fall: Time constant otherwise, s.
     """
-    fraction = where(target > speed, -math.expm1(-seconds / rise), -math.expm1(-seconds / fall))
+    fraction = where(target > speed, _covered(seconds, rise), _covered(seconds, fall))
     return speed + (target - speed) * fraction
+
+
+def _covered(seconds: float, constant: float) -> float:
+    """Fraction of the difference to the target that is covered in a time."""
+    return -math.expm1(-seconds / constant) if constant > 0 else 1.0

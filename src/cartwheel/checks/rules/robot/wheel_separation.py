@@ -34,7 +34,8 @@ _LEAST_SKID = 0.05
 
 @rule(robot_codes.WHEEL_SEPARATION_MISMATCH)
 def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
-    for one in stated_sizes(subject):
+    sizes = list(stated_sizes(subject))
+    for one in sizes:
         if one.measure not in ("apart", "reach"):
             continue
         apart, joints = (
@@ -44,7 +45,8 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
             apart, joints = (
                 (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)
             )
-        if one.skids and min(apart, joints) <= one.value * one.factor <= _widest(one, apart):
+        slides = one.skids and not any(one.steered_by(other) for other in sizes)
+        if slides and min(apart, joints) <= one.value * one.factor <= _widest(one, apart):
             # Such a robot needs a larger value, which a multiplier may contribute.
             continue
         # A wheel may be offset from its joint; either distance is accepted.
