@@ -13,6 +13,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 from rich.console import Console
 
 from benchmarks import (
+    batch,
     camera,
     check,
     headless,
@@ -35,6 +36,7 @@ _PARTS = {
     "sensors": sensors,
     "rays": rays,
     "process": process,
+    "batch": batch,
     "making": making,
     "recording": recording,
     "scenario": scenario,

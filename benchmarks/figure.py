@@ -67,3 +67,34 @@ def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, 
             way()
             times[name].append(time.perf_counter() - start)
     return {name: statistics.median(samples) for name, samples in times.items()}
+
+
+def paired(
+    rounds: int, ours: Callable[[], object], other: Callable[[], object], *, wall: bool = False
+) -> tuple[float, float]:
+    """Compares two variants in pairs, which take turns in beginning.
+
+    Args:
+        rounds: Number of pairs; one more is run before, and does not count.
+        ours: A variant.
+        other: The variant to compare it with.
+        wall: Measure wall time instead of CPU time.
+
+    Returns:
+        The median of the ratios of the pairs, and the median time of `other`, s.
+    """
+    clock = time.perf_counter if wall else time.process_time
+    ways = (ours, other)
+    for way in ways:
+        way()
+    ratios, base = [], []
+    for index in range(rounds):
+        gc.collect()
+        took = [0.0, 0.0]
+        for which in (0, 1) if index % 2 else (1, 0):
+            start = clock()
+            ways[which]()
+            took[which] = clock() - start
+        ratios.append(took[0] / took[1])
+        base.append(took[1])
+    return statistics.median(ratios), statistics.median(base)

@@ -4,47 +4,44 @@ from __future__ import annotations
 
 import contextlib
 import gc
-import os
 import statistics
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 
 import cartwheel as cw
 from benchmarks.carts import Bare, driving
 from benchmarks.figure import Effort, Figure
+from benchmarks.published import TWIST, corpus
 from cartwheel.corpus import robots_in
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.suggestion import suggested
 from cartwheel.errors import CartwheelError
 from cartwheel.simulation.clock import to_ns
 
-_ROOT = Path(__file__).parents[1]
 _RATIO, _ADDED_US = 1.35, 6.0
 """The goal is the larger of this multiple of MuJoCo alone, and this time added to it."""
 _SLOW = 1e-3
 """Time of a step above which a robot is left out, s: what Cartwheel adds cannot be measured."""
 _RUN = 0.2
 """Simulation time between two commands, s; commands can expire."""
-_TWIST = "geometry_msgs/msg/Twist"
 
 
 def figures(effort: Effort) -> Iterator[Figure]:
     """The cart, and each robot of the folder of published robots that can be loaded."""
     with driving() as world:
         yield _measured("cart", world, effort)
-    corpus = Path(os.environ.get("CARTWHEEL_CORPUS", _ROOT.parent / "shared" / "corpus"))
-    if not corpus.is_dir():
+    folder = corpus()
+    if folder is None:
         return
-    for file in robots_in(corpus)[:: effort.every]:
+    for file in robots_in(folder)[:: effort.every]:
         with contextlib.suppress(CartwheelError), cw.World(lenient=True) as world:
             robot = load_robot(file)
             world.spawn(robot, controllers=suggested(robot))
             _drive(world)
             world.run(2.0)
             if _seconds(partial(world.run, 0.1)) / _steps(world, 0.1) < _SLOW:
-                yield _measured(str(file.relative_to(corpus)), world, effort)
+                yield _measured(str(file.relative_to(folder)), world, effort)
 
 
 def _measured(name: str, world: cw.World, effort: Effort) -> Figure:
@@ -92,7 +89,7 @@ def _measured(name: str, world: cw.World, effort: Effort) -> Figure:
 def _drive(world: cw.World) -> None:
     """Commands all bases, because commands can expire."""
     for topic in world.graph.topics():
-        if topic.subscribers and topic.type == _TWIST:
+        if topic.subscribers and topic.type == TWIST:
             world.publish(topic.name, linear_x=0.3, angular_z=0.2)
 
 
