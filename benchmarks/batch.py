@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator
 
-import mujoco
 import numpy as np
 
 import cartwheel as cw

@@ -139,21 +139,19 @@ class RunningWorld:
             KeyboardInterrupt: Ctrl-C was pressed.
         """
         duration = duration_ns(seconds)
-        with self._run() as simulation, self._driver.interruptible() as pressed:
+        with self._run() as simulation, self._driver.interruptible() as interruption:
             self._advance(simulation, duration, speed)
-        if pressed.is_set():
-            raise KeyboardInterrupt
+        interruption.raise_pressed()
 
     def _advance(self, simulation: Simulation, duration_ns: int, speed: float | None) -> None:
         """Runs for a simulation time within `_run`, or until the run is stopped."""
-        speed = self.pace if speed is None else speed
-        if self._connections is None and speed is None:
+        if speed is None and not self.is_paced:
             target = simulation.time_ns + duration_ns
             simulation.advance(target)
             if simulation.time_ns >= target:
                 simulation.complete()
         else:
-            self._driver.run(duration_ns, speed, shared=False)
+            self._driver.run(duration_ns, self.pace if speed is None else speed, shared=False)
 
     def spin(self, seconds: float | None = None, *, speed: float | None = 1.0) -> None:
         """Runs the simulation in real time until `stop`, Ctrl-C or a time limit.
@@ -172,46 +170,59 @@ class RunningWorld:
             KeyboardInterrupt: Ctrl-C was pressed before the time limit.
         """
         duration = None if seconds is None else duration_ns(seconds)
-        with self._run(), self._driver.interruptible() as pressed:
+        with self._run(), self._driver.interruptible() as interruption:
             self._driver.run(duration, speed, shared=True)
-        if pressed.is_set() and seconds is not None:
-            raise KeyboardInterrupt
+        if seconds is not None:
+            interruption.raise_pressed()
 
     def stop(self) -> None:
         """Ends the current `run` or `spin` after the current step. Callable on any thread."""
         if self._running:
             self.session.simulation.stop()
 
-    @contextlib.contextmanager
-    def _run(self) -> Iterator[Simulation]:
+    @property
+    def is_paced(self) -> bool:
+        """Whether runs follow the wall clock or have clients, which need the thread."""
+        return self._connections is not None or self.pace is not None
+
+    def _run(self) -> Turn:
         """Runs the block, which may close the world."""
-        with self.used() as simulation:
-            if self._running and self._runner == threading.get_ident():
-                raise SimulationError(
-                    "a callback runs the world that called it",
-                    code=RUN_NESTED,
-                    hint="Call run and spin outside of callbacks.",
-                )
-            if self._connections is not None:
-                self._connections.raise_failure()
-                if not self._running:
-                    self._connections.update()
-            outer, self._running = (self._running, self._runner), True
-            self._runner = threading.get_ident()
+        return Turn(self)
+
+    def _begin(self) -> tuple[bool, int]:
+        """Begins a run, and returns whether another one is in progress, and its thread."""
+        self.check_open()
+        outer = self._running, self._runner
+        thread = threading.get_ident()
+        if outer == (True, thread):
+            raise SimulationError(
+                "a callback runs the world that called it",
+                code=RUN_NESTED,
+                hint="Call run and spin outside of callbacks.",
+            )
+        if self._connections is not None:
+            self._connections.raise_failure()
             if not outer[0]:
-                self._driver.begin()
-            try:
-                # Plugins of users may call `message_class` at any time.
-                with finding_with(self.session.types):
-                    yield simulation
+                self._connections.update()
+        self._running, self._runner = True, thread
+        if not outer[0]:
+            self._driver.begin()
+        return outer
+
+    def _finish(self, outer: tuple[bool, int], *, failed: bool) -> None:
+        """Ends the run that `_begin` began."""
+        try:
+            if not failed and self._connections is not None:
+                self._connections.raise_failure()
+        finally:
+            self._running, self._runner = outer
+            if not self._running:
+                self._driver.end()
+                if self._closing:
+                    self._end()
                 if self._connections is not None:
-                    self._connections.raise_failure()
-            finally:
-                self._running, self._runner = outer
-                if not self._running:
-                    self._driver.end()
-                    if self._closing:
-                        self._end()
+                    self._connections.update()
+                    self._driver.pacer.show()
 
     # -- connections
 
@@ -361,3 +372,57 @@ class RunningWorld:
                 self._connections.close()
         finally:
             self.session.close()
+
+
+class Turn:
+    """A run of a world, in which the thread has its turn.
+
+    Args:
+        world: The world.
+    """
+
+    __slots__ = ("_finding", "_outer", "_world")
+
+    def __init__(self, world: RunningWorld) -> None:
+        self._world = world
+
+    def begin(self) -> Simulation:
+        """Begins the run.
+
+        Raises:
+            SimulationError: See `RunningWorld.run`.
+        """
+        world = self._world
+        world.lock.acquire()
+        try:
+            self._outer = world._begin()
+        except BaseException:
+            world.lock.release()
+            raise
+        return world.session.simulation
+
+    def end(self, *, failed: bool) -> None:
+        """Ends the run.
+
+        Args:
+            failed: Whether the run has raised an error, which is not replaced by that of a
+                connection.
+
+        Raises:
+            RecordingError: A recording has failed.
+        """
+        try:
+            self._world._finish(self._outer, failed=failed)
+        finally:
+            self._world.lock.release()
+
+    def __enter__(self) -> Simulation:
+        simulation = self.begin()
+        # Plugins of users may call `message_class` at any time.
+        self._finding = finding_with(self._world.session.types)
+        self._finding.__enter__()
+        return simulation
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        self._finding.__exit__()
+        self.end(failed=kind is not None)

@@ -53,10 +53,9 @@ class TimedWorld(RunningWorld):
             SimulationError: See `run`.
         """
         check_steps(n)
-        with self._run() as simulation, self._driver.interruptible() as pressed:
+        with self._run() as simulation, self._driver.interruptible() as interruption:
             self._advance(simulation, n * simulation.step_ns, None)
-        if pressed.is_set():
-            raise KeyboardInterrupt
+        interruption.raise_pressed()
 
     def run_until(
         self,
@@ -107,10 +106,9 @@ class TimedWorld(RunningWorld):
         """Runs until a condition holds, or `stop`. Returns False after the timeout."""
         limit = duration_ns(timeout, "the timeout in s")
         pause = None if period is None else duration_ns(period, "the period in s")
-        with self._run() as simulation, self._driver.interruptible() as pressed:
+        with self._run() as simulation, self._driver.interruptible() as interruption:
             held = self._run_until(simulation, holds, limit, pause, speed)
-        if pressed.is_set():
-            raise KeyboardInterrupt
+        interruption.raise_pressed()
         return held
 
     def _run_until(

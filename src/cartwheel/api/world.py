@@ -251,7 +251,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             UnknownNameError: No model has this name.
         """
         with self.lock:
-            self.session.simulation.pose(name)
+            self.session.simulation.population.resident(name)
         return Model(self, name)
 
 

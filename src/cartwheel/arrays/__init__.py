@@ -3,9 +3,9 @@
 Arrays are read-only views of the message's data where the layout allows it, and copies otherwise.
 """
 
-from cartwheel.arrays.fields import values
+from cartwheel.arrays.fields import reader, values
 from cartwheel.arrays.images import camera_matrix, depth, image
 from cartwheel.arrays.messages import array
 from cartwheel.arrays.points import Scan, cloud, scan
 
-__all__ = ["Scan", "array", "camera_matrix", "cloud", "depth", "image", "scan", "values"]
+__all__ = ["Scan", "array", "camera_matrix", "cloud", "depth", "image", "reader", "scan", "values"]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,33 @@ def values(messages: Iterable[Any], field: str) -> Array:
     for line, row in zip(table, rows, strict=True):
         line[: row.size] = row
     return table
+
+
+def reader(field: str) -> Callable[[Any], float | Array]:
+    """Returns a function that reads a field of a message, as `values` does, but faster.
+
+    Args:
+        field: See `values`.
+
+    Raises:
+        GraphError: The name is invalid. The function raises the other errors of `values`.
+    """
+    steps = _steps(field)
+    if not all(isinstance(step, str) for step in steps):
+        return lambda message: _value(message, field, steps)
+    get, known = attrgetter(field), None
+
+    def read(message: Any) -> float | Array:
+        nonlocal known
+        if type(message) is known:
+            value = get(message)
+            if type(value) is float:
+                return value
+        found = _value(message, field, steps)
+        known = type(message)
+        return found
+
+    return read
 
 
 def _steps(field: str) -> list[str | int]:

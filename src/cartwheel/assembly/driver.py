@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import inspect
 import signal
 import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
+from typing import Self
 
 from cartwheel.assembly.turns import Turns
 from cartwheel.simulation import RunState, Simulation
@@ -91,52 +93,71 @@ class Driver:
             if restart in simulation.on_reset:
                 simulation.on_reset.remove(restart)
 
-    @contextlib.contextmanager
-    def interruptible(self) -> Iterator[threading.Event]:
-        """Lets Ctrl-C stop the run after the current step.
+    def interruptible(self) -> Interruption:
+        """Lets Ctrl-C stop the run after the current step."""
+        return Interruption(self._simulation.stop)
 
-        Yields:
-            An event that is set after Ctrl-C.
+
+class Interruption:
+    """Calls a function at Ctrl-C during the block; a second Ctrl-C raises at once.
+
+    Programs with their own signal handler, and threads, are not affected. A block within another
+    one leaves Ctrl-C to the outer block.
+
+    Args:
+        action: Called at Ctrl-C.
+    """
+
+    __slots__ = ("_action", "_installed", "pressed")
+
+    def __init__(self, action: Callable[[], None]) -> None:
+        self._action = action
+        self._installed = False
+        self.pressed = False
+        """Whether Ctrl-C was pressed."""
+
+    def __enter__(self) -> Self:
+        self._installed = (
+            threading.get_ident() == threading.main_thread().ident
+            and _handler(_INTERRUPT) is _usual
+        )
+        if self._installed:
+            _set_handler(_INTERRUPT, self._stop)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._installed:
+            _set_handler(_INTERRUPT, _usual)
+
+    def raise_pressed(self) -> None:
+        """Raises the interruption of the block, after it.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C was pressed.
         """
-        with _delayed_interrupt(self._simulation.stop) as pressed:
-            yield pressed
+        if self.pressed:
+            raise KeyboardInterrupt
+
+    def _stop(self, _number: int, _frame: FrameType | None) -> None:
+        _set_handler(_INTERRUPT, _usual)
+        self.pressed = True
+        self._action()
 
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
     """Completes the block before Ctrl-C raises a KeyboardInterrupt."""
-    pressed = threading.Event()
+    interruption = Interruption(lambda: None)
     try:
-        with _delayed_interrupt(lambda: None) as pressed:
+        with interruption:
             yield
     finally:
-        if pressed.is_set():
-            raise KeyboardInterrupt
+        interruption.raise_pressed()
 
 
-@contextlib.contextmanager
-def _delayed_interrupt(action: Callable[[], None]) -> Iterator[threading.Event]:
-    """Calls a function at Ctrl-C; a second Ctrl-C raises at once.
-
-    Programs with their own signal handler, and threads, are not affected.
-
-    Yields:
-        An event that is set after Ctrl-C.
-    """
-    pressed = threading.Event()
-    usual = signal.default_int_handler
-    main = threading.current_thread() is threading.main_thread()
-    if not main or signal.getsignal(signal.SIGINT) is not usual:
-        yield pressed
-        return
-
-    def stop(_number: int, _frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, usual)
-        pressed.set()
-        action()
-
-    signal.signal(signal.SIGINT, stop)
-    try:
-        yield pressed
-    finally:
-        signal.signal(signal.SIGINT, usual)
+_INTERRUPT = int(signal.SIGINT)
+_usual = signal.default_int_handler
+# The functions of the module `signal` convert handlers to enumerations, which takes most of their
+# time.
+_handler = inspect.unwrap(signal.getsignal)
+_set_handler = inspect.unwrap(signal.signal)

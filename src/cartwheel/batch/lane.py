@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cartwheel import arrays
+from cartwheel.arrays import reader
 from cartwheel.batch.plan import Plan, TopicFields, invalid
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array
-from cartwheel.messages import from_dict
+from cartwheel.messages.making import Maker, maker
 
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
 
 Values = dict[str, Array]
+Observer = Callable[["World"], Any]
+Reader = Callable[[Any], Any]
 
 
 class Lane:
@@ -37,12 +39,23 @@ class Lane:
         self._plan, self._seed = plan, seed
         self.world: World = built.world(seed=seed)
         self._newest: dict[str, Any] = {}
+        self._actions: list[tuple[str, str, Maker, slice]] = []
+        self._sources: list[tuple[str, TopicFields | Observer, list[Reader]]] = []
         try:
-            self._kinds = {topic: self.world.graph.topic(topic).type for topic in plan.act}
-            for each in plan.obs.values():
-                if isinstance(each, TopicFields) and each.topic not in self._newest:
-                    self._newest[each.topic] = None
-                    self.world.subscribe(each.topic, self._keeper(each.topic))
+            column = 0
+            for topic, names in plan.act.items():
+                kind = self.world.graph.topic(topic).type
+                columns = slice(column, column + len(names))
+                self._actions.append((topic, kind, maker(kind, names), columns))
+                column = columns.stop
+            for name, each in plan.obs.items():
+                readers = []
+                if isinstance(each, TopicFields):
+                    readers = [reader(field) for field in each.fields]
+                    if each.topic not in self._newest:
+                        self._newest[each.topic] = None
+                        self.world.subscribe(each.topic, self._keeper(each.topic))
+                self._sources.append((name, each, readers))
         except BaseException:
             self.world.close()
             raise
@@ -53,8 +66,8 @@ class Lane:
 
         return keep
 
-    def reset(self, seed: int | None) -> Values:
-        """Begins anew, with a new seed unless it is None, and runs a step without an action."""
+    def begin(self, seed: int | None) -> None:
+        """Begins anew, with a new seed unless it is None."""
         world, plan = self.world, self._plan
         self._seed = self._seed if seed is None else seed
         world.reset(seed=seed)
@@ -62,22 +75,12 @@ class Lane:
             self._newest[topic] = None
         if plan.vary is not None:
             plan.vary(world, np.random.default_rng(self._seed))
-        world.run(plan.period)
-        return self.observe()
 
-    def step(self, action: Array) -> Values:
-        """Publishes the actions, and runs for a period."""
-        world = self.world
-        column = 0
-        for topic, fields in self._plan.act.items():
-            message: dict[str, Any] = {}
-            for field in fields:
-                _set(message, field, float(action[column]))
-                column += 1
-            kind = self._kinds[topic]
-            world.graph.publish(topic, kind, from_dict(kind, message))
-        world.run(self._plan.period)
-        return self.observe()
+    def act(self, action: Sequence[float]) -> None:
+        """Publishes the actions."""
+        graph = self.world.graph
+        for topic, kind, make, columns in self._actions:
+            graph.publish(topic, kind, make(action[columns]))
 
     def observe(self) -> Values:
         """The observations at the current time.
@@ -86,37 +89,35 @@ class Lane:
             CartwheelError: A topic has not had a message yet, or a function has not returned
                 numbers.
         """
-        return {name: self._value(name, each) for name, each in self._plan.obs.items()}
+        found: Values = {}
+        for name, source, readers in self._sources:
+            if isinstance(source, TopicFields):
+                message = self._newest[source.topic]
+                if message is None:
+                    raise self._no_message(source.topic)
+                read = [each(message) for each in readers]
+                found[name] = np.array(read[0] if source.single else read, dtype=float)
+            else:
+                try:
+                    found[name] = np.array(source(self.world), dtype=float)
+                except (TypeError, ValueError) as error:
+                    raise invalid(
+                        f'the function of the observation "{name}" must return numbers: {error}',
+                        "obs",
+                    ) from None
+        return found
 
-    def _value(self, name: str, source: TopicFields | Callable[[World], Any]) -> Array:
-        if not isinstance(source, TopicFields):
-            try:
-                return np.array(source(self.world), dtype=float)
-            except (TypeError, ValueError) as error:
-                raise invalid(
-                    f'the function of the observation "{name}" must return numbers: {error}', "obs"
-                ) from None
-        message = self._newest[source.topic]
-        if message is None:
-            raise CartwheelError(
-                f"there has been no message on {source.topic} in the first {self._plan.period:g} s",
-                code=NO_MESSAGE,
-                hint="Choose a longer period, or a sensor with a higher rate.",
-                values={"topic": source.topic},
-            )
-        found = [arrays.values((message,), field)[0] for field in source.fields]
-        return np.asarray(found[0] if source.single else found, dtype=float)
+    def _no_message(self, topic: str) -> CartwheelError:
+        return CartwheelError(
+            f"there has been no message on {topic} in the first {self._plan.period:g} s",
+            code=NO_MESSAGE,
+            hint="Choose a longer period, or a sensor with a higher rate.",
+            values={"topic": topic},
+        )
 
     def close(self) -> None:
         """Closes the world."""
         self.world.close()
-
-
-def _set(message: dict[str, Any], field: str, value: float) -> None:
-    *parents, last = field.split(".")
-    for parent in parents:
-        message = message.setdefault(parent, {})
-    message[last] = value
 
 
 def stacked(rows: list[Mapping[str, Array]]) -> Values:
@@ -126,11 +127,14 @@ def stacked(rows: list[Mapping[str, Array]]) -> Values:
         CartwheelError: Arrays of an observation have different shapes.
     """
     found: Values = {}
-    for name in rows[0]:
-        shapes = {row[name].shape for row in rows}
-        if len(shapes) > 1:
-            raise different_shapes(name, shapes)
-        found[name] = np.stack([row[name] for row in rows])
+    for name, first in rows[0].items():
+        shape = first.shape
+        table = found[name] = np.empty((len(rows), *shape))
+        for line, row in enumerate(rows):
+            each = row[name]
+            if each.shape != shape:
+                raise different_shapes(name, {row[name].shape for row in rows})
+            table[line] = each
     return found
 
 

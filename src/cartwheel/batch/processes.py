@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, Literal
 
+from cartwheel.api.abreast import run_abreast
 from cartwheel.batch.lane import Lane, Values, stacked
 from cartwheel.codes.world import BATCH_PROCESS_ENDED
 from cartwheel.errors import CartwheelError, fault
@@ -28,6 +29,7 @@ class Lanes:
 
     def __init__(self, built: Built, plan: Plan, seeds: Sequence[int]) -> None:
         self.lanes: list[Lane] = []
+        self._period = plan.period
         try:
             self.lanes += [Lane(built, plan, seed) for seed in seeds]
         except BaseException:
@@ -35,14 +37,22 @@ class Lanes:
             raise
 
     def reset(self, which: Sequence[int], seeds: Sequence[int | None]) -> Values:
-        """Begins some of the worlds anew."""
-        pairs = zip(which, seeds, strict=True)
-        return stacked([self.lanes[index].reset(seed) for index, seed in pairs])
+        """Begins some of the worlds anew, and runs them for a period without an action."""
+        lanes = [self.lanes[index] for index in which]
+        for lane, seed in zip(lanes, seeds, strict=True):
+            lane.begin(seed)
+        return self._run(lanes)
 
     def step(self, which: Sequence[int], actions: Array) -> Values:
         """Runs some of the worlds for a period, and returns their observations."""
-        pairs = zip(which, actions, strict=True)
-        return stacked([self.lanes[index].step(action) for index, action in pairs])
+        lanes = [self.lanes[index] for index in which]
+        for lane, action in zip(lanes, actions.tolist(), strict=True):
+            lane.act(action)
+        return self._run(lanes)
+
+    def _run(self, lanes: Sequence[Lane]) -> Values:
+        run_abreast([lane.world for lane in lanes], self._period)
+        return stacked([lane.observe() for lane in lanes])
 
     def close(self) -> None:
         """Closes all worlds."""

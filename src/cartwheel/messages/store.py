@@ -9,11 +9,10 @@ package, and so are types from older ROS 2 releases.
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import threading
 from collections.abc import Iterator
-from contextvars import ContextVar
+from contextvars import ContextVar, Token
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -51,14 +50,23 @@ class Finder(Protocol):
 _finder: ContextVar[Finder | None] = ContextVar("finder", default=None)
 
 
-@contextlib.contextmanager
-def finding_with(finder: Finder) -> Iterator[None]:
-    """Lets `message_class` find further types during the block, in this thread."""
-    token = _finder.set(finder)
-    try:
-        yield
-    finally:
-        _finder.reset(token)
+class finding_with:  # noqa: N801 - used as a function
+    """Lets `message_class` find further types during the block, in this thread.
+
+    Args:
+        finder: Finds the types.
+    """
+
+    __slots__ = ("_finder", "_token")
+
+    def __init__(self, finder: Finder) -> None:
+        self._finder = finder
+
+    def __enter__(self) -> None:
+        self._token: Token[Finder | None] = _finder.set(self._finder)
+
+    def __exit__(self, *_: object) -> None:
+        _finder.reset(self._token)
 
 
 def _find(name: str) -> bool:

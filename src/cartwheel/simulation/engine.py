@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
-from cartwheel.geometry import Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
+from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
 from cartwheel.simulation.clock import Task, Topic, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
@@ -81,8 +81,12 @@ class Engine:
         """Whether tasks run that read a forward pass, which the next step uses."""
         self._changes = 0
         """Number of changes of the model and of forces that are not part of the state."""
-        self._located = self._refreshed = b""
-        """The states of the last `locate` and `refresh`."""
+        self._located = b""
+        """The state of the last `locate`."""
+        self.refreshed = b""
+        """The state of the last `refresh`; empty after a step."""
+        self._places: dict[tuple[str, str], tuple[Array, Array]] = {}
+        """Positions and orientations of links in the data, by model and link."""
         self.entries: Sequence[ModelEntry] = ()
         """The models in the world."""
 
@@ -158,7 +162,8 @@ class Engine:
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
         self.visuals.bind(model, data, compile_visuals)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
-        self._located = self._refreshed = b""
+        self._located = self.refreshed = b""
+        self._places.clear()
 
     def save(self) -> dict[str, Any]:
         """The engine's own numbers, without model and data, for `restore`."""
@@ -174,7 +179,7 @@ class Engine:
         changes, before = self._changes + 1, saved["_changes"].to_bytes(8)
         vars(self).update(saved, _changes=changes)
         now = self.signature()
-        for name in ("_located", "_refreshed"):
+        for name in ("_located", "refreshed"):
             if saved[name] == now.removesuffix(changes.to_bytes(8)) + before:
                 setattr(self, name, now)
 
@@ -205,9 +210,9 @@ class Engine:
         if self.serving:
             return
         state = self.signature()
-        if state != self._refreshed:
+        if state != self.refreshed:
             self.forward()
-            self._located = self._refreshed = state
+            self._located = self.refreshed = state
 
     def signature(self) -> bytes:
         """Differs for any two states with different poses, contacts or forces."""
@@ -241,11 +246,11 @@ class Engine:
         """Lets the next step and `refresh` use the forward pass that was just made, unless the
         state changes before.
         """
-        self._located = self._refreshed = self.signature()
+        self._located = self.refreshed = self.signature()
 
     def is_refreshed(self) -> bool:
         """Whether the results of the last forward pass are those of the current state."""
-        return bool(self._refreshed) and self._refreshed == self.signature()
+        return bool(self.refreshed) and self.refreshed == self.signature()
 
     def locate(self) -> None:
         """Computes only poses and velocities for the current state."""
@@ -263,7 +268,7 @@ class Engine:
         """
         self.step += count
         self.time_ns += count * self.step_ns
-        self._refreshed = b""
+        self.refreshed = b""
         if self._bounces is not None:
             for each in range(count):
                 if each or not forwarded:
@@ -319,9 +324,13 @@ class Engine:
 
     def link_pose(self, model: str, link: str) -> Pose:
         """A link's frame in the world, from the last forward pass."""
-        body = self.body_id(model, link)
-        x, y, z = self.data.xpos[body].tolist()
-        return Pose((x, y, z), from_wxyz(self.data.xquat[body].tolist()))
+        place = self._places.get((model, link))
+        if place is None:
+            body = self.body_id(model, link)
+            place = self._places[model, link] = self.data.xpos[body], self.data.xquat[body]
+        x, y, z = place[0].tolist()
+        qw, qx, qy, qz = place[1].tolist()
+        return Pose((x, y, z), (qx, qy, qz, qw))
 
     def model_pose(self, entry: ModelEntry) -> Pose:
         """A model's frame in the world, fixed to its canonical link (the root link in URDF)."""

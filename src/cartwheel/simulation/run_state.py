@@ -143,6 +143,8 @@ class Run:
     def drain(self) -> None:
         """Runs posted functions for at most `command_time`."""
         self.owner = threading.get_ident()
+        if self.commands.empty():
+            return
         end = time.perf_counter() + self.command_time
         while not self.commands.empty():
             self._obey(self.commands.get())
