@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from cartwheel.api.running import RunningWorld, Turn
+from cartwheel.api.running import RunningWorld
+from cartwheel.api.turn import Turn
 from cartwheel.assembly.driver import Interruption
-from cartwheel.messages.store import finding_with
+from cartwheel.messages.store import find_with, finding_with
 from cartwheel.simulation.limits import duration_ns
 
 
@@ -40,7 +41,9 @@ def run_abreast(worlds: Sequence[RunningWorld], seconds: float) -> None:
         try:
             if not interruption.pressed:
                 lanes += (_Lane(each, duration, errors) for each in worlds if not each.is_paced)
-            _run(lanes)
+            if lanes:
+                with finding_with(lanes[0].types):
+                    _run(lanes)
         finally:
             for lane in lanes:
                 lane.end()
@@ -75,11 +78,13 @@ class _Lane:
 
     __slots__ = (
         "_advancing", "_errors", "_failed", "_open", "_piece", "_simulation", "_target", "_turn",
-        "_types",
+        "types",
     )  # fmt: skip
 
     def __init__(self, world: RunningWorld, duration_ns: int, errors: list[Exception]) -> None:
         self._errors = errors
+        self.types = world.session.types
+        """Finds message types for the plugins of the world."""
         self._failed = self._open = False
         self._piece = (0, False)
         self._turn = Turn(world)
@@ -90,7 +95,6 @@ class _Lane:
             self._fail(error)
             return
         self._open = True
-        self._types = world.session.types
         self._target = self._simulation.time_ns + duration_ns
         self._advancing = self._simulation.advancing(self._target)
 
@@ -99,8 +103,8 @@ class _Lane:
         if self._failed:
             return False
         try:
-            with finding_with(self._types):
-                self._piece = next(self._advancing)
+            find_with(self.types)
+            self._piece = next(self._advancing)
         except StopIteration:
             return False
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
@@ -120,8 +124,8 @@ class _Lane:
         if self._failed or self._simulation.time_ns < self._target:
             return
         try:
-            with finding_with(self._types):
-                self._simulation.complete()
+            find_with(self.types)
+            self._simulation.complete()
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self._fail(error)
 

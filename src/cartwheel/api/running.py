@@ -9,12 +9,12 @@ from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Self
 
+from cartwheel.api.turn import Turn
 from cartwheel.api.values import scalar
 from cartwheel.assembly.driver import Driver, uninterrupted
 from cartwheel.assembly.turns import Turns
 from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError
-from cartwheel.messages.store import finding_with
 from cartwheel.session import Session
 from cartwheel.simulation.limits import duration_ns
 
@@ -189,7 +189,7 @@ class RunningWorld:
         """Runs the block, which may close the world."""
         return Turn(self)
 
-    def _begin(self) -> tuple[bool, int]:
+    def begin(self) -> tuple[bool, int]:
         """Begins a run, and returns whether another one is in progress, and its thread."""
         self.check_open()
         outer = self._running, self._runner
@@ -209,8 +209,8 @@ class RunningWorld:
             self._driver.begin()
         return outer
 
-    def _finish(self, outer: tuple[bool, int], *, failed: bool) -> None:
-        """Ends the run that `_begin` began."""
+    def finish(self, outer: tuple[bool, int], *, failed: bool) -> None:
+        """Ends the run that `begin` began."""
         try:
             if not failed and self._connections is not None:
                 self._connections.raise_failure()
@@ -372,57 +372,3 @@ class RunningWorld:
                 self._connections.close()
         finally:
             self.session.close()
-
-
-class Turn:
-    """A run of a world, in which the thread has its turn.
-
-    Args:
-        world: The world.
-    """
-
-    __slots__ = ("_finding", "_outer", "_world")
-
-    def __init__(self, world: RunningWorld) -> None:
-        self._world = world
-
-    def begin(self) -> Simulation:
-        """Begins the run.
-
-        Raises:
-            SimulationError: See `RunningWorld.run`.
-        """
-        world = self._world
-        world.lock.acquire()
-        try:
-            self._outer = world._begin()
-        except BaseException:
-            world.lock.release()
-            raise
-        return world.session.simulation
-
-    def end(self, *, failed: bool) -> None:
-        """Ends the run.
-
-        Args:
-            failed: Whether the run has raised an error, which is not replaced by that of a
-                connection.
-
-        Raises:
-            RecordingError: A recording has failed.
-        """
-        try:
-            self._world._finish(self._outer, failed=failed)
-        finally:
-            self._world.lock.release()
-
-    def __enter__(self) -> Simulation:
-        simulation = self.begin()
-        # Plugins of users may call `message_class` at any time.
-        self._finding = finding_with(self._world.session.types)
-        self._finding.__enter__()
-        return simulation
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        self._finding.__exit__()
-        self.end(failed=kind is not None)

@@ -44,11 +44,13 @@ class Turns:
             )
 
     def __enter__(self) -> Turns:
-        self.acquire()
+        # The state of a world is read at a high rate, and the lock is usually free.
+        if self._abandoned or not self._lock.acquire(blocking=False):
+            self.acquire()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.release()
+        self._lock.release()
 
     def acquire(self) -> None:
         """Waits for the turn of this thread.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable, Iterator
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,35 @@ def unfit(message: Any, *, most: float, unset: bool = False) -> str:
         most: Maximum absolute value.
         unset: Whether to allow NaN and infinity, which mean "not set" in ros2_control.
     """
+    values = _flat(message.__msgtype__)
+    if values is not None:
+        for value in values(message):
+            if not -most <= value <= most:
+                break
+        else:
+            return ""
     return _unfit(message, most, unset, "")
+
+
+@functools.cache
+def _flat(type_name: str) -> Callable[[Any], tuple[float, ...]] | None:
+    """Returns all floating-point numbers of a message; None if some are in arrays, or too few."""
+    names = list(_names(type_name))
+    if len(names) < 2 or None in names:
+        return None
+    return attrgetter(*(name for name in names if name is not None))
+
+
+def _names(type_name: str) -> Iterator[str | None]:
+    """Names of the floating-point numbers; None is an array."""
+    for field in _with_numbers(type_name):
+        if field.array:
+            yield None
+        elif field.kind == "float":
+            yield field.name
+        else:
+            for name in _names(field.type):
+                yield None if name is None else f"{field.name}.{name}"
 
 
 @functools.cache

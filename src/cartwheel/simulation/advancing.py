@@ -60,10 +60,11 @@ class Advancing(Models):
         population = self._population
         separation, watch = population.separation, population.watch
         commands, running, alarms = self.commands, RunState.RUNNING, self.alarms
+        empty = commands.empty
         self.owner = threading.get_ident()
         left = engine.steps_until(target_ns)
         while left > 0:
-            if not commands.empty():
+            if not empty():
                 rewinds = engine.rewinds
                 self.drain()
                 if engine.rewinds != rewinds:

@@ -12,6 +12,7 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
+from cartwheel.simulation.carried_state import STATE_SIZES, carry_over
 from cartwheel.simulation.clock import Task, Topic, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
@@ -27,8 +28,6 @@ from cartwheel.world.pairs import Alignment
 _OBJ = mujoco.mjtObj
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _STILL: Vec3 = (0.0, 0.0, 0.0)
-# Keyed by number: numpy integers equal the enum members, but hash differently.
-_STATE_SIZES = {mujoco.mjtJoint.mjJNT_FREE.value: (7, 6), mujoco.mjtJoint.mjJNT_BALL.value: (4, 3)}
 
 
 class Engine:
@@ -87,6 +86,8 @@ class Engine:
         """The state of the last `refresh`; empty after a step."""
         self._places: dict[tuple[str, str], tuple[Array, Array]] = {}
         """Positions and orientations of links in the data, by model and link."""
+        self._inverses: dict[str, tuple[Pose | None, Pose]] = {}
+        """The pose of the canonical link of each model, and its inverse."""
         self.entries: Sequence[ModelEntry] = ()
         """The models in the world."""
 
@@ -156,7 +157,7 @@ class Engine:
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         data = mujoco.MjData(model)
         if self.model is not None:
-            _carry_over(self.model, self.data, model, data)
+            carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
         self.align(alignments)
         self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
@@ -164,6 +165,7 @@ class Engine:
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._located = self.refreshed = b""
         self._places.clear()
+        self._inverses.clear()
 
     def save(self) -> dict[str, Any]:
         """The engine's own numbers, without model and data, for `restore`."""
@@ -334,8 +336,14 @@ class Engine:
 
     def model_pose(self, entry: ModelEntry) -> Pose:
         """A model's frame in the world, fixed to its canonical link (the root link in URDF)."""
-        link = self.link_pose(entry.name, entry.description.canonical_link)
-        return link @ entry.description.canonical_pose.inverse()
+        description = entry.description
+        link = self.link_pose(entry.name, description.canonical_link)
+        pose, inverse = self._inverses.get(entry.name, (None, Pose()))
+        if pose is not description.canonical_pose:
+            pose = description.canonical_pose
+            inverse = pose.inverse()
+            self._inverses[entry.name] = pose, inverse
+        return link @ inverse
 
     def free_joint(self, model: str, link: str) -> int:
         """The index of the free joint of a link, or -1."""
@@ -378,7 +386,7 @@ class Engine:
         positions, rates = [], []
         for name in (joint, f"{joint}::axis2"):
             index = self.joint_id(model, name)
-            if index >= 0 and int(self.model.jnt_type[index]) not in _STATE_SIZES:
+            if index >= 0 and int(self.model.jnt_type[index]) not in STATE_SIZES:
                 positions.append(self.joint_position(index))
                 rates.append(float(self.data.qvel[self.model.jnt_dofadr[index]]))
         return positions, rates
@@ -390,19 +398,3 @@ class Engine:
 
 def _raise(_: object, error: BaseException) -> None:
     raise error
-
-
-def _carry_over(old_model: Any, old: Any, model: Any, data: Any) -> None:
-    """Copies the state of every joint that exists in both models, by name."""
-    data.time = old.time
-    for index in range(model.njnt):
-        name = mujoco.mj_id2name(model, _OBJ.mjOBJ_JOINT, index)
-        before = mujoco.mj_name2id(old_model, _OBJ.mjOBJ_JOINT, name)
-        if before < 0 or model.jnt_type[index] != old_model.jnt_type[before]:
-            continue
-        positions, velocities = _STATE_SIZES.get(int(model.jnt_type[index]), (1, 1))
-        a, b = model.jnt_qposadr[index], old_model.jnt_qposadr[before]
-        data.qpos[a : a + positions] = old.qpos[b : b + positions]
-        a, b = model.jnt_dofadr[index], old_model.jnt_dofadr[before]
-        for field in ("qvel", "qacc_warmstart"):
-            getattr(data, field)[a : a + velocities] = getattr(old, field)[b : b + velocities]

@@ -80,6 +80,8 @@ class DifferentialDrive(Drive):
     """Rim speeds that follow from the command, m/s."""
     _speeds: list[float]
     """Rim speeds after the ramp, m/s."""
+    _rotating: list[tuple[CommandedJoint, float]]
+    """The wheels and their commands, rad/s."""
     _steady: tuple[float, float, float] | None
     """The command and the period for which the limiters changed nothing."""
     _rotation: tuple[float, float] | None
@@ -166,8 +168,9 @@ class DifferentialDrive(Drive):
             else:
                 self._speeds = self._targets
             pairs = zip(self._speeds, self._radii, strict=True)
-            self._rotating = [speed / radius for speed, radius in pairs]
-        for wheel, speed in zip(self._wheels, self._rotating, strict=True):
+            rotating = [speed / radius for speed, radius in pairs]
+            self._rotating = list(zip(self._wheels, rotating, strict=True))
+        for wheel, speed in self._rotating:
             wheel.command = speed
 
     def measure(self, seconds: float) -> None:
@@ -205,7 +208,7 @@ class DifferentialDrive(Drive):
         self._command = self._limited = (0.0, 0.0)
         self._targets = [0.0] * len(self._wheels)
         self._speeds = self._targets
-        self._rotating = [0.0] * len(self._wheels)
+        self._rotating = [(wheel, 0.0) for wheel in self._wheels]
         self._rotation = None
         self._steady = None
         self.linear.reset()

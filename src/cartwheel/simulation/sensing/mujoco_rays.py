@@ -25,6 +25,8 @@ _SLACK = 1e-6
 """rad."""
 _FIRST_SHAPES = 16
 """Number of geoms tested first; doubled in each iteration."""
+_WORTH_BUNDLING = 8_000
+"""Rays times geoms; below it, casting all rays at once is faster."""
 _WORTH_SORTING = 50_000
 """Rays times geoms; below it, testing all geoms at once is faster."""
 _ROUNDING = 1e-6
@@ -82,6 +84,8 @@ class MujocoCaster:
         self._model, self._data = model, data
         self._own = own
         self.minimum, self.maximum = minimum, maximum
+        self._together = len(directions) * model.ngeom < _WORTH_BUNDLING
+        self._directions = directions
         self._bundles = _Bundles(directions)
         self._groups = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
         self._groups[group] = 1
@@ -100,7 +104,8 @@ class MujocoCaster:
         Returns:
             Distances in m, shape (n,), inf without a hit; and the index of each geom, or -1.
         """
-        rays = self._bundles.directions @ turn.T
+        together = self._together
+        rays = (self._directions if together else self._bundles.directions) @ turn.T
         model = self._model
         groups, trees, counts = model.geom_group, model.body_bvhadr, model.body_geomnum
         saved_groups, saved_trees, saved_counts = groups.copy(), trees.copy(), counts.copy()
@@ -114,7 +119,10 @@ class MujocoCaster:
             open_groups = saved_groups.copy()
             open_groups[hidden] = HIDDEN_GROUP
             away: Array | None = None
-            for part, visible in self._candidates(start, turn, open_groups):
+            if together:
+                groups[:] = open_groups
+                self._cast(start, rays, distances, geoms)
+            for part, visible in () if together else self._candidates(start, turn, open_groups):
                 if (part.stop - part.start) * model.ngeom < _WORTH_SORTING:
                     groups[:] = np.where(visible, open_groups, HIDDEN_GROUP)
                     self._cast(start, rays[part], distances[part], geoms[part])
@@ -147,6 +155,8 @@ class MujocoCaster:
         finally:
             groups[:], counts[:] = saved_groups, saved_counts
             trees[:] = saved_trees
+        if together:
+            return np.where(distances < 0, np.inf, distances), geoms.copy()
         order = self._bundles.order
         measured, hit = np.empty_like(distances), np.empty_like(geoms)
         measured[order] = np.where(distances < 0, np.inf, distances)
