@@ -8,7 +8,6 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.codes import world as world_codes
 from cartwheel.description.model import WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
@@ -16,6 +15,7 @@ from cartwheel.simulation.carried_state import STATE_SIZES, carry_over
 from cartwheel.simulation.clock import Task, Topic, to_ns
 from cartwheel.simulation.dynamics.friction_directions import Directions
 from cartwheel.simulation.dynamics.restitution import Bounces
+from cartwheel.simulation.limits import too_many_contacts
 from cartwheel.simulation.sensing.embree_rays import SharedRayScenes
 from cartwheel.simulation.sensing.rendering import Renderer
 from cartwheel.simulation.sensing.visual_model import VisualModel
@@ -233,7 +233,7 @@ class Engine:
         try:
             mujoco.mj_forward(self.model, self.data if data is None else data)
         except mujoco.FatalError as error:
-            raise self._exhausted(error) from None
+            raise too_many_contacts(self.data.ncon, error) from None
 
     def refresh_poses(self) -> None:
         """As `locate`, but only if the state differs from that of the last call."""
@@ -277,25 +277,21 @@ class Engine:
                     self.forward()
                 if self._bounces.apply(self.model, self.data):
                     self.forward()
-                mujoco.mj_Euler(self.model, self.data)
+                self._integrate()
             return
         try:
             if forwarded:
-                mujoco.mj_Euler(self.model, self.data)
+                self._integrate()
                 count -= 1
             if count:
                 mujoco.mj_step(self.model, self.data, count)
         except mujoco.FatalError as error:
-            raise self._exhausted(error) from None
+            raise too_many_contacts(self.data.ncon, error) from None
 
-    def _exhausted(self, error: Exception) -> SimulationError:
-        return SimulationError(
-            f"the simulation cannot continue with {self.data.ncon} contacts: "
-            f"{str(error).splitlines()[0]}",
-            code=world_codes.TOO_MANY_CONTACTS,
-            hint="Check whether models overlap.",
-            values={"contacts": int(self.data.ncon)},
-        )
+    def _integrate(self) -> None:
+        mujoco.mj_Euler(self.model, self.data)
+        # The engine clears it only in a forward pass.
+        self.data.flg_rnepost = False
 
     def rewind(self, *, keep_time: bool = False, prepare: Callable[[], None]) -> None:
         """Resets all joints to their initial state, and time to zero.

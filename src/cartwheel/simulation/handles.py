@@ -134,8 +134,7 @@ class LinkHandle:
             weight: Array = -turn.T @ self._model.opt.gravity
             return weight, np.zeros(3)
         six = np.zeros(6)
-        # Computes the accelerations of all bodies, which stepping alone does not need.
-        mujoco.mj_rnePostConstraint(self._model, self._data)
+        self._find_accelerations()
         mujoco.mj_objectAcceleration(self._model, self._data, _XBODY, self.id, six, 1)
         acceleration: Array = six[3:]
         if any(offset):
@@ -146,13 +145,21 @@ class LinkHandle:
             )
         return acceleration, six[:3]
 
+    def _find_accelerations(self) -> None:
+        """Computes accelerations and forces of all bodies, which stepping alone does not need.
+
+        The sensors of a state share them.
+        """
+        if not self._data.flg_rnepost:
+            mujoco.mj_rnePostConstraint(self._model, self._data)
+
     def reaction(self, point: Sequence[float] = (0.0, 0.0, 0.0)) -> tuple[Array, Array]:
         """Force in N and torque in N m that the link exerts on its parent through their joint.
 
         Each has shape (3,), in the link's axes. The torque is about `point`, given in the link
         frame, m.
         """
-        mujoco.mj_rnePostConstraint(self._model, self._data)
+        self._find_accelerations()
         # MuJoCo stores the parent's action on the link, about the tree's centre of mass.
         torque, force = self._data.cfrc_int[self.id, :3], self._data.cfrc_int[self.id, 3:]
         turn: Array = self._data.xmat[self.id].reshape(3, 3)
@@ -165,7 +172,7 @@ class LinkHandle:
 
         Each has shape (3,), in world axes. The torque is about the link's centre of mass.
         """
-        mujoco.mj_rnePostConstraint(self._model, self._data)
+        self._find_accelerations()
         # MuJoCo stores it about the tree's centre of mass.
         torque, force = self._data.cfrc_ext[self.id, :3], self._data.cfrc_ext[self.id, 3:]
         arm = self._data.xipos[self.id] - self._centre

@@ -10,7 +10,7 @@ from numbers import Real
 import numpy as np
 
 from cartwheel.codes import world as world_codes
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, SimulationError
 from cartwheel.geometry import Pose, Quat, quat_normalize
 from cartwheel.simulation.clock import NANOSECONDS, to_ns
 
@@ -159,3 +159,18 @@ def check_seed(seed: int | None) -> None:
     """
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
         raise _out_of_range("the seed", "an integer of at least 0", seed)
+
+
+def too_many_contacts(contacts: int, error: Exception) -> SimulationError:
+    """The error for contacts that do not fit into the memory of the physics engine.
+
+    Args:
+        contacts: Number of contacts.
+        error: The error of the engine.
+    """
+    return SimulationError(
+        f"the simulation cannot continue with {contacts} contacts: {str(error).splitlines()[0]}",
+        code=world_codes.TOO_MANY_CONTACTS,
+        hint="Check whether models overlap.",
+        values={"contacts": int(contacts)},
+    )

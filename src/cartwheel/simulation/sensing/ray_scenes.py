@@ -6,6 +6,7 @@ together. Other shapes that move are few, and are tested directly.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -160,19 +161,22 @@ class RayScenes:
             return
         first = np.searchsorted(flat, np.arange(len(geoms) + 1) * len(query.rays)).tolist()
         found = np.empty(flat.size)
-        met = np.empty(flat.size, dtype=np.int32)
-        which = np.empty(flat.size, dtype=np.intp)
-        for index, geom in enumerate(geoms.tolist()):
+        row, which = np.divmod(flat, len(query.rays))
+        met = geoms[row]
+        starts, rays = np.empty((flat.size, 3)), query.rays[which]
+        turns = data.geom_xmat[geoms].reshape(-1, 3, 3)
+        for index in range(len(geoms)):
             part = slice(first[index], first[index + 1])
-            if part.start == part.stop:
-                continue
-            which[part] = flat[part] - index * len(query.rays)
-            turn = data.geom_xmat[geom].reshape(3, 3)
-            to_shape = shapes.TO_SHAPE[int(model.geom_type[geom])]
-            found[part] = to_shape(
-                -away[index] @ turn, query.rays[which[part]] @ turn, model.geom_size[geom]
-            )
-            met[part] = geom
+            if part.start < part.stop:
+                starts[part] = -away[index] @ turns[index]
+                rays[part] = rays[part] @ turns[index]
+        # The geoms are sorted by their kinds.
+        sizes, kinds = model.geom_size[met], model.geom_type[met]
+        edges = [0, *(np.flatnonzero(np.diff(kinds)) + 1).tolist(), flat.size]
+        for low, high in itertools.pairwise(edges):
+            part = slice(low, high)
+            to_shape = shapes.TO_SHAPE[int(kinds[low])]
+            found[part] = to_shape(starts[part], rays[part], sizes[part])
         found[query.own[met] & (found < query.minimum)] = np.inf
         hits.add_any(which, Hits(found, met))
 

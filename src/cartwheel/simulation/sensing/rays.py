@@ -21,7 +21,9 @@ from cartwheel.world.entry import scoped
 from cartwheel.world.visuals import VISUAL_GROUP
 
 _WORTH_EMBREE = 64
-"""Geoms; with fewer, MuJoCo is as fast."""
+"""Geoms; with fewer, MuJoCo is as fast, unless there are meshes."""
+_FACES_PER_GEOM = 25
+"""Triangles of meshes that take MuJoCo as long as a geom."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
 _MESH = mujoco.mjtGeom.mjGEOM_MESH
 
@@ -87,7 +89,7 @@ class RayHandle:
         self._housing = None
         limits: dict[str, Any] = {"minimum": self.minimum, "maximum": self.maximum}
         self._caster: EmbreeCaster | MujocoCaster
-        if AVAILABLE and model.ngeom >= _WORTH_EMBREE:
+        if AVAILABLE and _size(model, self._group) >= _WORTH_EMBREE:
             self._caster = EmbreeCaster(
                 self._shared, model, data, group=self._group, body=body, own=self._own,
                 offset=self._offset, directions=self._directions, **limits,
@@ -151,3 +153,9 @@ class RayHandle:
                 model.geom_type[geom],
             )
         )
+
+
+def _size(model: Any, group: int) -> int:
+    """Number of geoms, and what the meshes of a group count for."""
+    meshes = model.geom_dataid[(model.geom_type == _MESH) & (model.geom_group == group)]
+    return int(model.ngeom + model.mesh_facenum[meshes].sum() // _FACES_PER_GEOM)
