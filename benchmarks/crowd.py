@@ -49,9 +49,7 @@ def _drive(world: cw.World) -> None:
     world.publish(command_topic(world), linear_x=0.1, angular_z=0.4)
 
 
-def _compared(
-    world: cw.World, name: str, goal: float, effort: Effort, *, seconds: float
-) -> Figure:
+def _compared(world: cw.World, name: str, goal: float, effort: Effort, *, seconds: float) -> Figure:
     bare = Bare(world)
 
     def ours() -> None:

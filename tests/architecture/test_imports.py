@@ -112,7 +112,7 @@ MAY_IMPORT = {
         "bridges",
     },
     "scenarios": {"api", "testing", "description", "messages", "graph"},
-    "batch": {"api", "messages", "arrays"},
+    "batch": {"api", "assembly", "simulation", "messages", "arrays"},
     "gym": {"api", "batch"},
     "sweeps": {"api"},
     "cli": {

@@ -28,7 +28,9 @@ def measure(tmp_path: Path, *parts: str) -> dict:
     return json.loads(output.read_text())
 
 
-@pytest.mark.parametrize("part", ["headless", "unread", "sensors", "process", "making", "wires", "batch", "crowd"])
+@pytest.mark.parametrize(
+    "part", ["headless", "unread", "sensors", "process", "making", "wires", "batch", "crowd"]
+)
 def test_figures_name_themselves_and_are_measured(tmp_path: Path, part: str):
     found = measure(tmp_path, part)
     assert found["figures"]

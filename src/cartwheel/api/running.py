@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Self
 
-from cartwheel.api.turn import Turn
 from cartwheel.api.values import scalar
 from cartwheel.assembly.driver import Driver, uninterrupted
+from cartwheel.assembly.turn import Turn
 from cartwheel.assembly.turns import Turns
 from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, Literal
 
-from cartwheel.api.abreast import run_abreast
+from cartwheel.batch.abreast import run_abreast
 from cartwheel.batch.lane import Lane, Values, stacked
 from cartwheel.codes.world import BATCH_PROCESS_ENDED
 from cartwheel.errors import CartwheelError, fault

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cartwheel as cw
-from cartwheel.api.abreast import run_abreast
+from cartwheel.batch.abreast import run_abreast
 from cartwheel.errors import SimulationError
 from cartwheel.messages import to_dict
 
@@ -84,11 +84,16 @@ def test_closed_worlds_and_nested_runs_are_errors(worlds):
 
 
 def test_ctrl_c_stops_all_worlds_after_the_step(worlds):
-    worlds[0].on(0.1, lambda: signal.raise_signal(signal.SIGINT))
-    with pytest.raises(KeyboardInterrupt):
-        run_abreast(worlds, 10.0)
+    # Processes in the background ignore Ctrl-C.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        worlds[0].on(0.1, lambda: signal.raise_signal(signal.SIGINT))
+        with pytest.raises(KeyboardInterrupt):
+            run_abreast(worlds, 10.0)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert all(0.1 <= each.time < 1.0 for each in worlds)
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     run_abreast(worlds, 0.1)
 
 

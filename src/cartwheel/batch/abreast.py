@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from cartwheel.api.running import RunningWorld
-from cartwheel.api.turn import Turn
 from cartwheel.assembly.driver import Interruption
+from cartwheel.assembly.turn import Turn
 from cartwheel.messages.store import find_with, finding_with
 from cartwheel.simulation.limits import duration_ns
 
