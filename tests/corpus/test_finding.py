@@ -140,6 +140,25 @@ def test_a_robot_without_a_name_is_a_part(folder, tmp_path):
     assert kinds(tmp_path) == {"camera.xacro": "part"}
 
 
+def test_a_guessed_description_of_a_launch_file_may_be_a_part(folder, tmp_path):
+    folder(
+        a_dot_urdf='<robot name="a">' + LINK.format("arm") + "</robot>",
+        b_dot_xacro='<robot name="b" xmlns:xacro="x"><xacro:include filename="a.urdf"/>'
+        + LINK.format("base")
+        + '<joint name="j" type="fixed"><parent link="base"/><child link="arm"/></joint></robot>',
+    )
+    whole = LaunchUse(file=tmp_path / "a.launch", description=tmp_path / "b.xacro", arguments={})
+    for guessed, kind in ((False, None), (True, "part")):
+        use = LaunchUse(
+            file=tmp_path / "a.launch",
+            description=tmp_path / "a.urdf",
+            arguments={},
+            guessed=guessed,
+        )
+        skipped = {path.name: one for path, one in survey(tmp_path, launches=[whole, use]).skipped}
+        assert skipped.get("a.urdf") == kind
+
+
 def test_a_complete_part_of_a_launched_robot_is_a_part(folder, tmp_path):
     whole = '<xacro:include filename="core.xacro"/>' + LINK.format("lidar")
     found = folder(

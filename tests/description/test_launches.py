@@ -307,3 +307,12 @@ def test_a_name_with_an_unknown_part_is_any_such_name(sizes, monkeypatch):
 def test_a_name_of_which_nothing_is_known_is_no_name(sizes, monkeypatch):
     monkeypatch.delenv("SOME_UNSET_MODEL", raising=False)
     assert launches_near(sizes(sim_dot_launch=ANY)) == ()
+
+
+def test_a_file_whose_whole_name_is_an_argument_is_guessed(sizes):
+    named = VARIANTS.replace('default="small"', 'default="arm_small"').replace("arm_$", "$")
+    uses = launches_near(sizes(sim_dot_launch=named, control_dot_launch=CONTROL))
+    guessed = {each.description.name: each.guessed for each in uses if each.description}
+    assert guessed.pop("arm_small.urdf.xacro") is False
+    others = [*SIZES[:2], "arm.urdf.xacro", "leg_large.urdf.xacro"]
+    assert guessed == dict.fromkeys(others, True)

@@ -78,7 +78,11 @@ def survey(
     files = list(_files(folder))
     texts = {path: text for path in files if (text := _text(path)) is not None}
     launches = list(launches)
-    used = frozenset(each.description.resolve() for each in launches if each.description)
+    used = frozenset(
+        each.description.resolve()
+        for each in launches
+        if each.description is not None and not each.guessed
+    )
     whole = _Folder(
         texts=texts,
         included=_included(texts.values()),

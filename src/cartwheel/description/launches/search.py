@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
@@ -43,7 +44,7 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
             new = [each for each in other.descriptions if each[0] not in known]
             known |= {description for description, _ in new}
             other.descriptions = new
-            found += _uses(path, other) if new else []
+            found += _uses(path, other, given.values()) if new else []
     return tuple(found)
 
 
@@ -72,7 +73,8 @@ def _others(facts: Facts) -> list[dict[str, str]]:
     return found[:_VARIANTS]
 
 
-def _uses(path: Path, facts: Facts) -> list[LaunchUse]:
+def _uses(path: Path, facts: Facts, words: Collection[str] = ()) -> list[LaunchUse]:
+    """What a launch file starts; `words` are the values of arguments without their defaults."""
     described: list[tuple[Path | None, dict[str, str]]] = [*facts.descriptions]
     if not described and facts.yamls:
         described.append((None, {}))
@@ -88,9 +90,15 @@ def _uses(path: Path, facts: Facts) -> list[LaunchUse]:
                 controllers=tuple(dict.fromkeys(facts.yamls)),
                 spawned=tuple(dict.fromkeys(facts.spawned)),
                 simulated=facts.simulated,
+                guessed=description is not None and _is_whole(description.name, words),
             )
         )
     return found
+
+
+def _is_whole(name: str, words: Collection[str]) -> bool:
+    """Whether one of the words is the whole name of a file, without its suffixes."""
+    return any(re.fullmatch(re.escape(word) + r"(\.\w+)*", name) for word in words)
 
 
 def root_of(description: Path) -> Path | None:

@@ -65,6 +65,9 @@ class LaunchUse:
     """Names of the controllers that it starts."""
     simulated: bool = False
     """Whether it starts Gazebo or spawns a model."""
+    guessed: bool = False
+    """Whether an argument is the whole name of the description, which is not its default. It may
+    then be any file, also one that is not a robot."""
 
 
 @dataclass(kw_only=True)
