@@ -213,13 +213,13 @@ def to_cylinder(start: Array, ray: Array, size: Array) -> Array:
     best = np.full(len(ray), np.inf)
     for root in (near, far):
         inside = valid & (root >= 0) & (np.abs(start[..., 2] + root * ray[:, 2]) <= half)
-        best = np.minimum(best, np.where(inside, root, np.inf))
+        np.minimum(best, root, out=best, where=inside)
     with np.errstate(divide="ignore", invalid="ignore"):
         for height in (-half, half):
             root = (height - start[..., 2]) / ray[:, 2]
             x, y = start[..., 0] + root * ray[:, 0], start[..., 1] + root * ray[:, 1]
             inside = (root >= 0) & (x * x + y * y <= radius * radius)
-            best = np.minimum(best, np.where(inside, root, np.inf))
+            np.minimum(best, root, out=best, where=inside)
     return best
 
 
@@ -230,14 +230,14 @@ def to_capsule(start: Array, ray: Array, size: Array) -> Array:
     best = np.full(len(ray), np.inf)
     for root in (near, far):
         inside = valid & (root >= 0) & (np.abs(start[..., 2] + root * ray[:, 2]) <= half)
-        best = np.minimum(best, np.where(inside, root, np.inf))
+        np.minimum(best, root, out=best, where=inside)
     for side in (-1.0, 1.0):
         moved = start.copy()
         moved[..., 2] -= side * half
         near, far, valid = _to_sphere(moved, ray, radius)
         for root in (near, far):
             inside = valid & (root >= 0) & (side * (moved[..., 2] + root * ray[:, 2]) >= 0)
-            best = np.minimum(best, np.where(inside, root, np.inf))
+            np.minimum(best, root, out=best, where=inside)
     return best
 
 

@@ -60,8 +60,9 @@ class TriangleScene:
             count += len(own)
         # One more entry, for triangle -1 of a ray without a hit.
         self._owners: Any = np.append(np.concatenate(owners), np.int32(-1))
-        self._normals = [np.append(each, 0.0) for each in np.concatenate(normals).T]
-        self._offsets: Array = np.append(np.concatenate(offsets), np.inf)
+        planes = np.column_stack([np.concatenate(normals), np.concatenate(offsets)])
+        self._planes: Array = np.concatenate([planes, [[0.0, 0.0, 0.0, np.inf]]])
+        """Normal and offset of the plane of each triangle, which are read together."""
         everything = np.concatenate(corners)
         self._centre = (everything.min(axis=0) + everything.max(axis=0)) / 2
         """Single precision suffices near it."""
@@ -98,11 +99,9 @@ class TriangleScene:
 
     def _to_triangles(self, start: Array, rays: Array, triangles: Any) -> Array:
         """Distances to the planes of triangles."""
-        x, y, z = self._normals
-        heights = self._offsets[triangles]
+        x, y, z, heights = np.ascontiguousarray(self._planes.take(triangles, axis=0).T)
         across = np.zeros(len(rays))
-        for normal, origin, direction in zip((x, y, z), start.tolist(), rays.T, strict=True):
-            part = normal[triangles]
+        for part, origin, direction in zip((x, y, z), start.tolist(), rays.T, strict=True):
             heights -= part * origin
             across += part * direction
         with np.errstate(divide="ignore", invalid="ignore"):
