@@ -155,3 +155,18 @@ def test_a_launch_file_of_another_part_counts_if_it_starts_controllers_of_the_jo
     selected = selection_near(load_robot(path))
     assert {file.name for file in selected.files} == {"states.yaml", "one.yaml"}
     assert selected.names == (("s",) if commands else ())
+
+
+@pytest.mark.parametrize(
+    "stated",
+    ["/home/author/ws/install/share/arm_description/config/own.yaml", "config/own.yaml"],
+)
+def test_a_file_that_is_stated_for_another_computer_is_enough(workspace, stated):
+    """The manager takes it from the description's package, so no others are offered."""
+    own = workspace / "arm_description" / "config"
+    own.mkdir()
+    plugin = ros2_plugin(stated)
+    text = robot(beam("beam", "world") + system(ros2_joint("beam_joint", ["position"])), plugin)
+    assert names(workspace, text) == ["two.yaml"]
+    (own / "own.yaml").write_text(ROS2_FILE)
+    assert names(workspace, text) == []

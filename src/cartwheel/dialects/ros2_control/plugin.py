@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices, running
-from cartwheel.description.files.packages import Packages
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.dialects.ros2_control.components import HardwareComponents
@@ -18,7 +17,9 @@ from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
 from cartwheel.dialects.ros_control.files import (
     ControllerFiles,
     controller_entries,
+    moved_file,
     ros2_file,
+    stated_path,
 )
 from cartwheel.dialects.ros_control.hardware import Hardware
 from cartwheel.dialects.ros_control.interfaces import (
@@ -157,18 +158,12 @@ class Ros2Control(ControlPlugin):
 
     def _path(self, text: str) -> Path | None:
         """Returns the file in a ``<parameters>`` tag; None, with a report, if it does not exist."""
-        text = text.strip()
-        path = Path(text)
-        origin = self.tag.origin
-        if not path.is_absolute():
-            # A description from a service has no folder. Like its meshes, it uses the current
-            # folder.
-            path = Path("" if origin.file.startswith("<") else origin.file).parent / path
+        text, origin = text.strip(), self.tag.origin
+        path = stated_path(text, origin)
         files = self.shared.get(ControllerFiles)
         if not files.known(self.part.description, ("file", path), path.is_file):
-            packages = Packages(None if origin.file.startswith("<") else Path(origin.file))
-            other = packages.elsewhere(text, origin)
-            for diagnostic in packages.moves():
+            other, diagnostics = moved_file(text, origin)
+            for diagnostic in diagnostics:
                 self.part.report(diagnostic)
             if other is not None:
                 return other

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from cartwheel import yaml_text
 from cartwheel.codes import devices
+from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.launch_arguments import launch_arguments
 from cartwheel.dialects.ros_control.settings import Settings, merge
 from cartwheel.dialects.ros_control.substitution import substitute
-from cartwheel.errors import Origin, PluginError
+from cartwheel.errors import Diagnostic, Origin, PluginError
 
 if TYPE_CHECKING:
     from cartwheel.dialects.ros_control.controller import Controller
@@ -355,3 +356,27 @@ def _ros2_nodes(
             yield parts or ("**",), parameters
         else:
             yield from _ros2_nodes(value, parts)
+
+
+def stated_path(text: str, origin: Origin) -> Path:
+    """Returns the path in a tag. It is relative to the file that contains the tag.
+
+    A description from a service has no folder. Like its meshes, it uses the current folder.
+    """
+    path = Path(text.strip())
+    if path.is_absolute():
+        return path
+    return Path("" if _is_from_service(origin) else origin.file).parent / path
+
+
+def moved_file(text: str, origin: Origin) -> tuple[Path | None, list[Diagnostic]]:
+    """Returns the file that a tag means by a path of another computer, with its diagnostics.
+
+    The file is None if there is none in the package of the description.
+    """
+    packages = Packages(None if _is_from_service(origin) else Path(origin.file))
+    return packages.elsewhere(text.strip(), origin), list(packages.moves())
+
+
+def _is_from_service(origin: Origin) -> bool:
+    return origin.file.startswith("<")

@@ -15,10 +15,12 @@ from cartwheel.dialects.ros_control.files import (
     ControllerEntry,
     controller_entries,
     is_ros2,
+    moved_file,
     name_and_file,
     read_parameters,
     ros1_entries,
     ros2_file,
+    stated_path,
 )
 from cartwheel.dialects.ros_control.launch_arguments import texts
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
@@ -162,7 +164,11 @@ def _manager(tag: PluginTag) -> str:
 
 
 def _has_files(tag: PluginTag) -> bool:
-    return any(Path(each.text.strip()).is_file() for each in tag.element.find_all("parameters"))
+    """Whether a file is stated that exists, also at a different place than stated."""
+    return any(
+        stated_path(each.text, tag.origin).is_file() or moved_file(each.text, tag.origin)[0]
+        for each in tag.element.find_all("parameters")
+    )
 
 
 def _entries(content: Mapping[str, Any], source: str, *, ros2: bool) -> list[ControllerEntry]:
