@@ -74,6 +74,7 @@ NAVIGATION: list[tuple[str, list[Entry]]] = [
             "python/messages.md",
             "python/save-restore.md",
             "python/learning.md",
+            "python/datasets.md",
             "ros1.md",
             "ros2.md",
             "foxglove.md",

@@ -34,13 +34,13 @@ $ cartwheel explain CW204
 ```
 """
 
-_PACKAGES = ("batch", "gym", "sweeps", "testing")
+_PACKAGES = ("batch", "dataset", "gym", "sweeps", "testing")
 """Packages with public names of their own."""
 _API_INTRODUCTION = """\
 # Python API
 
 The public names of the package `cartwheel`, the diagnostics that they report, and the packages for
-batches, environments, parameter studies and tests.
+batches, datasets, environments, parameter studies and tests.
 [From Python](python.md) shows how to use them.
 """
 

@@ -115,6 +115,7 @@ MAY_IMPORT = {
     "batch": {"api", "assembly", "simulation", "messages", "arrays"},
     "gym": {"api", "batch"},
     "sweeps": {"api"},
+    "dataset": {"api", "arrays", "description"},
     "cli": {
         "description",
         "world",

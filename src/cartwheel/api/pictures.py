@@ -19,7 +19,7 @@ from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array, Vec3
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import number, numbers
-from cartwheel.simulation.sensing.rendering import Image
+from cartwheel.simulation.sensing.views import Image
 
 _LARGEST = 8192
 """Largest width and height of a picture, pixels."""

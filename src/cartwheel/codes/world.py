@@ -139,3 +139,4 @@ SWEEP_INVALID = Code("CW641", "sweep-invalid", "error", "an argument of a sweep 
 CLUSTER_UNUSABLE = Code(
     "CW642", "cluster-unusable", "error", "a Ray cluster cannot run the cases of a sweep"
 )
+DATASET_INVALID = Code("CW643", "dataset-invalid", "error", "an argument of a dataset is invalid")

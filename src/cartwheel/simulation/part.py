@@ -23,7 +23,7 @@ from cartwheel.simulation.random_numbers import RandomNumbers
 from cartwheel.simulation.requests import Requests
 from cartwheel.simulation.sensing.contacts import contacts_of, geoms_of
 from cartwheel.simulation.sensing.rays import RayHandle
-from cartwheel.simulation.sensing.rendering import Depth, Image
+from cartwheel.simulation.sensing.views import Depth, Image
 from cartwheel.simulation.snapshot import Contact
 from cartwheel.world.entry import ModelEntry, scoped
 

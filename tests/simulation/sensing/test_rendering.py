@@ -62,7 +62,7 @@ def test_what_is_out_of_view_changes_no_picture(make, monkeypatch, tmp_path, len
         left_out.append(1)
         return np.zeros(model.ngeom, dtype=bool)
 
-    monkeypatch.setattr("cartwheel.simulation.sensing.rendering._out_of_view", nothing)
+    monkeypatch.setattr("cartwheel.simulation.sensing.rendering.out_of_view", nothing)
     whole = pictures()
     assert len(np.unique(np.reshape(whole, (-1, 3)), axis=0)) > 20
     assert np.array_equal(lean, whole)

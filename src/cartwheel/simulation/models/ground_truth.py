@@ -20,6 +20,7 @@ from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.placement import push_off, with_mimics
 from cartwheel.simulation.models.population import Population
 from cartwheel.simulation.models.touches import Touch, Touches
+from cartwheel.world.entry import CameraMount
 
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
@@ -88,6 +89,14 @@ class GroundTruth:
             return _STILL, _STILL
         self._engine.refresh()
         return handle.acceleration()
+
+    def cameras(self, model: str) -> tuple[CameraMount, ...]:
+        """The cameras of a model.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        return tuple(self._population.resident(model).entry.cameras)
 
     def velocity(self, model: str) -> tuple[Vec3, Vec3]:
         """Linear and angular velocity of a model's frame, m/s and rad/s, in world axes.

@@ -9,44 +9,34 @@ from __future__ import annotations
 import contextlib
 import math
 import weakref
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import mujoco
 import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.geometry import Vec3
+from cartwheel.geometry import Pose, Vec3
 from cartwheel.simulation.handles import CameraHandle
 from cartwheel.simulation.sensing.opengl import OffscreenContext
+from cartwheel.simulation.sensing.views import (
+    Depth,
+    Image,
+    Labelled,
+    View,
+    axes_of,
+    axes_towards,
+    metres,
+    out_of_view,
+)
 from cartwheel.simulation.sensing.visual_model import VisualModel
 from cartwheel.world.visuals import HIDDEN_GROUP, VISUAL_GROUP
 
 _WALL = 0.99
 """Distance of the background wall, as a fraction of the far distance."""
 _FULL = 255
-_STEEP = 0.9999
-"""Vertical part of a unit vector that is taken as vertical."""
-
 _PIXEL = np.dtype((np.void, 3))
 """Three bytes as one value: numpy applies masks to such values many times faster."""
-
-Image = np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]
-Depth = np.ndarray[tuple[int, int], np.dtype[np.float32]]
-
-
-@dataclass(frozen=True, slots=True)
-class _View:
-    """The camera of one image."""
-
-    lens: CameraIntrinsics
-    position: Any
-    """In the world, m, shape (3,)."""
-    axes: Any
-    """Columns: the image's right, up, and back, shape (3, 3)."""
-    fixed: int
-    """ID of the camera in the model; -1 for a camera that is not in the model."""
 
 
 class Renderer:
@@ -127,7 +117,7 @@ class Renderer:
             ForkedError: This process was forked from a process that had opened OpenGL.
         """
         data = self._bound()
-        view = _View(lens, np.array(eye), _axes_towards(np.subtract(target, eye)), -1)
+        view = View(lens, np.array(eye), axes_towards(np.subtract(target, eye)), -1)
         pixels, _ = self._draw(data, view)
         return np.ascontiguousarray(pixels[::-1])
 
@@ -143,27 +133,71 @@ class Renderer:
         """
         data = self._bound()
         pixels, buffer = self._draw(data, _seen_by(camera, data))
-        lens = camera.intrinsics
-        # The buffer contains near (far - z) / (z (far - near)): 1 at the near plane, 0 at the far
-        # plane.
-        with np.errstate(divide="ignore"):
-            depths = np.float32(lens.near * lens.far) / (
-                np.float32(lens.near) + buffer[::-1] * np.float32(lens.far - lens.near)
-            )
-        depths[buffer[::-1] == 0] = np.inf
-        return np.ascontiguousarray(pixels[::-1]), depths
+        return np.ascontiguousarray(pixels[::-1]), metres(buffer, camera.intrinsics)
 
-    def _draw(self, data: Any, view: _View) -> tuple[Image, Depth]:
+    def render_labelled(self, pose: Pose, lens: CameraIntrinsics) -> Labelled:
+        """An image, its depths, and the body at each pixel.
+
+        Args:
+            pose: The camera in the world. It looks along its x axis, with z up.
+            lens: Size, field of view and clip distances.
+
+        Raises:
+            WorldError: A visual cannot be built.
+            NoOpenGLError: OpenGL is missing; the hint says what to install.
+            ForkedError: This process was forked from a process that had opened OpenGL.
+        """
+        data = self._bound()
+        view = View(lens, np.array(pose.position), axes_of(pose), -1)
+        with self._opened(lens.width, lens.height):
+            pixels, buffer = self._draw_in_context(data, view)
+            bodies = self._bodies(data, view)
+        names = tuple(self._model.body(index).name for index in range(self._model.nbody))
+        image = np.ascontiguousarray(pixels[::-1])
+        return Labelled(image, metres(buffer, lens), bodies, names)
+
+    def render_alone(self, pose: Pose, lens: CameraIntrinsics, bodies: Collection[int]) -> Any:
+        """The pixels of bodies without all others: a mask, shape (height, width).
+
+        Args:
+            pose: As for `render_labelled`.
+            lens: As for `render_labelled`.
+            bodies: Body IDs, as in `Labelled.bodies`.
+        """
+        data = self._bound()
+        view = View(lens, np.array(pose.position), axes_of(pose), -1)
+        with self._opened(lens.width, lens.height):
+            self._prepare(lens.width, lens.height)
+            self._aim(view)
+            others = ~np.isin(self._model.geom_bodyid, list(bodies))
+            return self._bodies(data, view, hidden=others) >= 0
+
+    def _bodies(self, data: Any, view: View, hidden: Any = None) -> Any:
+        """The body at each pixel; see `Labelled.bodies`."""
+        codes = np.empty((view.lens.height, view.lens.width, 3), dtype=np.uint8)
+        flags, kinds = self._scene.flags, mujoco.mjtRndFlag
+        self._show(data, view, hidden)
+        flags[kinds.mjRND_SEGMENT] = flags[kinds.mjRND_IDCOLOR] = 1
+        try:
+            self._shoot(codes, None)
+        finally:
+            flags[kinds.mjRND_SEGMENT] = flags[kinds.mjRND_IDCOLOR] = 0
+        # The colour of a geom in the scene is the number after its own; black is the background.
+        owners = np.full(self._scene.ngeom + 1, -1, dtype=np.int32)
+        for geom in self._scene.geoms[: self._scene.ngeom]:
+            if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM and geom.segid >= 0:
+                owners[geom.segid + 1] = self._model.geom_bodyid[geom.objid]
+        return owners[codes[::-1].astype(np.int32) @ np.array([1, 1 << 8, 1 << 16])]
+
+    def _draw(self, data: Any, view: View) -> tuple[Image, Depth]:
         """Pixels and the depth buffer, both with the lowest row first."""
         with self._opened(view.lens.width, view.lens.height):
             return self._draw_in_context(data, view)
 
-    def _draw_in_context(self, data: Any, view: _View) -> tuple[Image, Depth]:
+    def _draw_in_context(self, data: Any, view: View) -> tuple[Image, Depth]:
         lens = view.lens
         self._prepare(lens.width, lens.height)
-        kinds = mujoco.mjtCamera
-        self._camera.type = kinds.mjCAMERA_FREE if view.fixed < 0 else kinds.mjCAMERA_FIXED
-        self._camera.fixedcamid = view.fixed
+        self._aim(view)
         pixels = np.empty((lens.height, lens.width, 3), dtype=np.uint8)
         buffer = np.empty((lens.height, lens.width), dtype=np.float32)
         self._show(data, view)
@@ -178,7 +212,12 @@ class Renderer:
             pixels[empty] = np.minimum(seen, _FULL)
         return pixels, buffer
 
-    def _show(self, data: Any, view: _View, hidden: Any = None) -> None:
+    def _aim(self, view: View) -> None:
+        kinds = mujoco.mjtCamera
+        self._camera.type = kinds.mjCAMERA_FREE if view.fixed < 0 else kinds.mjCAMERA_FIXED
+        self._camera.fixedcamid = view.fixed
+
+    def _show(self, data: Any, view: View, hidden: Any = None) -> None:
         """Adds the visible geoms in front of the camera to the scene.
 
         The engine also draws geoms behind the camera, so they are omitted here.
@@ -191,7 +230,7 @@ class Renderer:
         lens, groups = view.lens, self._model.geom_group
         saved = groups.copy()
         try:
-            groups[_out_of_view(self._model, data, view)] = HIDDEN_GROUP
+            groups[out_of_view(self._model, data, view)] = HIDDEN_GROUP
             if hidden is not None:
                 groups[hidden] = HIDDEN_GROUP
             mujoco.mjv_updateScene(
@@ -215,6 +254,10 @@ class Renderer:
             if view.fixed < 0:
                 camera.pos[:] = view.position
                 camera.up[:], camera.forward[:] = view.axes[:, 1], -view.axes[:, 2]
+        if view.fixed < 0:
+            for light in self._scene.lights[: self._scene.nlight]:
+                if light.headlight:
+                    light.pos[:], light.dir[:] = view.position, -view.axes[:, 2]
 
     def _shoot(self, pixels: Image, buffer: Depth | None) -> None:
         """Draws the scene and reads the image, and the depth buffer if one is given."""
@@ -222,7 +265,7 @@ class Renderer:
         mujoco.mjr_render(viewport, self._scene, self._context)
         mujoco.mjr_readPixels(pixels, buffer, viewport, self._context)
 
-    def _transmitted(self, data: Any, view: _View) -> Image:
+    def _transmitted(self, data: Any, view: View) -> Image:
         """The fraction of the background visible through transparent geoms, from 0 to 255.
 
         Transparent geoms leave no depth, and the engine draws them in front of black. Here they are
@@ -293,33 +336,10 @@ def _background(model: Any) -> Any:
     return np.zeros(3, dtype=np.uint8)
 
 
-def _seen_by(camera: CameraHandle, data: Any) -> _View:
+def _seen_by(camera: CameraHandle, data: Any) -> View:
     """The view of a camera in the model."""
     axes = data.cam_xmat[camera.id].reshape(3, 3)
-    return _View(camera.intrinsics, data.cam_xpos[camera.id], axes, camera.id)
-
-
-def _axes_towards(direction: Any) -> Any:
-    """The axes of a camera that looks in a direction; see `_View.axes`."""
-    back = -direction / np.linalg.norm(direction)
-    upright = np.array([0.0, 1.0, 0.0] if abs(back[2]) > _STEEP else [0.0, 0.0, 1.0])
-    right = np.cross(upright, back)
-    right /= np.linalg.norm(right)
-    return np.column_stack([right, np.cross(back, right), back])
-
-
-def _out_of_view(model: Any, data: Any, view: _View) -> Any:
-    """Mask of geoms whose bounding spheres are completely out of view, shape (ngeom,)."""
-    lens = view.lens
-    radius = model.geom_rbound
-    right, up, back = ((data.geom_xpos - view.position) @ view.axes).T
-    wide = math.tan(lens.horizontal_fov / 2)
-    high = wide * lens.height / lens.width
-    out = (-back + radius < lens.near) | (-back - radius > lens.far)
-    out |= np.abs(right) + wide * back > radius * math.hypot(1.0, wide)
-    out |= np.abs(up) + high * back > radius * math.hypot(1.0, high)
-    # An infinite plane has no bounding sphere.
-    return out & (radius > 0)
+    return View(camera.intrinsics, data.cam_xpos[camera.id], axes, camera.id)
 
 
 def _opaque(model: Any) -> Any:
