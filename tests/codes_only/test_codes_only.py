@@ -18,6 +18,7 @@ REPRESENTATIVE = {
     "cli": "tests/cli/test_gazebo_arguments.py",
     "component": "tests/component/test_component.py",
     "control": "tests/control/test_registry.py",
+    "dataset": "tests/dataset/test_dataset.py::test_mistakes",
     "description": "tests/description/test_loading.py",
     "corpus": "tests/corpus/test_finding.py",
     "devices": "tests/devices/cameras/test_camera_services.py",
