@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+import traceback
 
 import pytest
 from tests.coded import raises
@@ -11,8 +12,10 @@ import cartwheel as cw
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import FIELD_VALUE_INVALID, MESSAGE_TYPE_UNKNOWN
 from cartwheel.codes.world import (
+    MODEL_NAME_INVALID,
     NUMBER_OUT_OF_RANGE,
     PROPERTY_ABSENT,
+    REAL_TIME_FACTOR_INVALID,
     SIMULATION_CLOSED,
     VALUE_INVALID,
 )
@@ -156,3 +159,106 @@ def test_completion_knows_what_has_not_been_imported():
     code = "import cartwheel, sys; print(*dir(cartwheel)); assert 'numpy' not in sys.modules"
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert set(cw.__all__) | {"__version__"} <= set(shown.stdout.split())
+
+
+def test_arguments_of_a_wrong_kind_are_named(make, rosbots):
+    world = make.world()
+    wrong = {
+        "world": [lambda: cw.World(5), lambda: cw.World(None), lambda: cw.build(5)],
+        "strict": [lambda: cw.World(strict="no")],
+        "viewer": [lambda: cw.World(viewer="x")],
+        "foxglove": [lambda: cw.World(foxglove="x")],
+        "package_path": [
+            lambda: cw.World(package_path=5),
+            lambda: world.spawn(rosbots, package_path=5),
+        ],
+        "plugins": [lambda: cw.World(plugins=b"x")],
+        "bridge": [lambda: cw.World(bridge=[5])],
+        "record": [lambda: cw.World(record=5)],
+        "without": [lambda: cw.World(without=5)],
+        "robot": [lambda: world.spawn(5), lambda: cw.build("empty", [5])],
+        "robots": [lambda: cw.build("empty", 5)],
+        "name": [
+            lambda: world.spawn(rosbots, name=5),
+            lambda: world.model(5),
+            lambda: world.model("ground_plane").link(5),
+            lambda: world.model("ground_plane").joint(5),
+            lambda: world.light(5),
+            lambda: world.topic(5),
+        ],
+        "namespace": [lambda: world.spawn(rosbots, namespace=5)],
+        "frame_prefix": [lambda: world.spawn(rosbots, frame_prefix=5)],
+        "arguments": [lambda: world.spawn(rosbots, arguments=5)],
+        "controllers": [lambda: world.spawn(rosbots, controllers=5)],
+        "topic": [
+            lambda: world.publish(5),
+            lambda: world.subscribe(5, print),
+            lambda: world.advertise(5, "std_msgs/msg/Empty"),
+            lambda: world.mailbox(5),
+        ],
+        "callback": [lambda: world.subscribe("/clock", 5)],
+        "service": [lambda: world.call(5)],
+        "action": [lambda: world.send_goal(5)],
+        "file": [lambda: world.record(5).__enter__()],
+    }
+    for name, calls in wrong.items():
+        for call in calls:
+            with raises(OPTION_INVALID, name=name):
+                call()
+    assert world.models == ("ground_plane",)
+
+
+@pytest.mark.parametrize("seed", ["x", -1, 1.5, True, None])
+def test_a_wrong_seed(seed):
+    with raises(NUMBER_OUT_OF_RANGE):
+        cw.World(seed=seed)
+
+
+def test_values_of_a_wrong_kind(make, rosbots):
+    world = make.world()
+    for call in (
+        lambda: world.spawn(rosbots, pose=(1, 2, 3)),
+        lambda: world.spawn(rosbots, x="far"),
+        lambda: world.restore(5),
+    ):
+        with raises(VALUE_INVALID):
+            call()
+    for name in ("", "a::b"):
+        with raises(MODEL_NAME_INVALID):
+            world.spawn(rosbots, name=name)
+    assert world.models == ("ground_plane",)
+
+
+def test_the_current_folder_was_deleted(tmp_path):
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    code = (
+        "import os; os.rmdir(os.getcwd())\n"
+        "import cartwheel as cw\n"
+        "world = cw.World(); world.spawn('rosbots.xacro'); world.run(0.1); print(world.time)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.strip() == "0.1", done.stderr
+
+
+def test_an_error_in_a_xacro_file_has_one_traceback(tmp_path, make):
+    file = tmp_path / "robot.xacro"
+    file.write_text(
+        '<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+        '<link name="${nope}"/></robot>'
+    )
+    with pytest.raises(CartwheelError) as caught:
+        make.world().spawn(file)
+    assert caught.value.origin.line == 2
+    shown = traceback.format_exception(caught.value)
+    assert sum(line.startswith("Traceback") for line in shown) == 1
+
+
+@pytest.mark.parametrize("speed", ["fast", 0, -1, math.nan, True])
+def test_a_wrong_speed(speed, make):
+    world = make.world()
+    for run in (world.run, world.spin):
+        with raises(REAL_TIME_FACTOR_INVALID):
+            run(0.1, speed=speed)

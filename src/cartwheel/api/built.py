@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import description as descriptions
-from cartwheel.api.messaging import several
+from cartwheel.api.arguments import paths, refused, source
 from cartwheel.api.world import World
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -136,6 +136,7 @@ def build(
         CartwheelError: A name in `without` is unknown.
         TypeError: `World.spawn` does not have an argument of a robot.
     """
+    source(world, "world")
     if not isinstance(world, WorldDescription):
         world = descriptions.load_world(world)
     built = Built(
@@ -157,6 +158,8 @@ def build(
 def _listed(robots: Robot | Sequence[Robot]) -> Sequence[Robot]:
     if isinstance(robots, str | Path | RobotDescription | Mapping):
         return [robots]
+    if not isinstance(robots, Sequence):
+        raise refused("robots", "a robot or a sequence of robots", robots)
     return robots
 
 
@@ -165,10 +168,12 @@ def _read(robot: Robot, package_path: str | Path | Sequence[str | Path]) -> dict
     given: dict[str, Any] = dict(robot) if isinstance(robot, Mapping) else {"robot": robot}
     given.setdefault("package_path", package_path)
     file = given.get("robot")
+    if "robot" in given:
+        source(file, "robot")
     if isinstance(file, str | Path):
         given["robot"] = descriptions.load_robot(
             file,
             arguments=given.pop("arguments", None),
-            package_path=[Path(folder) for folder in several(given["package_path"])],
+            package_path=paths(given["package_path"], "package_path"),
         )
     return given

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, Literal
 
+from cartwheel.api.arguments import text
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.api.topics import made_message
@@ -71,7 +72,7 @@ class CallingWorld(MessagingWorld):
         self.check_open()
         limit = duration_ns(timeout, "the timeout in s") / NANOSECONDS
         try:
-            offered = self.graph.service(service)
+            offered = self.graph.service(text(service, "service"))
         except UnknownNameError as error:
             if service.startswith(_GAZEBO) and not self._offers_gazebo:
                 error.hint = "Call serve_gazebo first, which provides Gazebo's services."
@@ -167,7 +168,7 @@ class CallingWorld(MessagingWorld):
             SimulationError: The world is closed.
         """
         self.check_open()
-        offered = self.graph.action(action)
+        offered = self.graph.action(text(action, "action"))
         made = made_message(action, f"{offered.type}_Goal", goal, fields)
         with self.used(change=True) as simulation, finding_with(self.session.types):
             if not self._running or self._runner != threading.get_ident():

@@ -8,8 +8,9 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any, overload
 
+from cartwheel.api.arguments import refused, several, text
 from cartwheel.api.timing import TimedWorld
 from cartwheel.api.topics import Topic, made_message
 from cartwheel.graph import Graph, Mailbox, Publisher, Subscription
@@ -18,8 +19,6 @@ from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
-
-T = TypeVar("T", bound=str | Path)
 
 
 class MessagingWorld(TimedWorld):
@@ -46,7 +45,7 @@ class MessagingWorld(TimedWorld):
                 of the topic's type.
         """
         self.check_open()
-        kind = self.graph.topic(topic).type
+        kind = self.graph.topic(text(topic, "topic")).type
         self.graph.publish(topic, kind, made_message(topic, kind, message, fields))
 
     @property
@@ -90,7 +89,7 @@ class MessagingWorld(TimedWorld):
         if keep is not None:
             check_size(keep)
         with self.used():
-            found = self._known_topics.get(name)
+            found = self._known_topics.get(text(name, "name"))
             if found is None:
                 found = Topic(self, name, full, keep)
                 self._known_topics[name] = self._known_topics[found.name] = found
@@ -152,6 +151,9 @@ class MessagingWorld(TimedWorld):
             GraphError: As for `topic`.
         """
         self.check_open()
+        text(topic, "topic")
+        if not callable(callback):
+            raise refused("callback", "a function", callback)
         simulation = self.session.simulation
 
         def guarded(message: Any) -> None:
@@ -184,7 +186,7 @@ class MessagingWorld(TimedWorld):
         """
         self.check_open()
         full = str(self.message_class(name_of(type)).__msgtype__)
-        return self.graph.advertise(topic, full, checked=True)
+        return self.graph.advertise(text(topic, "topic"), full, checked=True)
 
     def message_class(self, type: str) -> Any:
         """Returns the class of a message type: a dataclass with the message's fields.
@@ -226,7 +228,9 @@ class MessagingWorld(TimedWorld):
         self.check_open()
         check_size(size)
         full = self._full_name(type)
-        return self.graph.mailbox(topic, size=size, type_name=full, can_come=self._run_by_another)
+        return self.graph.mailbox(
+            text(topic, "topic"), size=size, type_name=full, can_come=self._run_by_another
+        )
 
     def _run_by_another(self) -> bool:
         """Whether a different thread ran the world last and is still alive."""
@@ -260,12 +264,14 @@ class MessagingWorld(TimedWorld):
         from cartwheel.bridges.recording import Recorder
         from cartwheel.gazebo.robot_descriptions import RobotDescriptions
 
+        if not isinstance(file, str | Path):
+            raise refused("file", "a path", file)
         simulation = self.session.simulation
         recorder = Recorder(
             self.graph,
             file,
             time_ns=functools.partial(attrgetter("time_ns"), simulation.engine),
-            topics=several(topics),
+            topics=several(topics, "topics"),
             encoding=encoding,
             overwrite=overwrite,
             notes=self.session.notes,
@@ -287,8 +293,3 @@ class MessagingWorld(TimedWorld):
                 simulation.drain()
                 if robots is not None:
                     robots.close()
-
-
-def several(values: T | Sequence[T]) -> list[T]:
-    """The items of a sequence. A single text or path is one item, not a sequence of characters."""
-    return [values] if isinstance(values, str | Path) else list(values)

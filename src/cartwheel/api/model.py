@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from cartwheel.api.arguments import text
 from cartwheel.api.joints import Joints
 from cartwheel.api.links import Link
 from cartwheel.api.motion import Twist
@@ -124,7 +125,7 @@ class Model:
             UnknownNameError: The link does not exist, or the model does not exist any more.
         """
         with self._world.lock:
-            self._world.session.simulation.truth.link(self.name, name)
+            self._world.session.simulation.truth.link(self.name, text(name, "name"))
         return Link(self._world, self.name, name)
 
     @property
@@ -156,7 +157,7 @@ class Model:
             UnknownNameError: The joint does not exist.
         """
         with self._world.lock:
-            return self._world.session.simulation.joint_position(self.name, name)
+            return self._world.session.simulation.joint_position(self.name, text(name, "name"))
 
     # -- messages and the end
 

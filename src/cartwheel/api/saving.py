@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterator
 
 from cartwheel.api.messaging import MessagingWorld
+from cartwheel.api.values import instance
 from cartwheel.codes.world import RUN_NESTED
 from cartwheel.errors import SimulationError
 from cartwheel.saving import State, restore, save
@@ -46,6 +47,7 @@ class SavingWorld(MessagingWorld):
             CartwheelError: A deleted model cannot be spawned again. The world is unchanged after
                 each of these errors.
         """
+        instance(state, State, "state", "state = world.save()")
         with self.used(change=True):
             if self._running:
                 raise _nested("restores")

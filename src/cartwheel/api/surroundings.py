@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from cartwheel.api.arguments import text
 from cartwheel.api.contacts import Contact, contacts_between
 from cartwheel.api.lights import Light, described_light
 from cartwheel.api.running import RunningWorld
@@ -73,5 +74,5 @@ class SurroundingWorld(RunningWorld):
             UnknownNameError: The light does not exist.
         """
         with self.lock:
-            described_light(self.session.simulation, name)
+            described_light(self.session.simulation, text(name, "name"))
         return Light(self, name)

@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Literal
 
 from cartwheel import description as descriptions
+from cartwheel.api.arguments import paths, refused, several, source, text
 from cartwheel.api.calling import CallingWorld
-from cartwheel.api.messaging import several
 from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings import SurroundingWorld
+from cartwheel.api.values import instance, scalar
 from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -22,8 +23,9 @@ from cartwheel.geometry import Pose
 from cartwheel.graph import resolve_name
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
-from cartwheel.simulation.limits import number
+from cartwheel.simulation.limits import check_seed, number
 from cartwheel.simulation.models.compilations import Compiler
+from cartwheel.simulation.models.unique_names import check_model_name
 
 
 class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
@@ -89,8 +91,16 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         _compiler: Compiler | None = None,
         _readings: Readings | None = None,
     ) -> None:
+        source(world, "world")
+        check_seed(-1 if seed is None else seed)
+        for name, flag in (("strict", strict), ("lenient", lenient), ("overwrite", overwrite)):
+            if not isinstance(flag, bool):
+                raise refused(name, "True or False", flag)
+        for name, port_given in (("foxglove", foxglove), ("viewer", viewer)):
+            if not isinstance(port_given, int):
+                raise refused(name, "True, False or a port", port_given)
         connections = plan = None
-        files = several(record)
+        files = paths(record, "record")
         # A port may be 0, which selects a free port.
         if ros1 or ros2 or foxglove is not False or viewer is not False or files:
             from cartwheel.assembly.connections import FOXGLOVE_PORT, NODE, Connections, port
@@ -104,12 +114,12 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 foxglove=port(foxglove, FOXGLOVE_PORT),
                 viewer=viewer is not False,
                 viewer_port=port(viewer, None),
-                recordings=tuple(Path(file) for file in files),
+                recordings=tuple(files),
                 recording=RecordingOptions(
-                    topics=tuple(several(record_topics)), overwrite=overwrite
+                    topics=tuple(several(record_topics, "record_topics")), overwrite=overwrite
                 ),
             )
-            connections = Connections(host=host, allow_origin=several(allow_origin))
+            connections = Connections(host=host, allow_origin=several(allow_origin, "allow_origin"))
         session: Session | None = None
         try:
             if connections is not None and plan is not None:
@@ -121,18 +131,18 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 seed=seed,
                 strict=strict,
                 lenient=lenient,
-                bridge=[Path(file) for file in several(bridge)],
-                allow_path=[Path(folder) for folder in several(allow_path)],
-                plugins=[Path(file) for file in several(plugins)],
-                package_path=[Path(folder) for folder in several(package_path)],
-                without=several(without),
+                bridge=paths(bridge, "bridge"),
+                allow_path=paths(allow_path, "allow_path"),
+                plugins=paths(plugins, "plugins"),
+                package_path=paths(package_path, "package_path"),
+                without=several(without, "without"),
                 compiler=_compiler,
                 readings=_readings,
             )
             super().__init__(
                 session,
                 host=host,
-                allow_origin=several(allow_origin),
+                allow_origin=several(allow_origin, "allow_origin"),
                 connections=connections,
                 plan=plan,
             )
@@ -207,10 +217,16 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             GraphError: The namespace is invalid.
             CartwheelError: The pose is given twice, is not finite, or is too far away.
         """
+        source(robot, "robot")
+        if name is not None:
+            check_model_name(text(name, "name"))
+        text(frame_prefix, "frame_prefix")
+        if arguments is not None and not isinstance(arguments, Mapping):
+            raise refused("arguments", "a mapping", arguments)
         place = _place(pose, (x, y, z), (roll, pitch, yaw))
-        if namespace.strip("/"):
+        if text(namespace, "namespace").strip("/"):
             resolve_name(namespace)
-        folders = [Path(folder) for folder in several(package_path)]
+        folders = paths(package_path, "package_path")
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(
                 robot,
@@ -251,7 +267,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             UnknownNameError: No model has this name.
         """
         with self.lock:
-            self.session.simulation.population.resident(name)
+            self.session.simulation.population.resident(text(name, "name"))
         return Model(self, name)
 
 
@@ -263,13 +279,15 @@ def _files(
         return None
     if controllers == "auto":
         return "auto"
-    return [Path(file) for file in several(controllers)]
+    return paths(controllers, "controllers")
 
 
 def _place(
     pose: Pose | None, position: tuple[float | None, ...], angles: tuple[float | None, ...]
 ) -> Pose | None:
     """The pose that a program gives, as a pose or as numbers; None if it gives none."""
+    if pose is not None:
+        instance(pose, Pose, "pose", "cartwheel.Pose((x, y, z))")
     if all(each is None for each in (*position, *angles)):
         return pose
     if pose is not None:
@@ -280,6 +298,7 @@ def _place(
         )
     names = ("x", "y", "z", "roll", "pitch", "yaw")
     values = [
-        number(each or 0.0, name) for each, name in zip((*position, *angles), names, strict=True)
+        number(scalar(each or 0.0, name), name)
+        for each, name in zip((*position, *angles), names, strict=True)
     ]
     return Pose.from_xyz_rpy(values[:3], values[3:])

@@ -65,6 +65,7 @@ def _restore(session: Session, state: State, *, changed: bool = False) -> None:
     saved = session.originals.get(state)
     before = engine.model
     changed |= _restore_world(session, state)
+    earlier = dict(population.residents)
     residents, replaced = _restore_models(session, state)
     changed |= replaced
     for model in (state._house, *state._models):
@@ -95,6 +96,10 @@ def _restore(session: Session, state: State, *, changed: bool = False) -> None:
     population.gather_tasks()
     if engine.model is not before:
         population.observe()
+    for name in [name for name in residents if earlier.get(name) is not residents[name]]:
+        for diagnostic in population.diagnostics_of(name):
+            if diagnostic not in engine.diagnostics:
+                engine.report(diagnostic)
     engine.rewinds += 1
     for callback in simulation.on_reset:
         callback()
@@ -216,6 +221,9 @@ def _read(reader: Reader, session: Session, state: State, saved: Saved | None) -
     roots = {}
     for places in (objects, registered):
         for name, live in list(places(session)):
+            if name not in state._roots and name.startswith("shared "):
+                # Only models that are deleted now have used it.
+                continue
             own = saved is not None and name.rpartition(" ")[0] not in strange
             roots[name] = reader.root(state._roots[name], live, own=own)
         reader.finish()

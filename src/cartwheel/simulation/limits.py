@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from fractions import Fraction
-from numbers import Real
+from numbers import Integral, Real
 
 import numpy as np
 
@@ -118,12 +118,13 @@ def check_speed(speed: float | None) -> None:
     Raises:
         CartwheelError: The factor is outside `SLOWEST` to `FASTEST`.
     """
-    if speed is not None and not SLOWEST <= speed <= FASTEST:
+    if speed is not None and not (_is_real(speed) and SLOWEST <= speed <= FASTEST):
+        shown = f"{speed:g}" if _is_real(speed) else repr(speed)[:60]
         raise CartwheelError(
-            f"the real-time factor must be between {SLOWEST:g} and {FASTEST:g} (got {speed:g})",
+            f"the real-time factor must be between {SLOWEST:g} and {FASTEST:g} (got {shown})",
             code=world_codes.REAL_TIME_FACTOR_INVALID,
             hint="To stop simulation time, pause the simulation.",
-            values={"value": speed},
+            values={"value": speed if _is_real(speed) else shown},
         )
 
 
@@ -157,7 +158,7 @@ def check_seed(seed: int | None) -> None:
     Raises:
         CartwheelError: The seed is not an integer of at least 0, or None.
     """
-    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0):
         raise _out_of_range("the seed", "an integer of at least 0", seed)
 
 

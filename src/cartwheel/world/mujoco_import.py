@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,7 +19,7 @@ _GLFW = "PYGLFW_LIBRARY"
 def import_mujoco() -> None:
     """Imports MuJoCo, without its renderer if that cannot be loaded."""
     try:
-        with _known_glfw():
+        with _known_glfw(), _existing_folders():
             import mujoco
     except Exception:
         wanted = os.environ.get("MUJOCO_GL")
@@ -46,6 +47,22 @@ def _known_glfw() -> Iterator[None]:
         yield
     finally:
         os.environ.pop(_GLFW, None)
+
+
+@contextlib.contextmanager
+def _existing_folders() -> Iterator[None]:
+    """Hides the current folder from the import if it was deleted, because MuJoCo searches it."""
+    try:
+        Path.cwd()
+    except OSError:
+        folders = sys.path.copy()
+        sys.path[:] = [folder for folder in folders if folder]
+        try:
+            yield
+        finally:
+            sys.path[:] = folders
+    else:
+        yield
 
 
 import_mujoco()

@@ -149,12 +149,12 @@ class Run:
             self.values = dict(self.arguments)
             module.process_doc(self.document, mappings=self.values, verbosity=0)
         except CartwheelError as error:
-            raise self._placed(error) from error
-        except Exception as error:
+            raise self._placed(error) from None
+        except Exception as error:  # noqa: BLE001 - the error names what failed
             inner = _described(error)
             if inner is not None:
-                raise self._placed(inner) from error
-            raise self._failure(error) from error
+                raise self._placed(inner) from None
+            raise self._failure(error) from None
 
     def parse(self, content: bytes | str, file: str) -> Document:
         """Parses the file or an included file; see `_parse`."""

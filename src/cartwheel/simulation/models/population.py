@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import Origin, UnknownNameError, WorldError
+from cartwheel.errors import Diagnostic, Origin, UnknownNameError, WorldError
 from cartwheel.geometry import Pose
 from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
@@ -21,7 +21,7 @@ from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.in_place import InPlace
 from cartwheel.simulation.models.placement import with_mimics
 from cartwheel.simulation.models.resident import Attach, Resident, world_resident
-from cartwheel.simulation.models.unique_names import free_name
+from cartwheel.simulation.models.unique_names import check_model_name, free_name
 from cartwheel.simulation.observer import Observer
 from cartwheel.simulation.part import Part
 from cartwheel.world import reports
@@ -175,12 +175,7 @@ class Population:
             WorldError: The name is in use, empty or contains "::".
             PluginError: A plugin's parameters are invalid.
         """
-        if not name or "::" in name:
-            raise WorldError(
-                f'the name of a model must not be empty or contain "::" (got "{name}")',
-                code=world_codes.MODEL_NAME_INVALID,
-                values={"name": name},
-            )
+        check_model_name(name)
         taken = self.residents.keys() | (self._entered or {}).keys()
         if name in taken:
             free = free_name(name, taken)
@@ -340,19 +335,23 @@ class Population:
 
     def welcome(self, name: str, *, before: Collection[str] = ()) -> None:
         """Reports the diagnostics of a model that was just compiled; see `separate`."""
+        self.residents[name].part.spawned = True
+        for diagnostic in self.diagnostics_of(name):
+            self._engine.report(diagnostic)
+        self.separate(name, before=before)
+
+    def diagnostics_of(self, name: str) -> tuple[Diagnostic, ...]:
+        """What is reported about a model when it is spawned."""
         resident = self.residents[name]
-        resident.part.spawned = True
         description = resident.entry.description
         notes = self._compiler.notes(description)
-        for diagnostic in (
+        return (
             *description.diagnostics,
             *resident.part.diagnostics,
             *notes.unused,
             *reports(self._added, name),
             *notes.unreadable,
-        ):
-            self._engine.report(diagnostic)
-        self.separate(name, before=before)
+        )
 
     def separate(self, name: str, *, before: Collection[str] = ()) -> None:
         """Starts to separate a model from the models that it overlaps, and reports the overlaps.

@@ -1,0 +1,69 @@
+"""Checks of the arguments of a program, so that a wrong one is named in the error."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.errors import CartwheelError
+
+T = TypeVar("T", bound=str | Path)
+
+
+def several(values: T | Sequence[T], name: str) -> list[T]:
+    """The items of a sequence. A single text or path is one item, not a sequence of characters.
+
+    Raises:
+        CartwheelError: It contains something else.
+    """
+    if isinstance(values, str | Path):
+        return [values]
+    if isinstance(values, bytes | Mapping) or not isinstance(values, Collection):
+        raise refused(name, "a text or a path, or a sequence of them", values)
+    for value in values:
+        if not isinstance(value, str | Path):
+            raise refused(name, "a text or a path, or a sequence of them", value)
+    return list(values)
+
+
+def paths(values: str | Path | Sequence[str | Path], name: str) -> list[Path]:
+    """The paths of a sequence, or a single one.
+
+    Raises:
+        CartwheelError: It contains something else.
+    """
+    return [Path(value) for value in several(values, name)]
+
+
+def text(value: object, name: str) -> str:
+    """A text.
+
+    Raises:
+        CartwheelError: It is not a text.
+    """
+    if not isinstance(value, str):
+        raise refused(name, "a text", value)
+    return value
+
+
+def source(value: object, name: str) -> None:
+    """Checks the file, text or description of a world or robot.
+
+    Raises:
+        CartwheelError: It is none of them.
+    """
+    if not isinstance(value, str | Path | RobotDescription | WorldDescription):
+        raise refused(name, "a name, a path, XML or a description", value)
+
+
+def refused(name: str, wanted: str, value: object) -> CartwheelError:
+    """The error for an argument of a wrong kind."""
+    shown = f"{value!r:.60}"
+    return CartwheelError(
+        f"{name} must be {wanted} (got {shown})",
+        code=OPTION_INVALID,
+        values={"name": name, "value": shown},
+    )
