@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Literal, SupportsFloat
 
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import paths, refused, several, source, text
@@ -14,7 +14,7 @@ from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings import SurroundingWorld
-from cartwheel.api.values import instance, scalar
+from cartwheel.api.values import instance, invalid
 from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -298,7 +298,13 @@ def _place(
         )
     names = ("x", "y", "z", "roll", "pitch", "yaw")
     values = [
-        number(scalar(each or 0.0, name), name)
+        number(_real(each, name), name)
         for each, name in zip((*position, *angles), names, strict=True)
     ]
     return Pose.from_xyz_rpy(values[:3], values[3:])
+
+
+def _real(value: float | None, name: str) -> float:
+    if value is not None and not isinstance(value, SupportsFloat):
+        raise invalid(name, "must be a number", value)
+    return float(value or 0.0)
