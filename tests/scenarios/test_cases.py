@@ -145,3 +145,17 @@ def test_a_digest_changes_with_each_file(scenario, tmp_path, file):
     assert digest() == before
     (tmp_path / file).write_text((tmp_path / file).read_text() + "\n")
     assert digest() != before
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'expect: [{moves: cart}, {expression: "x(1) >"}]\n',
+        f'steps: [{{until: {{expression: "x(1) >"}}}}]\n{EXPECT}',
+    ],
+)
+def test_a_condition_that_is_no_expression_is_found_before_the_case(scenario, text):
+    loaded = scenario(text)
+    with raises(SCENARIO_EXPRESSION, expression="x(1) >") as caught:
+        cases_of(loaded)
+    assert caught.value.origin.line == 1

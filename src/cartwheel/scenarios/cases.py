@@ -15,7 +15,7 @@ from typing import Any
 import cartwheel
 from cartwheel.errors import CartwheelError
 from cartwheel.scenarios.document import Document, read
-from cartwheel.scenarios.expressions import substituted
+from cartwheel.scenarios.expressions import check_conditions, substituted
 from cartwheel.scenarios.fingerprints import Fingerprints
 from cartwheel.scenarios.schema import validate
 
@@ -133,6 +133,8 @@ def resolved(scenario: Scenario, case: Case) -> dict[str, Any]:
         for key, each in scenario.value.items()
     }  # fmt: skip
     validate(Document(document.path, value, document.lines))
+    for part in ("steps", "expect"):
+        check_conditions(document, value.get(part), (part,))
     return value
 
 

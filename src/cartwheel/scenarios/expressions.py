@@ -6,6 +6,7 @@ without access to Python, and with limits.
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -109,3 +110,34 @@ def substituted(document: Document, value: Any, names: Mapping[str, Any], key: K
     if whole:
         return value_of(whole[1])
     return _WHOLE.sub(lambda found: str(value_of(found[1])), value)
+
+
+def check_conditions(document: Document, value: Any, key: Key) -> None:
+    """Checks the syntax of all conditions with the key ``expression`` in a part of a scenario.
+
+    Raises:
+        ScenarioError: An expression is not one.
+    """
+    if isinstance(value, list):
+        for index, each in enumerate(value):
+            check_conditions(document, each, (*key, index))
+    elif isinstance(value, dict):
+        for name, each in value.items():
+            if name == "expression" and isinstance(each, str):
+                _check_syntax(document, each, (*key, name))
+            elif name in ("until", "expect"):
+                check_conditions(document, each, (*key, name))
+
+
+def _check_syntax(document: Document, text: str, key: Key) -> None:
+    try:
+        ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError) as error:
+        reason = error.msg if isinstance(error, SyntaxError) else str(error)
+        failure = document.error(
+            key,
+            f'the expression "{text}" cannot be evaluated: {reason}',
+            values={"expression": text},
+        )
+        failure.code = SCENARIO_EXPRESSION
+        raise failure from None
