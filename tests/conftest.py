@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import signal
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -61,6 +62,10 @@ settings.load_profile("cartwheel")
 
 
 def pytest_configure() -> None:
+    # A shell starts background jobs with this signal ignored, and programs that tests start and
+    # interrupt would inherit that.
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if os.environ.get("CARTWHEEL_CODES_ONLY"):
         sitecustomize.install_services()
         folder = str(Path(sitecustomize.__file__).parent)

@@ -64,7 +64,7 @@ def test_limits_of_many_turns_are_no_degrees(bench, spoil):
 
 
 def test_a_file_of_new_gazebo_needs_no_prefix(bench, spoil):
-    for name in ("gz-sim-thruster-system", "gz_ros2_lights-system"):
+    for name in ("gz-sim-acoustic-comms-system", "gz_ros2_lights-system"):
         found = bench.find(spoil(("libgazebo_ros_imu.so", name)), "plugin-unknown")
         assert [each.severity for each in found] == ["info"], name
 

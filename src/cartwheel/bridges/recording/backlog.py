@@ -82,7 +82,8 @@ class Backlog:
         """
         deadline = time.monotonic() + timeout
         with self._changed:
-            while self._open and not self._called:
+            # The writer calls before it adds a message, whose predecessors may have been returned.
+            while self._open and not (self._called and self._items):
                 left = min(deadline - time.monotonic(), _LINGER)
                 if left <= 0:
                     break
