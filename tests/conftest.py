@@ -41,11 +41,13 @@ if os.environ.get("CARTWHEEL_CODES_ONLY"):
 GRAVITY = 9.8
 HERE = Pose()
 _TESTS = Path(__file__).parent
-_LONG = (
-    *("ros1", "viewer", "cli", "bridges", "docs", "testing", "api", "campaign", "benchmarks"),
-    *("scenarios", "codes_only", "saving"),
+_WAITING = (
+    *("ros1", "viewer", "cli", "bridges", "docs", "testing", "campaign", "benchmarks"),
+    *("scenarios", "sweeps", "codes_only"),
 )
-"""Folders whose tests start many processes, wait for them, or take long."""
+"""Folders whose tests start many processes and wait for them."""
+_BUSY = ("saving", "api")
+"""Folders whose tests take long, and use a processor all the time."""
 _SPREAD = ("tests/docs/test_commands.py",)
 """Files whose tests need not run in the same process, and take long together."""
 _PLACE = Origin(file="test.sdf", line=1)
@@ -75,13 +77,31 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    # Long files first, so that at the end no process runs one of them alone.
-    order = {name: place for place, name in enumerate(_LONG)}
-    items.sort(key=lambda item: order.get(item.path.relative_to(_TESTS).parts[0], len(order)))
+    places = _places([item.path for item in items])
+    items.sort(key=lambda item: places[item.path])
     if os.environ.get("CARTWHEEL_CODES_ONLY"):
         left_out = [item for item in items if item.get_closest_marker("wording")]
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if not item.get_closest_marker("wording")]
+
+
+def _places(files: Sequence[Path]) -> dict[Path, float]:
+    """The place of each file, from 0 to 1, in the order in which the files are distributed.
+
+    Files that wait and files that use a processor alternate, so that the processors are used while
+    tests wait. Long files come first, so that at the end no process runs one of them alone.
+    """
+    unique = dict.fromkeys(files)
+    found = {}
+    names = {file: file.relative_to(_TESTS).parts[0] for file in unique}
+    for folders, end in ((_WAITING, 0.9), (_BUSY, 1.0)):
+        order = {name: place for place, name in enumerate(folders)}
+        chosen = [
+            file for file, name in names.items() if (name in _WAITING) == (folders is _WAITING)
+        ]
+        chosen.sort(key=lambda file: order.get(names[file], len(order)))
+        found |= {file: end * place / len(chosen) for place, file in enumerate(chosen)}
+    return found
 
 
 @pytest.hookimpl(optionalhook=True)
