@@ -34,6 +34,8 @@ from cartwheel.simulation.dynamics.divergence import Guard
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.models.population import Population
 from cartwheel.simulation.models.resident import Resident
+from cartwheel.simulation.sensing.embree_rays import SharedRayScenes
+from cartwheel.simulation.sensing.visual_model import VisualModel
 
 T = TypeVar("T")
 
@@ -71,6 +73,8 @@ STRUCTURE: tuple[type, ...] = (
     Simulation,
     Population,
     Resident,
+    VisualModel,
+    SharedRayScenes,
     Part,
     Scope,
     Shared,

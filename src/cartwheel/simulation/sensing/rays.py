@@ -45,6 +45,9 @@ class RayHandle:
         visuals: Visuals to hit, as a GPU sensor does, instead of collisions.
     """
 
+    _unsaved = frozenset({"_model", "_data", "_body", "_own", "_retros", "_caster"})
+    """Attributes that a saved state does not contain: they follow from the compiled model."""
+
     def __init__(
         self,
         model: str,
