@@ -23,8 +23,11 @@ FOLDER = Path(__file__).parents[2] / "examples" / "scenarios"
 class Stack:
     """A stack under test in a thread: it commands a speed for each message of odometry."""
 
-    def __init__(self, world: cw.World, *, every: int = 10) -> None:
+    def __init__(self, world: cw.World, *, every: int = 10, first: float = 0.0) -> None:
         self._graph, self._every, self._count = world.graph, every, 0
+        self._first = first
+        """Wall time until the first command, s."""
+        self._timers: list[threading.Timer] = []
         self.silent = False
         world.subscribe("/odom", self._take)
 
@@ -34,14 +37,21 @@ class Stack:
             return
         speed = 0.5 - 0.2 * message.pose.pose.position.x
         twist = from_dict(TWIST, {"linear": {"x": speed}})
-        delay = 0.001 * (self._count % 7)
-        threading.Timer(delay, lambda: self._graph.publish(DRIVE, TWIST, twist)).start()
+        delay = self._first if self._count == self._every else 0.001 * (self._count % 7)
+        timer = threading.Timer(delay, lambda: self._graph.publish(DRIVE, TWIST, twist))
+        self._timers.append(timer)
+        timer.start()
+
+    def join(self) -> None:
+        """Waits until all commands are sent."""
+        for timer in self._timers:
+            timer.join()
 
 
 def drive() -> tuple[list[float], int]:
     with cw.World("empty") as world:
         cart = world.spawn("rosbots.xacro")
-        Stack(world)
+        stack = Stack(world)
         lockstep = Lockstep(world, [DRIVE], period=0.1, wall_timeout=30.0)
         lockstep.start()
         xs = []
@@ -49,6 +59,7 @@ def drive() -> tuple[list[float], int]:
             lockstep.advance(0.1)
             xs.append(cart.pose.x)
         lockstep.close()
+        stack.join()
         return xs, lockstep.late
 
 
@@ -56,6 +67,21 @@ def test_runs_in_lockstep_are_equal():
     first, late = drive()
     assert late == 0 and first[-1] > 0.3
     assert drive() == (first, 0)
+
+
+def test_a_slow_first_command_is_not_taken_for_that_of_a_later_period():
+    """Time advances meanwhile, so the stack sends two commands for the first period."""
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        stack = Stack(world, first=1.8)
+        lockstep = Lockstep(world, [DRIVE], period=0.1, wall_timeout=30.0)
+        lockstep.start()
+        assert lockstep.extra == 1
+        for _ in range(20):
+            lockstep.advance(0.1)
+        assert (lockstep.extra, lockstep.late) == (1, 0)
+        lockstep.close()
+        stack.join()
 
 
 def test_time_continues_after_a_late_command():
@@ -70,6 +96,7 @@ def test_time_continues_after_a_late_command():
         assert world.time - begin == pytest.approx(0.5)
         assert lockstep.late >= 3 and list(lockstep.missing) == [DRIVE]
         lockstep.close()
+        stack.join()
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,8 @@ START_TIMEOUT = 60.0
 _RETRY = 1.0
 """Wall time after which time advances by a period before the first commands, s. Until a stack
 under test has connected all its topics, it may have missed a message."""
+_QUIET = 2.0
+"""Wall time without a command after which all commands of the start have arrived, s."""
 _MOST = 100
 """Maximum number of commands that are kept back for a topic."""
 _TIME_ERROR = 1e-9
@@ -89,15 +91,43 @@ class Lockstep:
 
         The stack under test usually sends a command for each message of a sensor. It cannot have
         received a message that was published before it subscribed. So time advances by one period
-        for each second in which no command arrives.
+        for each second in which no command arrives. A slow stack may then send several commands.
         """
         end = time.monotonic() + self._start_timeout
+        periods = 0
         while not self._complete() and (left := end - time.monotonic()) > 0:
             if not self._wait(min(_RETRY, left)):
+                periods += 1
                 self._world.run(self._period)
+        if periods and self._complete():
+            self._settle(periods + 1)
         self._begun = True
         self._due = self._world.time
         self._release()
+
+    def _settle(self, most: int) -> None:
+        """Waits for further commands of the start.
+
+        Otherwise, a command that answers an earlier period would be taken for that of the next one,
+        and each command after it as well, or not, depending on how fast the stack is.
+
+        Args:
+            most: Maximum number of commands for each topic.
+        """
+        most = min(most, _MOST)
+        counts = self._counts()
+        end = time.monotonic() + _QUIET
+        while min(counts) < most and (left := end - time.monotonic()) > 0:
+            self._check()
+            with self._world.used() as simulation:
+                simulation.wait(min(left, 0.5))
+            before, counts = counts, self._counts()
+            if counts != before:
+                end = time.monotonic() + _QUIET
+
+    def _counts(self) -> list[int]:
+        with self._lock:
+            return [len(box) for box in self._boxes.values()]
 
     def advance(self, seconds: float) -> None:
         """Advances simulation time, and waits for commands at each end of a period."""
