@@ -2,7 +2,7 @@
 
 import pytest
 
-from cartwheel.description.launches import chosen, launches_near
+from cartwheel.description.launches import chosen, launches_near, search
 
 ROBOT = '<robot name="arm"><link name="base"/></robot>'
 INCLUDED = """import os
@@ -316,3 +316,17 @@ def test_a_file_whose_whole_name_is_an_argument_is_guessed(sizes):
     assert guessed.pop("arm_small.urdf.xacro") is False
     others = [*SIZES[:2], "arm.urdf.xacro", "leg_large.urdf.xacro"]
     assert guessed == dict.fromkeys(others, True)
+
+
+def test_a_stranger_with_many_arguments_does_not_make_the_search_long(sizes, monkeypatch):
+    many = "".join(f'<arg name="a{number}" default="arm"/>' for number in range(2000))
+    folder = sizes(sim_dot_launch=VARIANTS.replace("<launch>", f"<launch>{many}"))
+    searched = []
+
+    def beside(file, word):
+        searched.append(word)
+        return {}
+
+    monkeypatch.setattr(search, "beside", beside)
+    assert launches_near(folder)
+    assert 0 < len(searched) <= 100

@@ -159,3 +159,16 @@ def test_a_condition_that_is_no_expression_is_found_before_the_case(scenario, te
     with raises(SCENARIO_EXPRESSION, expression="x(1) >") as caught:
         cases_of(loaded)
     assert caught.value.origin.line == 1
+
+
+@pytest.mark.filterwarnings("error::SyntaxWarning")
+@pytest.mark.parametrize(
+    "text", ["-" * 200_000 + "1", "1" + "+1" * 200_000, "x" + ".y" * 100_000, "1if 1 else 2"]
+)
+def test_a_condition_of_a_stranger_is_refused_or_read_like_other_expressions(scenario, text):
+    loaded = scenario(f'expect: [{{expression: "{text}"}}]\n')
+    if len(text) > 100:
+        with raises(SCENARIO_EXPRESSION):
+            cases_of(loaded)
+    else:
+        assert len(cases_of(loaded)) == 1

@@ -6,13 +6,13 @@ without access to Python, and with limits.
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from cartwheel.codes.command import SCENARIO_EXPRESSION
 from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator, Function
+from cartwheel.description.expressions.syntax import compiled
 from cartwheel.errors import CartwheelError
 from cartwheel.scenarios.document import Document, Key
 from cartwheel.similar_names import suggestion
@@ -97,14 +97,7 @@ def substituted(document: Document, value: Any, names: Mapping[str, Any], key: K
             reason, hint = error.reason, error.hint
         except CartwheelError as error:
             reason, hint = error.message, error.hint or ""
-        failure = document.error(
-            key,
-            f"${{{text}}} cannot be evaluated: {reason}",
-            hint=hint,
-            values={"expression": text},
-        )
-        failure.code = SCENARIO_EXPRESSION
-        raise failure
+        raise _failure(document, key, f"${{{text}}} cannot be evaluated: {reason}", text, hint)
 
     whole = _WHOLE.fullmatch(value)
     if whole:
@@ -130,14 +123,21 @@ def check_conditions(document: Document, value: Any, key: Key) -> None:
 
 
 def _check_syntax(document: Document, text: str, key: Key) -> None:
+    hint = ""
     try:
-        ast.parse(text.strip(), mode="eval")
-    except (SyntaxError, ValueError) as error:
-        reason = error.msg if isinstance(error, SyntaxError) else str(error)
-        failure = document.error(
-            key,
-            f'the expression "{text}" cannot be evaluated: {reason}',
-            values={"expression": text},
-        )
-        failure.code = SCENARIO_EXPRESSION
-        raise failure from None
+        compiled(text.strip())
+        return
+    except SyntaxError as error:
+        reason = error.msg
+    except CartwheelError as error:
+        reason, hint = error.message, error.hint or ""
+    except ValueError as error:
+        reason = str(error)
+    message = f'the expression "{text}" cannot be evaluated: {reason}'
+    raise _failure(document, key, message, text, hint)
+
+
+def _failure(document: Document, key: Key, message: str, text: str, hint: str) -> CartwheelError:
+    failure = document.error(key, message, hint=hint, values={"expression": text})
+    failure.code = SCENARIO_EXPRESSION
+    return failure

@@ -80,7 +80,7 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
     """Adds the contents of a launch file to `facts`."""
     try:
         tree = ast.parse(read_regular_text(path))
-    except (OSError, SyntaxError, ValueError, RecursionError):
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return
     # Declared defaults may follow their use, so the file is read twice.
     defaults = _Reader(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -20,6 +21,8 @@ _INCLUDES = 60
 """Maximum number of files that a launch file may include, also indirectly."""
 _VARIANTS = 20
 """Maximum number of other values of its arguments with which a launch file is read."""
+_TRIED = 100
+"""Maximum number of its arguments for which the folder of a description is searched."""
 _LEVELS = 4
 """Number of folders above a description that are searched for its package."""
 
@@ -62,15 +65,19 @@ def _others(facts: Facts) -> list[dict[str, str]]:
     argument is ``small``, and there is a file ``arm_large.urdf.xacro``. Whether the argument is in
     the name shows when the launch file is read again.
     """
-    found = [
-        {name: word}
+    candidates = (
+        (description, name, value)
         for description, _ in facts.descriptions
         for name, value in sorted(facts.defaults.items())
-        if value and UNKNOWN not in value
+        if value and UNKNOWN not in value and value in description.name
+    )
+    found = (
+        {name: word}
+        for description, name, value in itertools.islice(candidates, _TRIED)
         for file, word in beside(description, value).items()
         if file != description
-    ]
-    return found[:_VARIANTS]
+    )
+    return list(itertools.islice(found, _VARIANTS))
 
 
 def _uses(path: Path, facts: Facts, words: Collection[str] = ()) -> list[LaunchUse]:
