@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import os
 import signal
 import time
 from collections import deque
@@ -27,6 +28,13 @@ _HURRY = 0.5
 """Wall time to wait for processes after `Workers.stop`, s."""
 _END = 5.0
 """Wall time in which a process must end, s."""
+
+
+def cores() -> int:
+    """Number of processor cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 @dataclass

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -15,6 +14,7 @@ from cartwheel.batch.processes import Lanes, Method, Process
 from cartwheel.codes.world import BATCH_CLOSED
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array
+from cartwheel.jobs import cores
 
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
@@ -66,8 +66,7 @@ class Batch:
         self._plan = Plan.of(act, obs, period=period, vary=vary)
         self.n = n
         self.seed = seed
-        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-        count = min(n, (cores or 1) if workers is None else workers)
+        count = min(n, cores() if workers is None else workers)
         if count < 0:
             raise invalid(f"the number of processes must be at least 0 (got {count})", "workers")
         seeds = [seed + index for index in range(n)]

@@ -368,6 +368,11 @@ class Link:
     """Fraction of the velocity removed per Gazebo time step, as in SDF's ``<velocity_decay>``."""
     origin: Origin
 
+    @property
+    def mass_centre(self) -> Vec3:
+        """Centre of mass in the link's frame, m; the origin of the frame without a mass."""
+        return (0.0, 0.0, 0.0) if self.inertial is None else self.inertial.pose.position
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Axis:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, is_dataclass
 from typing import Any, ClassVar, Generic, TypeVar, get_args
 
@@ -79,6 +79,17 @@ class Plugin(Component, Generic[C]):
             # The subclass's own close may use attributes that configure has not set.
             Component.close(self)
             raise
+
+    @classmethod
+    def added_to(cls, part: Part, shared: Shared, tag: PluginTag) -> Iterator[Component]:  # noqa: ARG003
+        """Creates what a plugin of the world adds to each of its models; by default nothing.
+
+        Args:
+            part: The model's part of the simulation.
+            shared: Objects that all components of the simulation share.
+            tag: The plugin's tag in the world.
+        """
+        return iter(())
 
     def _scope(self, part: Part, shared: Shared, tag: PluginTag) -> TagScope:
         ros = tag.element.find("ros/namespace")

@@ -15,7 +15,6 @@ from cartwheel.dialects.catalogue import (
     short_name,
     unloadable,
 )
-from cartwheel.dialects.gz.fluids.buoyancy import float_model
 from cartwheel.dialects.gz.sensor_tags import own_tag, publishes
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
@@ -75,12 +74,23 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             and not any(plugin_named(tag.filename, more) for tag in one.plugins)
         ]
         plugins += _serve(part, shared, alone, systems)
-        floating = list(float_model(part, shared))
+        effects = list(_effects_of_world(part, shared, more))
     except BaseException:
         for created in plugins:
             created.close()
         raise
-    return [*plugins, *floating]
+    return [*plugins, *effects]
+
+
+def _effects_of_world(part: Part, shared: Shared, more: Plugins) -> Iterator[Behaviour]:
+    """Creates what the world's plugins add to a model. Of several of one class, the first acts."""
+    tags: dict[type[Plugin[object]], PluginTag] = {}
+    for tag in part.world.plugins:
+        plugin = plugin_named(tag.filename, more)
+        if plugin is not None and plugin.for_world:
+            tags.setdefault(plugin, tag)
+    for plugin, tag in tags.items():
+        yield from plugin.added_to(part, shared, tag)
 
 
 def _serve(

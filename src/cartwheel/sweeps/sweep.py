@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import CartwheelError
-from cartwheel.jobs import Workers
+from cartwheel.jobs import Workers, cores
 from cartwheel.sweeps.cluster import ClusterWorkers
 from cartwheel.sweeps.results import Results, Row, invalid, plain
 from cartwheel.sweeps.stored import Stored
@@ -107,16 +106,10 @@ def _run(
         yield from map(prepare(0), waiting)
         return
     else:
-        count = min(_cores() if jobs is None else jobs, len(waiting))
+        count = min(cores() if jobs is None else jobs, len(waiting))
         workers = Workers(prepare, _lost, count=count, timeout=timeout, name="cartwheel-sweep")
     with contextlib.closing(workers):
         yield from workers.run(waiting)
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _prepare(

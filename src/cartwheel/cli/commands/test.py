@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import fnmatch
 import json
-import os
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -19,6 +18,7 @@ from cartwheel.cli.console import is_terminal, note, paint, printable, say
 from cartwheel.cli.writing import writing
 from cartwheel.codes.command import NO_CASES, OPTION_INVALID, OPTIONS_CONFLICT, USAGE
 from cartwheel.errors import CartwheelError, UnknownNameError
+from cartwheel.jobs import cores
 from cartwheel.scenarios import (
     Case,
     Options,
@@ -211,7 +211,7 @@ def _run(
     waiting = [case for case in cases if case.id not in outcomes]
     if outcomes:
         note(f"{len(outcomes)} cases passed in an earlier run")
-    count = request.jobs or len(os.sched_getaffinity(0))
+    count = request.jobs or cores()
     workers = Workers(scenarios, _options(request), min(count, len(waiting)), request.timeout)
     with _progress(len(waiting)) as bar, interrupts.handled_by(workers.stop):
         try:

@@ -74,10 +74,8 @@ class LiftDrag(Component):
         )
         description = part.description.link(config.link)
         assert description is not None
-        inertial = description.inertial
-        mass_centre = inertial.pose.position if inertial is not None else (0.0, 0.0, 0.0)
         cx, cy, cz = config.centre
-        mx, my, mz = mass_centre
+        mx, my, mz = description.mass_centre
         self._arm = (cx - mx, cy - my, cz - mz)
         part.schedule(0, before=self._apply)
 

@@ -26,7 +26,6 @@ _FASTEST = 100.0
 """Largest velocity that enters the model, m/s or rad/s, as in the original plugin."""
 _TURNS = 1.0
 """Speed above which a motor counts as running, rad/s."""
-_ZERO = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -117,8 +116,7 @@ class QuadrotorPropulsion(Component):
         self._wrench = part.wrench(config.link, origin=origin)
         description = part.description.link(config.link)
         assert description is not None
-        inertial = description.inertial
-        self._centre = inertial.pose.position if inertial is not None else _ZERO
+        self._centre = description.mass_centre
         self._frame = self.frame(config.frame)
         self._types = {
             name: message_class(f"hector_uav_msgs/msg/{name}") for name in ("MotorStatus", "Supply")

@@ -84,8 +84,7 @@ class VelocityControl:
         target = np.zeros(3) if config.acts_at == "origin" else centre
         own = part.description.link(config.link)
         assert own is not None
-        inertial = own.inertial
-        self._arm = target - np.array(inertial.pose.position if inertial is not None else _NONE)
+        self._arm = target - np.array(own.mass_centre)
         leads = config.leads
         self._roll, self._pitch = (FilteredPid(config.tilt, leads=leads) for _ in range(2))
         self._yaw = FilteredPid(config.yaw, leads=leads)

@@ -12,8 +12,6 @@ from cartwheel.geometry import Array, Quat, Vec3, matrix_from_quat, rotate
 from cartwheel.simulation.dynamics.external_servos import WrenchHandle
 from cartwheel.simulation.handles import LinkHandle
 
-_NONE: Vec3 = (0.0, 0.0, 0.0)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Fluid:
@@ -98,13 +96,14 @@ class Buoyancy(Component):
 
     def _floating(self, config: FloatingLinkConfig) -> _Floating:
         part = self.part
+        handle = part.link(config.link, origin=self.origin)
         description = part.description.link(config.link)
-        inertial = description.inertial if description is not None else None
+        assert description is not None
         return _Floating(
-            handle=part.link(config.link, origin=self.origin),
+            handle=handle,
             wrench=part.wrench(config.link, origin=self.origin),
             shapes=tuple(_prepared(shape) for shape in config.shapes),
-            mass_centre=inertial.pose.position if inertial is not None else _NONE,
+            mass_centre=description.mass_centre,
         )
 
     def reset(self) -> None:

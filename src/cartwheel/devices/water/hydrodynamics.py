@@ -63,8 +63,8 @@ class Hydrodynamics(Component):
         mass, centre, moments = merged_inertia(part.description, config.link)
         self._mass = mass_matrix(mass, centre, moments)
         description = part.description.link(config.link)
-        inertial = description.inertial if description is not None else None
-        x, y, z = inertial.pose.position if inertial is not None else (0.0, 0.0, 0.0)
+        assert description is not None
+        x, y, z = description.mass_centre
         self._to_origin = np.array((-x, -y, -z))
         self._clear()
         self.subscribe(config.current_topic, "geometry_msgs/msg/Vector3", self._on_current)

@@ -72,8 +72,8 @@ class Thruster(Component):
         self._link = part.link(joint.child, origin=origin)
         self._wrench = part.wrench(joint.child, origin=origin)
         description = part.description.link(joint.child)
-        inertial = description.inertial if description is not None else None
-        x, y, z = inertial.pose.position if inertial is not None else (0.0, 0.0, 0.0)
+        assert description is not None
+        x, y, z = description.mass_centre
         self._arm: Vec3 = (-x, -y, -z)
         self._motor = part.velocity_motor(config.joint, max_effort=None, origin=origin)
         self._Float = message_class(_FLOAT)

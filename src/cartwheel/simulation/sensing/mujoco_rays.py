@@ -84,9 +84,12 @@ class MujocoCaster:
         self._model, self._data = model, data
         self._own = own
         self.minimum, self.maximum = minimum, maximum
-        self._together = len(directions) * model.ngeom < _WORTH_BUNDLING
-        self._directions = directions
-        self._bundles = _Bundles(directions)
+        together = len(directions) * model.ngeom < _WORTH_BUNDLING
+        self._bundles = None if together else _Bundles(directions)
+        self._directions = directions if self._bundles is None else self._bundles.directions
+        """The rays in the order in which they are cast."""
+        self._order: Any = slice(None) if self._bundles is None else self._bundles.order
+        """The original index of each of them."""
         self._groups = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
         self._groups[group] = 1
         count = len(directions)
@@ -104,8 +107,7 @@ class MujocoCaster:
         Returns:
             Distances in m, shape (n,), inf without a hit; and the index of each geom, or -1.
         """
-        together = self._together
-        rays = (self._directions if together else self._bundles.directions) @ turn.T
+        rays = self._directions @ turn.T
         model = self._model
         groups, trees, counts = model.geom_group, model.body_bvhadr, model.body_geomnum
         saved_groups, saved_trees, saved_counts = groups.copy(), trees.copy(), counts.copy()
@@ -119,11 +121,8 @@ class MujocoCaster:
             open_groups = saved_groups.copy()
             open_groups[hidden] = HIDDEN_GROUP
             away: Array | None = None
-            if together:
-                groups[:] = open_groups
-                self._cast(start, rays, distances, geoms)
-            for part, visible in () if together else self._candidates(start, turn, open_groups):
-                if (part.stop - part.start) * model.ngeom < _WORTH_SORTING:
+            for part, visible in self._candidates(start, turn, open_groups):
+                if len(rays[part]) * model.ngeom < _WORTH_SORTING:
                     groups[:] = np.where(visible, open_groups, HIDDEN_GROUP)
                     self._cast(start, rays[part], distances[part], geoms[part])
                     continue
@@ -155,17 +154,17 @@ class MujocoCaster:
         finally:
             groups[:], counts[:] = saved_groups, saved_counts
             trees[:] = saved_trees
-        if together:
-            return np.where(distances < 0, np.inf, distances), geoms.copy()
-        order = self._bundles.order
         measured, hit = np.empty_like(distances), np.empty_like(geoms)
-        measured[order] = np.where(distances < 0, np.inf, distances)
-        hit[order] = geoms
+        measured[self._order] = np.where(distances < 0, np.inf, distances)
+        hit[self._order] = geoms
         return measured, hit
 
     def _candidates(self, start: Array, turn: Array, groups: Any) -> Iterator[tuple[slice, Any]]:
         """The bundles that may hit something, each with the geoms that its cone may touch."""
-        model = self._model
+        model, bundles = self._model, self._bundles
+        if bundles is None:
+            yield slice(None), np.full(model.ngeom, True)
+            return
         away = self._data.geom_xpos - start
         distance = np.linalg.norm(away, axis=1)
         radius = model.geom_rbound
@@ -174,10 +173,10 @@ class MujocoCaster:
         seen = (self._groups[groups] == 1) & (endless | (distance - radius < self.maximum))
         beyond = np.where(endless | inside, 1.0, distance)
         width = np.arcsin(np.where(endless | inside, 1.0, radius / beyond))
-        cosine = (self._bundles.axes @ turn.T @ away.T) / beyond
+        cosine = (bundles.axes @ turn.T @ away.T) / beyond
         angle = np.arccos(np.clip(cosine, -1.0, 1.0))
-        touched = seen & (endless | inside | (angle <= self._bundles.angles[:, None] + width))
-        for part, visible in zip(self._bundles.parts, touched, strict=True):
+        touched = seen & (endless | inside | (angle <= bundles.angles[:, None] + width))
+        for part, visible in zip(bundles.parts, touched, strict=True):
             if visible.any():
                 yield part, visible
 

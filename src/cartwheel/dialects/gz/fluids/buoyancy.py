@@ -10,7 +10,7 @@ import numpy as np
 
 from cartwheel.component import Scope, Shared
 from cartwheel.description.meshes import MeshError
-from cartwheel.description.model import Collision, Element, Link, Mesh
+from cartwheel.description.model import Collision, Element, Link, Mesh, PluginTag
 from cartwheel.description.sdf.links.inertia import volume_of
 from cartwheel.description.solids import solid_of
 from cartwheel.devices.water.buoyancy import (
@@ -20,13 +20,11 @@ from cartwheel.devices.water.buoyancy import (
     FloatingShape,
     Fluid,
 )
-from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import number_at, tag, vector
 from cartwheel.errors import PluginError
 from cartwheel.simulation import Part
 
-BUOYANCY = "gz-sim-buoyancy-system"
 _WATER = 1000.0
 """kg/m³."""
 
@@ -71,11 +69,39 @@ class BuoyancySystem(Plugin[BuoyancyParameters]):
     plugin: ``Buoyancy`` in gz-sim.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = (BUOYANCY,)
+    filenames: ClassVar[tuple[str, ...]] = ("gz-sim-buoyancy-system",)
     for_world: ClassVar[bool] = True
 
     def configure(self) -> None:
-        fluid_of(self.tag.element)
+        _fluid_of(self.tag.element)
+
+    @classmethod
+    def added_to(cls, part: Part, shared: Shared, tag: PluginTag) -> Iterator[Buoyancy]:
+        """Creates the buoyancy of a model."""
+        if part.description.static:
+            return
+        try:
+            fluid = _fluid_of(tag.element)
+        except PluginError:
+            # The world reports it.
+            return
+        enabled = {each.text.strip() for each in tag.element.find_all("enable")}
+        links = tuple(
+            FloatingLinkConfig(link=link.name, shapes=shapes)
+            for link in part.description.links
+            if _is_enabled(part.name, link.name, enabled)
+            and (shapes := tuple(_shapes(link, cut=bool(fluid.layers))))
+        )
+        if links:
+            scope = Scope(
+                part=part,
+                shared=shared,
+                node=f"{part.name}/buoyancy",
+                title=f'buoyancy of model "{part.name}"',
+                origin=tag.origin,
+            )
+            config = BuoyancyConfig(links=links, fluid=fluid)
+            yield part.made(lambda: Buoyancy(scope, config))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -126,7 +152,7 @@ def _point(element: Element | None) -> tuple[float, float, float]:
     return x, y, z
 
 
-def fluid_of(element: Element) -> Fluid:
+def _fluid_of(element: Element) -> Fluid:
     """Returns the fluids in a plugin's element.
 
     Raises:
@@ -142,36 +168,6 @@ def fluid_of(element: Element) -> Fluid:
     return Fluid(
         density=number_at(graded, "default_density", _WATER), layers=tuple(sorted(layers.items()))
     )
-
-
-def float_model(part: Part, shared: Shared) -> Iterator[Buoyancy]:
-    """Creates the buoyancy of a model in a world that contains the plugin."""
-    tags = [each for each in part.world.plugins if short_name(each.filename) == BUOYANCY]
-    if not tags or part.description.static:
-        return
-    tag = tags[0]
-    try:
-        fluid = fluid_of(tag.element)
-    except PluginError:
-        # The world reports it.
-        return
-    enabled = {each.text.strip() for each in tag.element.find_all("enable")}
-    links = tuple(
-        FloatingLinkConfig(link=link.name, shapes=shapes)
-        for link in part.description.links
-        if _is_enabled(part.name, link.name, enabled)
-        and (shapes := tuple(_shapes(link, cut=bool(fluid.layers))))
-    )
-    if links:
-        scope = Scope(
-            part=part,
-            shared=shared,
-            node=f"{part.name}/buoyancy",
-            title=f'buoyancy of model "{part.name}"',
-            origin=tag.origin,
-        )
-        config = BuoyancyConfig(links=links, fluid=fluid)
-        yield part.made(lambda: Buoyancy(scope, config))
 
 
 def _is_enabled(model: str, link: str, enabled: Collection[str]) -> bool:
