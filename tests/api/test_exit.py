@@ -75,3 +75,33 @@ def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
     assert "/odom" in {topic.name for topic in recording.topics}
     if status >= 0:
         assert list((tmp_path / "cartwheel").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "run", ["world.run(0.2)", "threading.Thread(target=world.spin, daemon=True).start()"]
+)
+def test_a_program_that_leaves_its_cameras_open_ends_silently(tmp_path: Path, run: str) -> None:
+    """Also if Python's exit handler for `weakref.finalize` is older than that of OpenGL."""
+    program = f"""
+import tempfile, threading, time
+with tempfile.TemporaryDirectory():
+    pass
+import cartwheel as cw
+world = cw.World("empty")
+world.spawn("rosbots.xacro")
+images = world.topic("/rosbots/camera1/image_raw")
+{run}
+end = time.monotonic() + 60
+while images.count < 3 and time.monotonic() < end:
+    time.sleep(0.01)
+print(images.count >= 3)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        check=False,
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        timeout=120,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "True\n", "")

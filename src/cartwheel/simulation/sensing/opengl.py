@@ -23,6 +23,8 @@ from cartwheel.codes import world as world_codes
 from cartwheel.errors import SimulationError
 
 _PACKAGES = ("libegl1", "libgl1", "libgl1-mesa-dri")
+_PATIENCE = 1.0
+"""Wall time to wait for an image of another thread at the end of the program, s."""
 _BACKENDS = {"egl": "mujoco.egl", "osmesa": "mujoco.osmesa"}
 
 
@@ -74,6 +76,9 @@ class OffscreenContext:
             raise ForkedError
         self._lock = threading.RLock()
         self._gl: Any = _open(width, height)
+        if not _Process.opened:
+            # Exit handlers run in reverse order, so this one precedes MuJoCo's, which closes EGL.
+            atexit.register(_end)
         _Process.opened = True
         _Process.contexts.add(self)
 
@@ -109,8 +114,17 @@ class OffscreenContext:
             self._gl.free()
             self._gl = None
 
+    def end(self) -> None:
+        """Frees the context at the end of the program. Other threads that need it wait forever."""
+        if self._gl is None:
+            return
+        if self._lock.acquire(timeout=_PATIENCE):
+            self.free()
+        else:
+            self.abandon()
+
     def abandon(self) -> None:
-        """Ensures that a forked process never uses the context again."""
+        """Ensures that this process never uses the context again, also to free it."""
         if self._gl is not None:
             _keep_for_ever(self._gl)
             self._gl = None
@@ -149,6 +163,11 @@ def _make_none_current(context: Any) -> None:
 def _keep_for_ever(item: Any) -> None:
     """Keeps an object alive whose destructor would call OpenGL."""
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(item))
+
+
+def _end() -> None:
+    for context in list(_Process.contexts):
+        context.end()
 
 
 def _after_fork() -> None:
