@@ -67,9 +67,9 @@ class EmbreeCaster:
         self._offset, self._directions = offset, directions
         self._minimum, self._maximum = minimum, maximum
         self._band = Band.of(directions)
-        self._with: tuple[int, Hits] | None = None
+        self._with: tuple[int, bool, Hits] | None = None
 
-    def cast(self, start: Array, turn: Array, hidden: Any) -> tuple[Array, Any]:
+    def cast(self, start: Array, turn: Array, hidden: frozenset[int]) -> tuple[Array, Any]:
         """Casts the rays.
 
         Args:
@@ -81,40 +81,49 @@ class EmbreeCaster:
             Distances in m, shape (n,), inf without a hit; and the index of each geom, or -1.
         """
         self._scenes.refresh()
-        root = self._scenes.root_of(self._body)
-        left_out = frozenset(hidden.tolist())
         band = self._band.turned(turn)
         count = len(self._directions)
-        distances, geoms = np.empty(count), np.empty(count, dtype=np.int32)
-        # The intermediate results of a part stay in the processor's cache.
-        for first in range(0, count, _CHUNK):
-            part = slice(first, first + _CHUNK)
-            query = Query(
-                start, self._directions[part] @ turn.T, self._own, self._minimum, self._maximum,
-                left_out, band,
-            )  # fmt: skip
-            hits = self._cast(query, root, part)
-            distances[part], geoms[part] = hits.distances, hits.geoms
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if count <= _CHUNK:
+                hits = self._cast(start, turn, hidden, band, slice(None))
+                return hits.distances, hits.geoms
+            distances, geoms = np.empty(count), np.empty(count, dtype=np.int32)
+            # The intermediate results of a part stay in the processor's cache.
+            for first in range(0, count, _CHUNK):
+                part = slice(first, first + _CHUNK)
+                hits = self._cast(start, turn, hidden, band, part)
+                distances[part], geoms[part] = hits.distances, hits.geoms
         return distances, geoms
 
-    def _cast(self, query: Query, root: int, part: slice) -> Hits:
+    def _cast(
+        self, start: Array, turn: Array, hidden: frozenset[int], band: Band, part: slice
+    ) -> Hits:
         scenes = self._scenes
+        query = Query(
+            start, self._directions[part] @ turn.T, self._own, self._minimum, self._maximum,
+            hidden, band,
+        )  # fmt: skip
+        hits = scenes.cast_fixed(query)
+        root = scenes.root_of(self._body)
         if root:
-            with_sensor = self._cast_with(root, query.hidden)
-            hits = Hits(with_sensor.distances[part].copy(), with_sensor.geoms[part].copy())
-        else:
-            hits = Hits.none(len(query.rays))
+            some, with_sensor = self._cast_with(root, hidden)
+            if some:
+                hits.add(with_sensor.distances[part], with_sensor.geoms[part])
         scenes.cast_planes(query, hits)
-        scenes.cast_fixed(query, hits)
         scenes.cast_moving(query, hits, without=root)
         return hits
 
-    def _cast_with(self, root: int, hidden: frozenset[int]) -> Hits:
-        """The hits of what moves with the sensor, which are always the same."""
+    def _cast_with(self, root: int, hidden: frozenset[int]) -> tuple[bool, Hits]:
+        """The hits of what moves with the sensor, which are always the same.
+
+        Returns:
+            Whether there are any, and the hits of all rays.
+        """
         scenes = self._scenes
         if self._with is None or self._with[0] != scenes.version:
             place, turn = scenes.place_of(self._body)
             start, rays = place + turn @ self._offset, self._directions @ turn.T
             query = Query(start, rays, self._own, self._minimum, hidden=hidden)
-            self._with = (scenes.version, scenes.cast_with(root, query))
-        return self._with[1]
+            found = scenes.cast_with(root, query)
+            self._with = scenes.version, bool(np.isfinite(found.distances).any()), found
+        return self._with[1:]

@@ -96,7 +96,7 @@ class MujocoCaster:
         self._geoms = np.full(count, -1, dtype=np.int32)
         self._distances = np.zeros(count)
 
-    def cast(self, start: Array, turn: Array, hidden: Any) -> tuple[Array, Any]:
+    def cast(self, start: Array, turn: Array, hidden: frozenset[int]) -> tuple[Array, Any]:
         """Casts the rays.
 
         Args:
@@ -119,7 +119,7 @@ class MujocoCaster:
             # Without tree addresses, it skips these tests; the bundles replace them.
             trees[:] = -1
             open_groups = saved_groups.copy()
-            open_groups[hidden] = HIDDEN_GROUP
+            open_groups[list(hidden)] = HIDDEN_GROUP
             away: Array | None = None
             for part, visible in self._candidates(start, turn, open_groups):
                 if len(rays[part]) * model.ngeom < _WORTH_SORTING:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,40 +28,46 @@ class Hits:
         """No hits of some rays."""
         return cls(np.full(count, np.inf), np.full(count, -1, dtype=np.int32))
 
-    def add(self, other: Hits) -> None:
-        """Adds the hits of the same rays that are nearer."""
-        closer = other.distances < self.distances
-        np.copyto(self.distances, other.distances, where=closer)
-        np.copyto(self.geoms, other.geoms, where=closer)
+    def add(self, distances: Array, geoms: Any) -> None:
+        """Adds the hits of the same rays that are nearer.
 
-    def add_some(self, rays: Any, other: Hits) -> None:
+        Args:
+            distances: Their distances, m.
+            geoms: Their geoms, or a single one.
+        """
+        closer = distances < self.distances
+        np.copyto(self.distances, distances, where=closer)
+        np.copyto(self.geoms, geoms, where=closer)
+
+    def add_some(self, rays: Any, distances: Array, geoms: Any) -> None:
         """Adds the hits of some rays that are nearer.
 
         Args:
             rays: Indices of the rays, without repetitions.
-            other: Their hits.
+            distances: Their distances, m.
+            geoms: Their geoms.
         """
-        closer = other.distances < self.distances[rays]
+        closer = distances < self.distances[rays]
         which = rays[closer]
-        self.distances[which], self.geoms[which] = other.distances[closer], other.geoms[closer]
+        self.distances[which], self.geoms[which] = distances[closer], geoms[closer]
 
-    def add_any(self, rays: Any, other: Hits) -> None:
-        """Adds hits that are nearer, also several of a ray."""
-        np.minimum.at(self.distances, rays, other.distances)
-        nearest = (other.distances == self.distances[rays]) & np.isfinite(other.distances)
-        self.geoms[rays[nearest]] = other.geoms[nearest]
+    def add_any(self, rays: Any, distances: Array, geoms: Any) -> None:
+        """Adds hits that are nearer, as `add_some`, also several of a ray."""
+        np.minimum.at(self.distances, rays, distances)
+        nearest = (distances == self.distances[rays]) & np.isfinite(distances)
+        self.geoms[rays[nearest]] = geoms[nearest]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Band:
     """Directions between two cones about an axis, such as those of a lidar."""
 
     axis: Array
     """Unit vector."""
-    low: float
-    """Smallest angle between a direction and the plane across the axis, rad."""
-    high: float
-    """Largest angle, rad."""
+    low: tuple[float, float]
+    """Sine and cosine of the smallest angle between a direction and the plane across the axis."""
+    high: tuple[float, float]
+    """Those of the largest angle."""
 
     @classmethod
     def of(cls, rays: Array) -> Band:
@@ -68,29 +75,35 @@ class Band:
         values, vectors = np.linalg.eigh(rays.T @ rays)
         axis = vectors[:, int(np.argmin(values))]
         angles = np.arcsin(np.clip(rays @ axis, -1.0, 1.0))
-        return cls(axis, float(angles.min()) - _SLACK, float(angles.max()) + _SLACK)
+        low, high = float(angles.min()) - _SLACK, float(angles.max()) + _SLACK
+        return cls(axis, (math.sin(low), math.cos(low)), (math.sin(high), math.cos(high)))
 
     def turned(self, turn: Array) -> Band:
         """The band in other axes."""
-        return replace(self, axis=turn @ self.axis)
+        return Band(turn @ self.axis, self.low, self.high)
 
-    def meets(self, away: Array, distance: Array, radius: Array) -> Any:
-        """Whether spheres may be in the band.
+    def meets(self, away: Array, squared: Array, radius: Array, extent: Array) -> Any:
+        """Whether shapes may be in the band.
 
         Args:
             away: Their centres, seen from the start of the rays, m, shape (n, 3).
-            distance: Length of `away`, shape (n,).
-            radius: Their radii, m, shape (n,).
+            squared: Square of the length of `away`, shape (n,).
+            radius: Radii of spheres around them, m, shape (n,).
+            extent: How far they extend along the axis from their centres, m, shape (n,).
         """
-        outside = np.maximum(distance, radius)
-        outside = np.maximum(outside, 1e-12)
-        width = np.arcsin(np.minimum(radius / outside, 1.0))
-        angle = np.arcsin(np.clip(away @ self.axis / outside, -1.0, 1.0))
-        inside = distance <= radius
-        return inside | ((angle + width >= self.low) & (angle - width <= self.high))
+        along = away @ self.axis
+        across = np.sqrt(np.maximum(squared - along * along, 0.0))
+        # Distances of the centres to the lines of the cones that are nearest to them.
+        found: Any = along * self.high[1] - across * self.high[0] <= np.minimum(
+            radius, radius * abs(self.high[0]) + extent * self.high[1]
+        )
+        found &= across * self.low[0] - along * self.low[1] <= np.minimum(
+            radius, radius * abs(self.low[0]) + extent * self.low[1]
+        )
+        return found
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Query:
     """Rays that start at one point, and what they hit."""
 
@@ -109,6 +122,6 @@ class Query:
     band: Band | None = None
     """Where the rays go."""
 
-    def some(self, rays: Any) -> Query:
-        """The same for some of the rays."""
-        return replace(self, rays=self.rays[rays])
+    def some(self, rays: Any, hidden: frozenset[int]) -> Query:
+        """The same for some of the rays, and with other geoms that are not hit."""
+        return replace(self, rays=self.rays[rays], hidden=hidden)

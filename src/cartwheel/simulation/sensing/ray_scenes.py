@@ -6,28 +6,15 @@ together. Other shapes that move are few, and are tested directly.
 
 from __future__ import annotations
 
-import itertools
-from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from cartwheel.geometry import Array, matrix_from_quat
 from cartwheel.simulation.sensing import ray_shapes as shapes
+from cartwheel.simulation.sensing.ray_moving import MovingShapes, RigidMeshes
 from cartwheel.simulation.sensing.ray_query import Hits, Query
-from cartwheel.simulation.sensing.ray_triangles import Poses, TriangleScene
-
-
-@dataclass(frozen=True, slots=True)
-class _Group:
-    """Geoms that move together."""
-
-    root: int
-    """The body whose frame they have; 0 is the world."""
-    geoms: Any
-    centre: Array
-    """Centre of a sphere around them, in the frame of the root, m."""
-    radius: float
+from cartwheel.simulation.sensing.ray_triangles import Poses, RigidShapes
 
 
 class RayScenes:
@@ -48,26 +35,22 @@ class RayScenes:
                 self._roots[body] = body
             elif self._roots[body] == 0:
                 self._roots[body] = self._roots[model.body_parentid[body]]
-        self._state: tuple[bytes, ...] = ()
+        self._watched = (
+            model.body_pos, model.body_quat, model.geom_group, model.geom_rgba, model.geom_matid,
+            model.mat_rgba,
+        )  # fmt: skip
+        self._state: list[bytes] = []
         self.version = 0
         """Changes when the shapes have changed."""
-        self._scenes: dict[tuple[int, bytes], TriangleScene] = {}
 
     def refresh(self) -> None:
         """Follows changes of the model: what is invisible, and where it stands."""
         model = self.model
-        state = tuple(
-            each.tobytes()
-            for each in (
-                model.body_pos, model.body_quat, model.geom_group, model.geom_rgba,
-                model.geom_matid, model.mat_rgba,
-            )
-        )  # fmt: skip
+        state = [each.tobytes() for each in self._watched]
         if state == self._state:
             return
         self._state = state
         self.version += 1
-        self._scenes.clear()
         self._bodies = _body_places(model, self._roots)
         self._places = _geom_places(model, self._bodies)
         opaque = model.geom_rgba[:, 3] != 0
@@ -84,12 +67,13 @@ class RayScenes:
         self._simple = moving[np.argsort(kinds[moving], kind="stable")].astype(np.int32)
         """Geoms that move and are no meshes, sorted by their kinds."""
         self._simple_roots = roots[self._simple]
-        self._radii = model.geom_rbound[self._simple].copy()
-        self.fixed = np.flatnonzero(solid & (roots == 0))
-        self._groups = [
-            self._group_of(root, np.flatnonzero(solid & (roots == root) & ~simple))
+        self._fixed = RigidShapes(model, np.flatnonzero(solid & (roots == 0)), self._places)
+        self._meshes = [
+            self._meshes_of(root, np.flatnonzero(solid & (roots == root) & ~simple))
             for root in np.unique(roots[solid & (roots != 0) & ~simple]).tolist()
         ]
+        self._with: dict[int, RigidShapes] = {}
+        self._without: dict[int, MovingShapes] = {}
 
     def root_of(self, body: int) -> int:
         """The body that a body moves with; 0 is the world."""
@@ -99,27 +83,30 @@ class RayScenes:
         """Pose of a body in the frame of its root body."""
         return self._bodies[0][body], self._bodies[1][body]
 
+    def cast_fixed(self, query: Query) -> Hits:
+        """The hits of all that stands still."""
+        return self._fixed.cast(query)
+
     def cast_planes(self, query: Query, hits: Hits) -> None:
         """Adds the hits of planes."""
         data, model = self.data, self.model
         for geom in self._planes:
-            if geom in query.hidden:
-                continue
-            turn = data.geom_xmat[geom].reshape(3, 3)
-            here = (query.start - data.geom_xpos[geom]) @ turn
-            found = shapes.to_plane(here, query.rays @ turn, model.geom_size[geom])
-            hits.add(Hits(found, np.full(len(found), geom, dtype=np.int32)))
-
-    def cast_fixed(self, query: Query, hits: Hits) -> None:
-        """Adds the hits of all that stands still."""
-        if len(self.fixed):
-            hits.add(self._cast_clear(0, self.fixed, query))
+            if geom not in query.hidden:
+                found = shapes.to_plane(
+                    query.start - data.geom_xpos[geom], query.rays,
+                    data.geom_xmat[geom].reshape(3, 3), model.geom_size[geom], query.maximum,
+                )  # fmt: skip
+                if found is not None:
+                    hits.add(found, geom)
 
     def cast_with(self, root: int, query: Query) -> Hits:
         """The hits of all that moves with a body, in its frame."""
-        meshes = [group.geoms for group in self._groups if group.root == root]
-        geoms = np.concatenate([self._simple[self._simple_roots == root], *meshes])
-        return self._cast_clear(root, geoms, query)
+        found = self._with.get(root)
+        if found is None:
+            meshes = [each.shapes.geoms for each in self._meshes if each.root == root]
+            geoms = np.concatenate([self._simple[self._simple_roots == root], *meshes])
+            found = self._with[root] = RigidShapes(self.model, geoms, self._places)
+        return found.cast(query)
 
     def cast_moving(self, query: Query, hits: Hits, *, without: int) -> None:
         """Adds the hits of all that moves.
@@ -129,98 +116,15 @@ class RayScenes:
             hits: Hits so far.
             without: What moves with this body is left out, unless it is the world.
         """
-        self._cast_simple(query, hits, without)
-        for group in self._groups:
-            if group.root != without:
-                self._cast_group(group, query, hits)
+        found = self._without.get(without)
+        if found is None:
+            found = self._without[without] = MovingShapes(
+                self.model, self.data, self._simple[self._simple_roots != without],
+                [each for each in self._meshes if each.root != without],
+            )  # fmt: skip
+        found.cast(query, hits)
 
-    def _cast_simple(self, query: Query, hits: Hits, without: int) -> None:
-        model, data = self.model, self.data
-        geoms, radius = self._simple, self._radii
-        if not geoms.size:
-            return
-        away = data.geom_xpos[geoms] - query.start
-        squared = np.einsum("ij,ij->i", away, away)
-        distance = np.sqrt(squared)
-        wanted = distance - radius < query.maximum
-        wanted &= self._simple_roots != without
-        if query.band is not None:
-            wanted &= query.band.meets(away, distance, radius)
-        if not wanted.any():
-            return
-        geoms, away, squared = geoms[wanted], away[wanted], squared[wanted]
-        # A ray meets the sphere around a geom if it goes far enough along the line to its centre.
-        rest = squared - radius[wanted] ** 2
-        least = np.where(rest > 0, np.sqrt(np.maximum(rest, 0.0)), -np.inf)[:, None]
-        # A matrix product of this size would wait for other threads, which a busy machine delays.
-        along = np.multiply.outer(away[:, 0], query.rays[:, 0])
-        along += np.multiply.outer(away[:, 1], query.rays[:, 1])
-        along += np.multiply.outer(away[:, 2], query.rays[:, 2])
-        flat = np.flatnonzero(along >= least)
-        if not flat.size:
-            return
-        first = np.searchsorted(flat, np.arange(len(geoms) + 1) * len(query.rays)).tolist()
-        found = np.empty(flat.size)
-        row, which = np.divmod(flat, len(query.rays))
-        met = geoms[row]
-        starts, rays = np.empty((flat.size, 3)), query.rays[which]
-        turns = data.geom_xmat[geoms].reshape(-1, 3, 3)
-        for index in range(len(geoms)):
-            part = slice(first[index], first[index + 1])
-            if part.start < part.stop:
-                starts[part] = -away[index] @ turns[index]
-                rays[part] = rays[part] @ turns[index]
-        # The geoms are sorted by their kinds.
-        sizes, kinds = model.geom_size[met], model.geom_type[met]
-        edges = [0, *(np.flatnonzero(np.diff(kinds)) + 1).tolist(), flat.size]
-        for low, high in itertools.pairwise(edges):
-            part = slice(low, high)
-            to_shape = shapes.TO_SHAPE[int(kinds[low])]
-            found[part] = to_shape(starts[part], rays[part], sizes[part])
-        found[query.own[met] & (found < query.minimum)] = np.inf
-        hits.add_any(which, Hits(found, met))
-
-    def _cast_group(self, group: _Group, query: Query, hits: Hits) -> None:
-        turn = self.data.xmat[group.root].reshape(3, 3)
-        place = self.data.xpos[group.root]
-        away = place + turn @ group.centre - query.start
-        squared = float(away @ away)
-        if np.sqrt(squared) - group.radius >= query.maximum:
-            return
-        rest = squared - group.radius**2
-        along = (query.rays * away).sum(axis=1)
-        (which,) = np.nonzero(along >= (np.sqrt(rest) if rest > 0 else -np.inf))
-        if which.size:
-            start, rays = (query.start - place) @ turn, query.rays[which] @ turn
-            there = replace(query, start=start, rays=rays)
-            hits.add_some(which, self._cast_clear(group.root, group.geoms, there))
-
-    def _cast_clear(self, root: int, geoms: Any, query: Query) -> Hits:
-        """The hits of geoms that move together, in the frame of their root."""
-        hits = self._cast_scene(root, geoms, query)
-        if query.minimum > 0:
-            near = (hits.distances < query.minimum) & query.own[hits.geoms]
-            if near.any():
-                for geom in np.unique(hits.geoms[near]).tolist():
-                    (again,) = np.nonzero(near & (hits.geoms == geom))
-                    other = replace(query.some(again), hidden=query.hidden | {geom})
-                    found = self._cast_clear(root, geoms, other)
-                    hits.distances[again], hits.geoms[again] = found.distances, found.geoms
-                    near[again] = False
-        return hits
-
-    def _cast_scene(self, root: int, geoms: Any, query: Query) -> Hits:
-        if query.hidden:
-            geoms = geoms[~np.isin(geoms, list(query.hidden))]
-        if not len(geoms):
-            return Hits.none(len(query.rays))
-        key = (root, geoms.tobytes())
-        scene = self._scenes.get(key)
-        if scene is None:
-            scene = self._scenes[key] = TriangleScene(self.model, geoms, self._places)
-        return scene.cast(query.start, query.rays)
-
-    def _group_of(self, root: int, geoms: Any) -> _Group:
+    def _meshes_of(self, root: int, geoms: Any) -> RigidMeshes:
         places, turns = self._places
         boxes = self.model.geom_aabb[geoms]
         middles = np.einsum("gij,gj->gi", turns[geoms], boxes[:, :3]) + places[geoms]
@@ -229,7 +133,9 @@ class RayScenes:
         centre = (low + high) / 2
         radius = float((np.linalg.norm(middles - centre, axis=1) + radii).max())
         # Meshes are in single precision.
-        return _Group(root, geoms, centre, radius * (1 + 1e-6) + 1e-6)
+        return RigidMeshes(
+            root, RigidShapes(self.model, geoms, self._places), centre, radius * (1 + 1e-6) + 1e-6
+        )
 
 
 def _body_places(model: Any, roots: Any) -> Poses:

@@ -163,7 +163,7 @@ def _turned(profile: list[tuple[float, float]], sides: int, pole: float | None =
     return corners, np.concatenate(faces)
 
 
-# -- exact distances; starts and sizes have shape (n, 3) or (3,)
+# -- exact distances; all arguments have shape (n, 3), and callers ignore divisions by 0
 
 
 def _first(near: Array, far: Array, valid: Any) -> Array:
@@ -208,18 +208,33 @@ def _to_side(start: Array, ray: Array, radius: Array) -> tuple[Array, Array, Any
 
 def to_cylinder(start: Array, ray: Array, size: Array) -> Array:
     """Distances to cylinders of radius ``size[0]`` and half-length ``size[1]``."""
-    radius, half = size[..., 0], size[..., 1]
-    near, far, valid = _to_side(start, ray, radius)
-    best = np.full(len(ray), np.inf)
-    for root in (near, far):
-        inside = valid & (root >= 0) & (np.abs(start[..., 2] + root * ray[:, 2]) <= half)
+    near, far, valid = _to_side(start, ray, size[:, 0])
+    entered = valid & (near >= 0) & (np.abs(start[:, 2] + near * ray[:, 2]) <= size[:, 1])
+    if entered.all():
+        return near
+    (other,) = np.nonzero(~entered)
+    near[other] = _to_cap(start[other], ray[other], size[other], far[other], valid[other])
+    return near
+
+
+def _to_cap(start: Array, ray: Array, size: Array, far: Array, valid: Any) -> Array:
+    """As `to_cylinder`, for rays that do not enter through the side.
+
+    Args:
+        start: Where they start.
+        ray: Their directions.
+        size: Sizes of the cylinders.
+        far: Where they leave the endless cylinders.
+        valid: Whether they do.
+    """
+    radius, half = size[:, 0], size[:, 1]
+    height, up = start[:, 2], ray[:, 2]
+    best: Array = np.where(valid & (far >= 0) & (np.abs(height + far * up) <= half), far, np.inf)
+    for cap in (-half, half):
+        root = (cap - height) / up
+        x, y = start[:, 0] + root * ray[:, 0], start[:, 1] + root * ray[:, 1]
+        inside = (root >= 0) & (x * x + y * y <= radius * radius)
         np.minimum(best, root, out=best, where=inside)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for height in (-half, half):
-            root = (height - start[..., 2]) / ray[:, 2]
-            x, y = start[..., 0] + root * ray[:, 0], start[..., 1] + root * ray[:, 1]
-            inside = (root >= 0) & (x * x + y * y <= radius * radius)
-            np.minimum(best, root, out=best, where=inside)
     return best
 
 
@@ -243,31 +258,44 @@ def to_capsule(start: Array, ray: Array, size: Array) -> Array:
 
 def to_box(start: Array, ray: Array, size: Array) -> Array:
     """Distances to boxes with the half-lengths ``size``."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, other = (-size - start) / ray, (size - start) / ray
+    one, other = (-size - start) / ray, (size - start) / ray
     low, high = np.minimum(one, other), np.maximum(one, other)
-    # A ray along a face is NaN there, and is limited by the other faces.
-    parallel = np.isnan(low) | np.isnan(high)
-    low, high = np.where(parallel, -np.inf, low), np.where(parallel, np.inf, high)
-    near, far = low.max(axis=1), high.min(axis=1)
+    # A ray along a face is NaN there, which `fmax` and `fmin` ignore.
+    near = np.fmax(np.fmax(low[:, 0], low[:, 1]), low[:, 2])
+    far = np.fmin(np.fmin(high[:, 0], high[:, 1]), high[:, 2])
     return _first(near, far, near <= far)
 
 
-def to_plane(start: Array, rays: Array, size: Array) -> Array:
-    """Distances from a point to a rectangle in the plane z = 0, from above.
+def to_plane(
+    start: Array, rays: Array, turn: Array, size: Array, maximum: float
+) -> Array | None:  # fmt: skip
+    """Distances from a point above to a rectangle in a plane; None if no ray hits it.
 
-    Half-lengths of 0 are endless.
+    Args:
+        start: Where the rays start, from the centre of the rectangle, shape (3,).
+        rays: Directions, shape (n, 3).
+        turn: Rotation matrix of the rectangle, whose normal is z.
+        size: Half-lengths; 0 is endless.
+        maximum: Farther hits may be missing, m.
     """
-    down = rays[:, 2]
-    if start[2] < 0 or down.min() > -_LEVEL:
-        return np.full(len(rays), np.inf)
-    with np.errstate(divide="ignore"):
-        found: Array = np.where(down < -_LEVEL, start[2] / -down, np.inf)
+    x, y, z = normal = turn[:, 2].tolist()
+    height = float(start @ turn[:, 2])
+    if height < 0:
+        return None
+    if normal == [0.0, 0.0, 1.0]:
+        down = rays[:, 2]
+    else:
+        down = rays[:, 0] * x + rays[:, 1] * y + rays[:, 2] * z
+    # Slightly farther hits are kept, so that this rounding has no effect.
+    if down.min() >= -max(_LEVEL, height / maximum * (1 - 1e-9)):
+        return None
+    found: Array = np.where(down < -_LEVEL, -height / down, np.inf)
     for axis in (0, 1):
         if size[axis] > 0:
-            with np.errstate(invalid="ignore"):
-                inside = np.abs(start[axis] + found * rays[:, axis]) <= size[axis]
-            found = np.where(inside, found, np.inf)
+            across = rays[:, 0] * turn[0, axis] + rays[:, 1] * turn[1, axis]
+            across += rays[:, 2] * turn[2, axis]
+            inside = np.abs(float(start @ turn[:, axis]) + found * across) <= size[axis]
+            found[~inside] = np.inf
     return found
 
 

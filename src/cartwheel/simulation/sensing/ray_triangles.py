@@ -12,7 +12,7 @@ import numpy as np
 
 from cartwheel.geometry import Array
 from cartwheel.simulation.sensing import ray_shapes as shapes
-from cartwheel.simulation.sensing.ray_query import Hits
+from cartwheel.simulation.sensing.ray_query import Hits, Query
 
 try:
     from embreex.mesh_construction import TriangleMesh
@@ -30,6 +30,8 @@ _CLOSE = 1e-4
 """A curved surface that is not farther than this behind its triangles hides others, m."""
 _STEP = 1e-6
 """Distance by which a ray continues behind a triangle, m."""
+_LONGER = 4.0
+"""Factor of this distance while the ray still hits the same triangle."""
 _MOST_STEPS = 64
 """Maximum number of triangles of curved shapes that a ray passes."""
 
@@ -38,7 +40,6 @@ class TriangleScene:
     """Triangles for Embree in the frame of a body, or in the world."""
 
     def __init__(self, model: Any, geoms: Any, places: Poses) -> None:
-        self._model, self._places = model, places
         corners, faces, owners, normals, offsets = [], [], [], [], []
         count = 0
         for geom in geoms.tolist():
@@ -74,6 +75,10 @@ class TriangleScene:
         )
         curved = np.isin(model.geom_type, shapes.CURVED)
         self._curved = np.append(curved, False)[self._owners] if curved[geoms].any() else None
+        self._kinds = np.asarray(model.geom_type).copy()
+        self._curved_kinds = np.unique(self._kinds[geoms[curved[geoms]]]).tolist()
+        # Position, rotation matrix and size of each geom, which are read together.
+        self._geoms = np.hstack([places[0], places[1].reshape(-1, 9), model.geom_size])
 
     def find(self, start: Array, rays: Array) -> Any:
         """The triangles that rays hit, or -1.
@@ -82,9 +87,11 @@ class TriangleScene:
             start: Where each ray starts, shape (n, 3) or (3,), in the frame of the scene, m.
             rays: Unit vectors, shape (n, 3).
         """
-        begin = np.empty(rays.shape, dtype=np.float32)
-        begin[:] = start - self._centre
-        return self._scene.run(begin, rays.astype(np.float32, order="C"))
+        begin = (start - self._centre).astype(np.float32)
+        if begin.ndim == 1:
+            # As `broadcast_to`, which takes longer.
+            begin = np.ndarray(rays.shape, np.float32, begin, strides=(0, begin.itemsize))
+        return self._scene.run(begin, rays.astype(np.float32))
 
     def cast(self, start: Array, rays: Array) -> Hits:
         """The nearest hits of rays in the frame of the scene; see `Query`."""
@@ -94,60 +101,129 @@ class TriangleScene:
         if self._curved is not None:
             (which,) = np.nonzero(self._curved[found])
             if which.size:
-                self._refine(start, rays, hits, which)
+                self._refine(start, rays, hits, which, found[which])
         return hits
 
     def _to_triangles(self, start: Array, rays: Array, triangles: Any) -> Array:
         """Distances to the planes of triangles."""
         x, y, z, heights = np.ascontiguousarray(self._planes.take(triangles, axis=0).T)
-        across = np.zeros(len(rays))
-        for part, origin, direction in zip((x, y, z), start.tolist(), rays.T, strict=True):
-            heights -= part * origin
-            across += part * direction
-        with np.errstate(divide="ignore", invalid="ignore"):
-            distances: Array = np.abs(heights / across)
+        across = x * rays[:, 0]
+        across += y * rays[:, 1]
+        across += z * rays[:, 2]
+        for part, origin in zip((x, y, z), start.tolist(), strict=True):
+            heights -= np.multiply(part, origin, out=part)
+        heights /= across
+        distances: Array = np.abs(heights, out=heights)
         return distances
 
-    def _refine(self, start: Array, rays: Array, hits: Hits, which: Any) -> None:
+    def _refine(self, start: Array, rays: Array, hits: Hits, which: Any, triangles: Any) -> None:
         """Replaces distances to the triangles of curved shapes by those to the shapes.
 
         A ray may pass between a curved surface and its triangles, and hit another shape.
+
+        Args:
+            start: Where the rays start, m.
+            rays: Unit vectors.
+            hits: The hits of triangles.
+            which: Indices of the rays that hit a curved shape.
+            triangles: The triangles that these rays hit.
         """
-        surface, geoms = hits.distances[which], hits.geoms[which]
-        hits.distances[which], hits.geoms[which] = np.inf, -1
+        ray, geoms, surface = rays[which], hits.geoms[which], hits.distances[which]
+        exact = self._exact(start, ray, geoms, surface)
+        hits.distances[which] = exact
+        going = surface < exact - _CLOSE
+        if not going.any():
+            return
+        hits.geoms[which[np.isinf(exact)]] = -1
+        step = np.full(which.size, _STEP)
         for _ in range(_MOST_STEPS):
-            exact = self._exact(start, rays[which], geoms, surface)
-            hits.add_some(which, Hits(exact, geoms))
-            going = surface < hits.distances[which] - _CLOSE
-            which, passed = which[going], surface[going] + _STEP
-            if not which.size:
-                return
-            ray = rays[which]
-            begins = start + passed[:, None] * ray
-            found = self.find(begins, ray)
-            some = found >= 0
-            which, ray, found = which[some], ray[some], found[some]
-            if not which.size:
+            which, ray, triangles, step = which[going], ray[going], triangles[going], step[going]
+            passed = surface[going] + step
+            found = self.find(start + passed[:, None] * ray, ray)
+            again = found == triangles
+            # A ray that has hit a shape leaves its triangles behind it: nothing is in between.
+            left = np.isfinite(exact[going]) & (self._owners[found] == geoms[going])
+            if (left & ~again | (found < 0)).all():
                 return
             # The plane of a triangle behind the start of the ray would be numerical noise.
-            surface = np.maximum(self._to_triangles(start, ray, found), passed[some])
-            geoms = self._owners[found]
+            surface = np.maximum(self._to_triangles(start, ray, found), passed)
+            # A ray that hits the same triangle again has not passed it in single precision.
+            step = np.where(again, step * _LONGER, _STEP)
+            # A shape is not nearer than its triangles.
+            some = surface < hits.distances[which]
+            some &= found >= 0
+            if not some.any():
+                return
+            which, ray, surface = which[some], ray[some], surface[some]
+            triangles, step = found[some], step[some]
+            geoms = self._owners[triangles]
+            exact = self._exact(start, ray, geoms, surface)
+            hits.add_some(which, exact, geoms)
+            going = surface < hits.distances[which] - _CLOSE
+            if not going.any():
+                return
 
     def _exact(self, start: Array, rays: Array, geoms: Any, surface: Array) -> Array:
         """Distances to curved shapes, inf for a miss, and otherwise those to the triangles."""
-        here, turned = _into(self._places, geoms, start, rays)
-        exact = surface.copy()
-        kinds = self._model.geom_type[geoms]
-        for kind in shapes.CURVED:
-            (chosen,) = np.nonzero(kinds == kind)
-            if chosen.size:
-                sizes = self._model.geom_size[geoms[chosen]]
-                exact[chosen] = shapes.TO_SHAPE[kind](here[chosen], turned[chosen], sizes)
+        kinds, rows = self._kinds[geoms], self._geoms.take(geoms, axis=0)
+        exact = surface
+        for kind in self._curved_kinds:
+            chosen = kinds == kind
+            if chosen.all():
+                return _to_shape(kind, start, rays, rows)
+            if chosen.any():
+                if exact is surface:
+                    exact = surface.copy()
+                exact[chosen] = _to_shape(kind, start, rays[chosen], rows[chosen])
         return exact
 
 
-def _into(poses: Poses, geoms: Any, start: Array, rays: Array) -> tuple[Array, Array]:
-    """Starts and directions in the frames of geoms, shape (n, 3) each."""
-    turns = poses[1][geoms]
-    here = np.einsum("ij,ijk->ik", start - poses[0][geoms], turns)
-    return here, np.einsum("ij,ijk->ik", rays, turns)
+def _to_shape(kind: int, start: Array, rays: Array, geoms: Array) -> Array:
+    """Distances to shapes of one kind; the columns are position, rotation matrix and size."""
+    turns = geoms[:, 3:12].reshape(-1, 3, 3)
+    here = np.einsum("ij,ijk->ik", start - geoms[:, :3], turns)
+    turned = np.einsum("ij,ijk->ik", rays, turns)
+    return shapes.TO_SHAPE[kind](here, turned, geoms[:, 12:])
+
+
+class RigidShapes:
+    """Shapes that move together, in the frame of their body.
+
+    Args:
+        model: The MuJoCo model.
+        geoms: Indices of the geoms, shape (n,).
+        places: Poses of all geoms of the model in this frame.
+    """
+
+    def __init__(self, model: Any, geoms: Any, places: Poses) -> None:
+        self.geoms = geoms
+        self._model, self._places = model, places
+        self._scenes: dict[frozenset[int], TriangleScene | None] = {}
+        """By the geoms that are not hit."""
+
+    def cast(self, query: Query) -> Hits:
+        """The nearest hits of rays in this frame."""
+        scene = self._scene(query.hidden)
+        if scene is None:
+            return Hits.none(len(query.rays))
+        hits = scene.cast(query.start, query.rays)
+        if hits.distances.size and hits.distances.min() < query.minimum:
+            near = (hits.distances < query.minimum) & query.own[hits.geoms]
+            for geom in np.unique(hits.geoms[near]).tolist():
+                (again,) = np.nonzero(near & (hits.geoms == geom))
+                found = self.cast(query.some(again, query.hidden | {geom}))
+                hits.distances[again], hits.geoms[again] = found.distances, found.geoms
+                near[again] = False
+        return hits
+
+    def _scene(self, hidden: frozenset[int]) -> TriangleScene | None:
+        """Embree's scene without some geoms; None if it is empty."""
+        if hidden not in self._scenes:
+            geoms = self.geoms[~np.isin(self.geoms, list(hidden))] if hidden else self.geoms
+            same = hidden and len(geoms) == len(self.geoms)
+            self._scenes[hidden] = (
+                self._scene(frozenset()) if same
+                else TriangleScene(self._model, geoms, self._places) if len(geoms)
+                else None
+            )  # fmt: skip
+        return self._scenes[hidden]

@@ -45,7 +45,19 @@ class RayHandle:
         visuals: Visuals to hit, as a GPU sensor does, instead of collisions.
     """
 
-    _unsaved = frozenset({"_model", "_data", "_body", "_own", "_retros", "_caster"})
+    _unsaved = frozenset(
+        {
+            "_model",
+            "_data",
+            "_body",
+            "_place",
+            "_turn",
+            "_own",
+            "_retros",
+            "_reflects",
+            "_caster",
+        }
+    )
     """Attributes that a saved state does not contain: they follow from the compiled model."""
 
     def __init__(
@@ -69,7 +81,7 @@ class RayHandle:
         self._group = COLLISION_GROUP if visuals is None else VISUAL_GROUP
         self._shared, self._visuals = scenes, visuals
         self._model: Any = None
-        self._housing: Array | None = None
+        self._housing: frozenset[int] | None = None
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves names in a compiled model."""
@@ -82,12 +94,14 @@ class RayHandle:
             model, mujoco.mjtObj.mjOBJ_BODY, scoped(self.model_name, self.link_name)
         )
         self._body = body
+        self._place, self._turn = data.xpos[body], data.xmat[body].reshape(3, 3)
         prefix = scoped(self.model_name, "")
         own = np.array([model.body(i).name.startswith(prefix) for i in range(model.nbody)])
         # One more entry, for geom -1 of a ray without a hit.
         self._own = np.append(own[model.geom_bodyid], False)
         retros = model.geom_user[:, 0] if model.nuser_geom else np.zeros(model.ngeom)
         self._retros = np.append(retros, 0.0)
+        self._reflects = bool(retros.any())
         # Determined at the first cast, because the new model has no computed poses yet.
         self._housing = None
         limits: dict[str, Any] = {"minimum": self.minimum, "maximum": self.maximum}
@@ -117,16 +131,20 @@ class RayHandle:
             model, data = self._visuals.current()
             if model is not self._model:
                 self._resolve(model, data)
-        turn = self._data.xmat[self._body].reshape(3, 3)
-        start = self._data.xpos[self._body] + turn @ self._offset
+        turn = self._turn
+        start = self._place + turn @ self._offset
         if self._housing is None:
             self._housing = self._enclosing(start)
         distances, geoms = self._caster.cast(start, turn, self._housing)
         far = distances >= self.maximum
-        near = np.where(distances <= self.minimum, -np.inf, distances)
-        return np.where(far, np.inf, near), np.where(far, 0.0, self._retros[geoms])
+        reflected = np.zeros(len(distances))
+        if self._reflects:
+            np.copyto(reflected, self._retros[geoms], where=~far)
+        distances[distances <= self.minimum] = -np.inf
+        distances[far] = np.inf
+        return distances, reflected
 
-    def _enclosing(self, start: Array) -> Array:
+    def _enclosing(self, start: Array) -> frozenset[int]:
         """Geoms that move with the sensor and contain its origin.
 
         From inside a convex shape, every ray hits it; from outside, two opposite rays cannot both
@@ -140,7 +158,7 @@ class RayHandle:
             hits = (self._distance(geom, start, axis) for axis in _AXES)
             if all(hit >= 0 for hit in hits):
                 found.append(geom)
-        return np.array(found, dtype=np.intp)
+        return frozenset(found)
 
     def _distance(self, geom: int, start: Array, direction: Array) -> float:
         model, data = self._model, self._data
