@@ -68,6 +68,8 @@ MESSAGES = {
     "dynamic_reconfigure/IntParameter": "65fedc7a0cbfb8db035e46194a350bf1",
     "dynamic_reconfigure/ParamDescription": "7434fcb9348c13054e0c3b267c8cb34d",
     "dynamic_reconfigure/StrParameter": "bc6ccc4a57f61779c8eaae61e9f422e0",
+    "four_wheel_steering_msgs/FourWheelSteering": "04dd0f55e1f168668af1e2587a7cdd2a",
+    "four_wheel_steering_msgs/FourWheelSteeringStamped": "9226582df815bc6df9e3206bc05923af",
     "gazebo_msgs/ContactState": "48c0ffb054b8c444f870cecea1ee50d9",
     "gazebo_msgs/ContactsState": "acbcb1601a8e525bf72509f18e6f668d",
     "gazebo_msgs/LinkState": "0818ebbf28ce3a08d48ab1eaa7309ebe",

@@ -14,6 +14,7 @@ SOURCE = Path(__file__).parents[2] / "src" / "cartwheel"
 NOT_IN_DEBIAN = "Debian has no such package; the robot's own workspace has it"
 UNKNOWN = dict.fromkeys(
     (
+        "four_wheel_steering_msgs",
         "gazebo_grasp_plugin_ros",
         "gazebo_ros_link_attacher",
         "hector_gazebo_plugins",

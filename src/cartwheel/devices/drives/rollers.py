@@ -1,4 +1,4 @@
-"""Detects the rollers, friction and direction of mecanum wheels in a robot's description."""
+"""Detects the rollers, friction and direction of omnidirectional wheels in a description."""
 
 from __future__ import annotations
 
@@ -27,6 +27,18 @@ def has_rollers(description: RobotDescription) -> bool:
     """
     surfaces = [c.surface for link in description.links for c in link.collisions]
     return any(each.fdir1_frame is not None and each.mu1 != each.mu2 for each in surfaces)
+
+
+def has_roller_links(description: RobotDescription, joints: Collection[str]) -> bool:
+    """Whether a link turns freely on each of these wheels: the rollers are links of their own.
+
+    Args:
+        description: The robot.
+        joints: Joints of the wheels.
+    """
+    wheels = {each.child for each in description.joints if each.name in joints}
+    turned = {each.parent for each in description.joints if each.type == "continuous"}
+    return bool(wheels) and wheels <= turned
 
 
 def has_grip(description: RobotDescription, joints: Collection[str]) -> bool:

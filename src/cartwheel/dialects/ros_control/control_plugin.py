@@ -13,6 +13,7 @@ from cartwheel.devices.drives.rollers import has_rollers
 from cartwheel.devices.inertial.unit import InertialUnit
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.ros_control.controllers.mecanum import MecanumDriveController
+from cartwheel.dialects.ros_control.controllers.omni import OmniWheelDriveController
 from cartwheel.dialects.ros_control.files import ControllerEntry, ControllerFiles
 from cartwheel.dialects.ros_control.manager import ControllerManager
 from cartwheel.dialects.ros_control.ordering import compete, in_order
@@ -94,7 +95,8 @@ class ControlPlugin(Plugin[Any]):
         """Returns a servo of the whole robot if one of the controller types needs it."""
         if has_rollers(self.part.description):
             return None
-        if any(name in MecanumDriveController.types for name in types):
+        pushed = (*MecanumDriveController.types, *OmniWheelDriveController.types)
+        if any(name in pushed for name in types):
             return self.part.body_drive(origin=self.tag.origin)
         return None
 

@@ -15,7 +15,7 @@ from cartwheel.dialects.ros_control.parameters import parameter
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.geometry import Array
 
-_MOST_AVERAGED = 10_000
+MOST_AVERAGED = 10_000
 """Maximum number of averaged velocities."""
 
 
@@ -75,6 +75,7 @@ def wheel_odometry(
     topic: str = "odom",
     tf_topic: str = "/tf",
     prefix: str = "",
+    averaged: bool = True,
 ) -> WheelOdometry:
     """Creates the odometry of a controller.
 
@@ -84,13 +85,14 @@ def wheel_odometry(
         topic: Topic of the odometry.
         tf_topic: Topic of the transform.
         prefix: Prefix of the frames.
+        averaged: Whether the velocity is a mean of the last measurements.
 
     Raises:
         PluginError: A value is not allowed.
     """
     settings, size = controller.settings, given.window
-    if not 1 <= size <= _MOST_AVERAGED:
-        wanted = f"between 1 and {_MOST_AVERAGED:,}"
+    if not 1 <= size <= MOST_AVERAGED:
+        wanted = f"between 1 and {MOST_AVERAGED:,}"
         raise settings.invalid("velocity_rolling_window_size", size, wanted)
     config = OdometryConfig(
         topic=topic,
@@ -102,7 +104,9 @@ def wheel_odometry(
         pose_covariance=_covariance(settings, "pose_covariance_diagonal", given.pose_covariance),
         twist_covariance=_covariance(settings, "twist_covariance_diagonal", given.twist_covariance),
     )
-    return controller.add(WheelOdometry(controller.scope, config, DeadReckoning(size)))
+    return controller.add(
+        WheelOdometry(controller.scope, config, DeadReckoning(size if averaged else None))
+    )
 
 
 def _covariance(settings: Settings, name: str, values: tuple[float, ...]) -> Array:

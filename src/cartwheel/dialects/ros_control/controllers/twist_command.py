@@ -34,11 +34,12 @@ class TwistCommand:
     def stop(self) -> None:
         """Clears the command."""
         self._values = (0.0, 0.0, 0.0)
-        self._time_ns = _NEVER
+        self.time_ns = _NEVER
+        """Time of the last command; before all times if there is none."""
 
     def at(self, time_ns: int) -> tuple[float, float, float]:
         """Returns x and y velocities in m/s and the yaw rate in rad/s; 0 after the timeout."""
-        if self._timeout_ns > 0 and time_ns - self._time_ns > self._timeout_ns:
+        if self._timeout_ns > 0 and time_ns - self.time_ns > self._timeout_ns:
             return (0.0, 0.0, 0.0)
         return self._values
 
@@ -47,4 +48,4 @@ class TwistCommand:
         values = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
         if all(math.isfinite(value) for value in values):
             self._values = values
-            self._time_ns = self._part.time_ns
+            self.time_ns = self._part.time_ns

@@ -12,7 +12,7 @@ from cartwheel.description.model import Cylinder, RobotDescription, Sphere
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.odometry import OdometryParameters
 from cartwheel.dialects.ros_control.parameters import ros2_parameter
-from cartwheel.geometry import matrix_from_quat
+from cartwheel.geometry import Array, matrix_from_quat
 
 LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 """Rotation axes of wheels and of steering joints, in the robot's base frame."""
@@ -35,14 +35,9 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
         joint: Joint of a wheel, or a steering joint.
         wanted: Expected axis, in the robot's base frame.
     """
-    description = controller.part.description
-    described = description.joint(joint)
+    described = controller.part.description.joint(joint)
     assert described is not None
-    poses = link_poses(description, {})
-    front = poses[description.canonical_link].inverse()
-    turn = matrix_from_quat((front @ poses[described.child]).orientation)
-    axis = turn @ np.array(described.axis.xyz)
-    if float(axis @ np.array(wanted)) < -0.5:
+    if float(joint_axis(controller.part.description, joint) @ np.array(wanted)) < -0.5:
         name = "xyz"[max(range(3), key=lambda index: wanted[index])]
         controller.warn(
             robot.WHEEL_AXIS_MISALIGNED,
@@ -51,6 +46,17 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
             at=described.origin,
             values={"joint": joint, "axis": f"-{name}"},
         )
+
+
+def joint_axis(description: RobotDescription, joint: str) -> Array:
+    """Returns the axis of a joint in the robot's base frame, shape (3,), at zero positions."""
+    described = description.joint(joint)
+    assert described is not None
+    poses = link_poses(description, {})
+    front = poses[description.canonical_link].inverse()
+    turn = matrix_from_quat((front @ poses[described.child]).orientation)
+    axis: Array = turn @ np.array(described.axis.xyz)
+    return axis
 
 
 def wheel_radius(description: RobotDescription, joint: str) -> float | None:
