@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.coded import raises
 
 from cartwheel import geometry as g
+from cartwheel.codes.command import OPTION_INVALID
 
 ANGLE = st.floats(-math.pi, math.pi)
 PITCH = st.floats(-1.5, 1.5)
@@ -25,6 +27,14 @@ def turn(axis, angle):
         "y": np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]),
         "z": np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
     }[axis]
+
+
+@pytest.mark.parametrize("wrong", [(1, 2), (1, 2, 3, 4), 5, None, (1, "x", 3), ((1,), 2, 3)])
+def test_a_pose_needs_three_numbers(wrong):
+    with raises(OPTION_INVALID, name="xyz"):
+        g.Pose.from_xyz_rpy(wrong)
+    with raises(OPTION_INVALID, name="rpy"):
+        g.Pose.from_xyz_rpy((1, 2, 3), wrong)
 
 
 @given(ANGLE, ANGLE, ANGLE)

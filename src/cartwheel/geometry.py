@@ -15,6 +15,9 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.errors import CartwheelError
+
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 """``(x, y, z, w)``."""
@@ -158,6 +161,24 @@ def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
     return quat_normalize((float(x), float(y), float(z), w))
 
 
+def _three(values: Sequence[float], name: str) -> Vec3:
+    """Three numbers of an argument.
+
+    Raises:
+        CartwheelError: There is another number of them, or one is not a number.
+    """
+    try:
+        x, y, z = values
+        return float(x), float(y), float(z)
+    except (TypeError, ValueError):
+        shown = f"{values!r:.60}"
+        raise CartwheelError(
+            f"{name} must be three numbers (got {shown})",
+            code=OPTION_INVALID,
+            values={"name": name, "value": shown},
+        ) from None
+
+
 @dataclass(frozen=True, slots=True)
 class Pose:
     """The pose of a frame in another frame: position in metres, orientation ``(x, y, z, w)``."""
@@ -167,9 +188,16 @@ class Pose:
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float] = (0, 0, 0)) -> Pose:
-        """A pose from the values of URDF's ``<origin xyz rpy>`` or SDF's ``<pose>``."""
-        x, y, z = (float(c) for c in xyz)
-        return cls((x, y, z), quat_from_rpy(*(float(a) for a in rpy)))
+        """A pose from the values of URDF's ``<origin xyz rpy>`` or SDF's ``<pose>``.
+
+        Args:
+            xyz: Position, m, shape (3,).
+            rpy: Fixed-axis roll, pitch and yaw, rad, shape (3,).
+
+        Raises:
+            CartwheelError: One of them is not three numbers.
+        """
+        return cls(_three(xyz, "xyz"), quat_from_rpy(*_three(rpy, "rpy")))
 
     @property
     def x(self) -> float:

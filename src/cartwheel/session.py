@@ -7,7 +7,7 @@ import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, CONTROLLERS_NOT_NAMED
 from cartwheel.component import Shared
@@ -23,7 +23,7 @@ from cartwheel.dialects.ros_control.suggestion import lacks_controllers, suggest
 from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
-from cartwheel.graph import Graph
+from cartwheel.graph import Graph, check_prefix
 from cartwheel.graph.topic import Subscription
 from cartwheel.messages import message_class, stamp
 from cartwheel.messages.library.library import TypeLibrary
@@ -49,6 +49,16 @@ class Spawned:
     """The controllers in these files that are started; empty for all."""
     package_path: tuple[Path, ...] = ()
     """Folders to search for packages first."""
+
+
+class Descriptions(Protocol):
+    """Publishes the descriptions of a session's robots; see `cartwheel.gazebo`."""
+
+    def update(self) -> None:
+        """Publishes new robots at once."""
+
+    def close(self) -> None:
+        """Stops publishing."""
 
 
 class Session:
@@ -143,6 +153,8 @@ class Session:
         )
         self._Clock: Any = message_class("rosgraph_msgs/msg/Clock")
         self._clock_task = self._schedule_clock(CLOCK_RATE)
+        self.descriptions: Descriptions | None = None
+        """What publishes the descriptions of the robots, while something needs them."""
         self._check(0)
 
     def spawn(
@@ -174,7 +186,9 @@ class Session:
 
         Raises:
             PluginError: The model has no controller manager.
+            GraphError: The prefix of the frames is invalid.
         """
+        check_prefix(frame_prefix)
         if self._packages.add(description.origin.file, package_path):
             self.types.forget_missing()
         with self.spawning():
@@ -334,6 +348,7 @@ class Session:
         self.shared.get(ControllerFiles).loaded.clear()
         self.graph.close()
         self._clock_task.forget()
+        self.descriptions = None
 
     def _check(self, start: int) -> None:
         if not self.strict:

@@ -10,7 +10,7 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.codes.command import OPTION_INVALID
-from cartwheel.codes.graph import FIELD_VALUE_INVALID, MESSAGE_TYPE_UNKNOWN
+from cartwheel.codes.graph import FIELD_VALUE_INVALID, GRAPH_NAME_INVALID, MESSAGE_TYPE_UNKNOWN
 from cartwheel.codes.world import (
     MODEL_NAME_INVALID,
     NUMBER_OUT_OF_RANGE,
@@ -205,6 +205,14 @@ def test_arguments_of_a_wrong_kind_are_named(make, rosbots):
         for call in calls:
             with raises(OPTION_INVALID, name=name):
                 call()
+    assert world.models == ("ground_plane",)
+
+
+@pytest.mark.parametrize("prefix", ["a b", " ", "left\n", "a/\tb"])
+def test_a_frame_prefix_without_a_valid_name(prefix, make, rosbots):
+    world = make.world()
+    with raises(GRAPH_NAME_INVALID, name=prefix):
+        world.spawn(rosbots, frame_prefix=prefix)
     assert world.models == ("ground_plane",)
 
 

@@ -1,6 +1,8 @@
 """Topics as objects: their messages, waiting, and publishing at a rate."""
 
 import math
+from collections import Counter
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from cartwheel.codes.graph import (
     TOPIC_UNKNOWN,
 )
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, WAIT_TIMED_OUT
+from cartwheel.description import load_robot
 from cartwheel.errors import GraphError, UnknownNameError
 
 CMD = "/part2_cmr/cmd_vel"
@@ -55,6 +58,47 @@ def test_it_keeps_as_many_as_asked() -> None:
         for bad in (0, -1, True, 1.5, "2"):
             with raises(NUMBER_OUT_OF_RANGE):
                 world.topic("/clock", keep=bad)  # type: ignore[arg-type]
+
+
+def test_descriptions_of_robots_need_no_connection(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro", name="first")
+        assert "/robot_description" not in world.topics
+        described = world.topic("/robot_description")
+        assert described.latest.data == load_robot("rosbots.xacro").text
+        world.spawn("rosbots.xacro", name="second", namespace="other", y=3)
+        assert world.topic("/other/robot_description").latest.data == described.latest.data
+        with raises(TOPIC_UNKNOWN):
+            world.topic("/third/robot_description")
+        box = world.mailbox("/robot_description")
+        received: list[str] = []
+        world.subscribe("/other/robot_description", lambda message: received.append(message.data))
+        # A recording contains each of them once, and they are still published after it.
+        path = tmp_path / "a.mcap"
+        with world.record(path, topics="*robot_description"):
+            world.run(0.3)
+        with cw.Recording(path) as recording:
+            assert Counter(each.topic for each in recording.messages()) == {
+                "/robot_description": 1,
+                "/other/robot_description": 1,
+            }
+        assert (described.count, len(box.drain()), len(received)) == (1, 1, 1)
+        assert [each.node for each in publishers(world, "/robot_description")] == ["first"]
+        cart.delete()
+        world.run(0.2)
+        assert not publishers(world, "/robot_description")
+
+
+def publishers(world: cw.World, topic: str) -> list[Any]:
+    return [each for each in world.graph.publishers() if each.topic == topic]
+
+
+def test_a_field_must_be_named_by_a_text() -> None:
+    with cw.World("empty") as world:
+        clock = world.topic("/clock")
+        world.run(0.1)
+        with raises(FIELD_UNKNOWN, field="5"):
+            clock.values(5)  # type: ignore[arg-type]
 
 
 def test_a_latched_message_is_there_at_once() -> None:

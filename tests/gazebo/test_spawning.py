@@ -197,7 +197,7 @@ def test_packages_are_found_on_the_path(make, gazebo, tmp_path):
             {"initial_pose": {"position": {"x": math.nan}}},
             "initial_pose.position.x must be a finite number (got nan)",
         ),
-        ({"initial_pose": {"orientation": {"x": 1e-300}}}, "not a rotation"),
+        ({"initial_pose": {"orientation": {"x": 1e-300, "w": 0.0}}}, "not a rotation"),
         ({"model_name": "ground_plane"}, 'model name "ground_plane" already exists'),
         ({"model_name": "a::b"}, 'must not be empty or contain "::"'),
     ],

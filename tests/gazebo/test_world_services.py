@@ -57,7 +57,7 @@ def test_models_and_lights_are_created_moved_and_removed(make):
     assert [(each.name, each.pose.z) for each in simulation.world.lights] == [("lamp", 2.0)]
 
     simulation.set_state("brick", Pose(), linear=(0.5, 0.0, 0.0))
-    turned = {"position": {"x": 7.0}, "orientation": {"z": 1.0}}
+    turned = {"position": {"x": 7.0}, "orientation": {"z": 1.0, "w": 0.0}}
     assert api("set_pose", entity={"name": "brick", "type": 2}, pose=turned).success
     assert simulation.pose("brick").yaw == pytest.approx(math.pi)
     simulation.advance(100_000_000)

@@ -12,9 +12,13 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 from tests.messages.cdr.test_cdr import grown
 
-from cartwheel.messages import encode_cdr, message_class, zero
+from cartwheel.errors import Origin
+from cartwheel.messages import encode_cdr, from_dict, message_class, zero
 from cartwheel.messages.classes import Classes
-from cartwheel.messages.store import loaded
+from cartwheel.messages.defaults import STATED
+from cartwheel.messages.library.parsing import parse_definition
+from cartwheel.messages.ros1 import decode_ros1, encode_ros1
+from cartwheel.messages.store import ROS2_DEFINITIONS, definitions, loaded
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
@@ -25,7 +29,7 @@ def test_the_functions_of_the_module_dataclasses() -> None:
     assert [field.name for field in dataclasses.fields(made)] == ["x", "y", "z"]
     assert dataclasses.replace(made, y=5.0) == type(made)(1.0, 5.0, 3.0)
     pose = zero("geometry_msgs/msg/Pose")
-    assert dataclasses.asdict(pose)["orientation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 0.0}
+    assert dataclasses.asdict(pose)["orientation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 
 
 def test_copies_and_pickles() -> None:
@@ -48,8 +52,41 @@ def test_constants_and_names_are_those_of_rosbags() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(loaded().types))
-def test_omitted_fields_are_zero_or_empty(name: str) -> None:
+def test_omitted_fields_have_the_same_defaults_in_classes_and_mappings(name: str) -> None:
     assert encode_cdr(message_class(name)()) == encode_cdr(zero(name))
+
+
+def test_omitted_fields_have_the_defaults_of_the_definition() -> None:
+    quaternion = message_class("geometry_msgs/msg/Quaternion")
+    assert (quaternion().w, quaternion(0.0, 0.0, 0.0, 0.0).w) == (1.0, 0.0)
+    for made in (message_class(ODOMETRY)(), zero(ODOMETRY), from_dict(ODOMETRY, {})):
+        turned = made.pose.pose.orientation
+        assert (turned.x, turned.y, turned.z, turned.w) == (0.0, 0.0, 0.0, 1.0)
+    given = from_dict("geometry_msgs/msg/Pose", {"orientation": {"z": 0.5, "w": 0.0}})
+    assert (given.orientation.z, given.orientation.w) == (0.5, 0.0)
+    assert from_dict("sensor_msgs/msg/NavSatFix", {}).status.status == -2
+    request = message_class("simulation_interfaces/srv/StepSimulation_Request")
+    assert request().steps == 1
+
+
+def test_the_defaults_are_those_of_our_definitions() -> None:
+    """Those of rosbags' definitions are not in this project; see `STATED`."""
+    stated = {}
+    for name, text in (*definitions(), *definitions(ROS2_DEFINITIONS)):
+        fields = parse_definition(name, text, Origin(file="test")).fields
+        given = {field.name: field.default for field in fields if field.default}
+        if given:
+            stated[name] = given
+    of_rosbags = get_typestore(Stores.ROS2_JAZZY).fielddefs
+    assert {name: STATED[name] for name in STATED if name not in of_rosbags} == {
+        name: stated[name] for name in stated if name not in of_rosbags
+    }
+    assert len(stated) >= 2
+
+
+def test_a_quaternion_of_ros1_stays_as_it_is() -> None:
+    made = message_class("geometry_msgs/msg/Quaternion")(0.0, 0.0, 0.0, 0.0)
+    assert decode_ros1(encode_ros1(made), "geometry_msgs/msg/Quaternion") == made
 
 
 def test_default_values_are_not_shared() -> None:

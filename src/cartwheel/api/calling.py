@@ -58,7 +58,7 @@ class CallingWorld(MessagingWorld):
 
         Args:
             service: Service name.
-            request: A request, or a mapping of its fields. By default, all fields are zero.
+            request: A request, or a mapping of its fields. Omitted fields have their defaults.
             timeout: Maximum wall time for a service that does slow work, such as reading a file, s.
             fields: The fields instead of `request`; see `publish`.
 
@@ -156,7 +156,7 @@ class CallingWorld(MessagingWorld):
 
         Args:
             action: Action name.
-            goal: A goal message, or a mapping of its fields. By default, all fields are zero.
+            goal: A goal message, or a mapping of its fields. Omitted fields have their defaults.
             fields: The fields instead of `goal`; see `publish`. A duration can be given in s.
 
         Returns:

@@ -70,6 +70,9 @@ class MessagingWorld(TimedWorld):
         A sensor without subscribers produces no data, so call the method before the run whose
         messages you need. Further calls with the same name return the same object.
 
+        ``/robot_description``, in the namespace of a robot, contains its expanded XML. It is
+        published from the first call on.
+
         Args:
             name: Topic name.
             type: Class or name of the message type. Required if the topic does not exist yet.
@@ -88,8 +91,9 @@ class MessagingWorld(TimedWorld):
         full = self._full_name(type)
         if keep is not None:
             check_size(keep)
+        self._describe(text(name, "name"))
         with self.used():
-            found = self._known_topics.get(text(name, "name"))
+            found = self._known_topics.get(name)
             if found is None:
                 found = Topic(self, name, full, keep)
                 self._known_topics[name] = self._known_topics[found.name] = found
@@ -103,6 +107,30 @@ class MessagingWorld(TimedWorld):
     def _full_name(self, kind: type[Message] | str | None) -> str | None:
         """The name of a type that a program gives; None if it gives none."""
         return None if kind is None else str(self.message_class(name_of(kind)).__msgtype__)
+
+    def _describe(self, topic: str) -> None:
+        """Publishes the descriptions of the robots from now on, if a topic is that of one."""
+        if not topic.endswith("robot_description"):
+            return
+        from cartwheel.gazebo.robot_descriptions import hold_descriptions
+
+        session = self.session
+
+        def describe() -> None:
+            if not self._describes:
+                hold_descriptions(session)
+                self._describes = True
+            elif session.descriptions is not None:
+                session.descriptions.update()
+
+        if self._run_by_another():
+            session.simulation.post(describe)
+        else:
+            with self.used():
+                describe()
+
+    _describes = False
+    """Whether the world itself publishes the descriptions of its robots."""
 
     @functools.cached_property
     def _known_topics(self) -> dict[str, Topic]:
@@ -162,7 +190,9 @@ class MessagingWorld(TimedWorld):
             except BaseException as error:  # noqa: BLE001 - raised by `run`
                 simulation.faults.defer(error)
 
-        return self.graph.subscribe(topic, guarded, type_name=self._full_name(type))
+        full = self._full_name(type)
+        self._describe(topic)
+        return self.graph.subscribe(topic, guarded, type_name=full)
 
     @overload
     def advertise(self, topic: str, type: type[M]) -> Publisher[M]: ...
@@ -228,9 +258,8 @@ class MessagingWorld(TimedWorld):
         self.check_open()
         check_size(size)
         full = self._full_name(type)
-        return self.graph.mailbox(
-            text(topic, "topic"), size=size, type_name=full, can_come=self._run_by_another
-        )
+        self._describe(text(topic, "topic"))
+        return self.graph.mailbox(topic, size=size, type_name=full, can_come=self._run_by_another)
 
     def _run_by_another(self) -> bool:
         """Whether a different thread ran the world last and is still alive."""
@@ -262,7 +291,7 @@ class MessagingWorld(TimedWorld):
                 when the block ends.
         """
         from cartwheel.bridges.recording import Recorder
-        from cartwheel.gazebo.robot_descriptions import RobotDescriptions
+        from cartwheel.gazebo.robot_descriptions import hold_descriptions, release_descriptions
 
         if not isinstance(file, str | Path):
             raise refused("file", "a path", file)
@@ -277,11 +306,11 @@ class MessagingWorld(TimedWorld):
             notes=self.session.notes,
             report=simulation.report,
         )
-        robots = None
+        described = False
         try:
             with self.lock:
-                if self._connections is None or not self._connections.assembly.describes_robots:
-                    robots = RobotDescriptions(simulation, self.graph)
+                hold_descriptions(self.session)
+                described = True
                 recorder.start()
                 simulation.drain()
             try:
@@ -291,5 +320,5 @@ class MessagingWorld(TimedWorld):
         finally:
             with self.lock:
                 simulation.drain()
-                if robots is not None:
-                    robots.close()
+                if described:
+                    release_descriptions(self.session)

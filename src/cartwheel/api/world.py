@@ -214,7 +214,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             WorldError: The name is in use, or the model cannot be built.
             PluginError: A plugin cannot be used, the model has no controller manager, or a
                 controller file is invalid.
-            GraphError: The namespace is invalid.
+            GraphError: The namespace or the frame prefix is invalid.
             CartwheelError: The pose is given twice, is not finite, or is too far away.
         """
         source(robot, "robot")

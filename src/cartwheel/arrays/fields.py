@@ -32,7 +32,7 @@ def values(messages: Iterable[Any], field: str) -> Array:
 
     Raises:
         GraphError: The type does not have the field, or the field is not a number or an array of
-            numbers.
+            numbers, or the name of the field is not a text.
     """
     steps = _steps(field)
     found = [_value(message, field, steps) for message in messages]
@@ -73,6 +73,8 @@ def reader(field: str) -> Callable[[Any], float | Array]:
 
 
 def _steps(field: str) -> list[str | int]:
+    if not isinstance(field, str):
+        raise _unknown(f"a field must be named by a text (got {field!r:.60})", f"{field!r:.60}")
     steps: list[str | int] = []
     for part in field.split("."):
         match = _PART.fullmatch(part)

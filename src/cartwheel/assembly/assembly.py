@@ -319,11 +319,6 @@ class Assembly:
             recording.update()
         self._updated = graph.changed
 
-    @property
-    def describes_robots(self) -> bool:
-        """Whether the descriptions of robots are published."""
-        return self._descriptions is not None
-
     def raise_failure(self) -> None:
         """Raises the error of a part that has ended the run.
 
@@ -373,9 +368,9 @@ class Assembly:
 
     def _publish_descriptions(self) -> RobotDescriptions:
         if self._descriptions is None:
-            from cartwheel.gazebo.robot_descriptions import RobotDescriptions
+            from cartwheel.gazebo.robot_descriptions import hold_descriptions
 
-            self._descriptions = RobotDescriptions(self.session.simulation, self.session.graph)
+            self._descriptions = hold_descriptions(self.session)
         return self._descriptions
 
     def _publish_states(self) -> RobotStates:

@@ -27,7 +27,8 @@ def list_services(
 def call(
     service: Annotated[str, help.argument("SERVICE", "Name of the service.")],
     request: Annotated[
-        list[str] | None, help.argument("[YAML]...", "Request. Default: all fields zero or empty.")
+        list[str] | None,
+        help.argument("[YAML]...", "Request. Default: the fields' default values."),
     ] = None,
     sim: Sim = None,
 ) -> None:

@@ -87,7 +87,8 @@ def pub(
         ),
     ],
     message: Annotated[
-        list[str] | None, help.argument("[YAML]...", "Message. Default: all fields zero or empty.")
+        list[str] | None,
+        help.argument("[YAML]...", "Message. Default: the fields' default values."),
     ] = None,
     rate: Annotated[
         float | None, help.option("-r --rate HZ", "Publish repeatedly at this rate in wall time.")

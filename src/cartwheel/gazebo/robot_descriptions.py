@@ -7,10 +7,13 @@ import re
 from cartwheel.description.model import RobotDescription
 from cartwheel.graph import Graph, Publisher
 from cartwheel.messages import message_class
+from cartwheel.session import Session
 from cartwheel.simulation import Simulation
 
 STRING = "std_msgs/msg/String"
-TOPIC = "/robot_description"
+NAME = "robot_description"
+"""Last part of the names of all topics with descriptions."""
+TOPIC = f"/{NAME}"
 """Topic of a robot without a namespace."""
 _RATE = 10.0
 """Hz of simulated time at which new models are detected."""
@@ -20,9 +23,9 @@ class RobotDescriptions:
     """Publishes the expanded XML of each robot on a latched topic.
 
     The topic is ``robot_description`` in the robot's namespace, as ROS tools expect. Additional
-    robots in the same namespace use ``/<model>/robot_description``. Create one instance per
-    simulation: two instances would publish each description twice. Call all methods on the thread
-    that owns the simulation.
+    robots in the same namespace use ``/<model>/robot_description``. `hold_descriptions` provides
+    the instance of a session: two instances would publish each description twice. Call all methods
+    on the thread that owns the simulation.
 
     Args:
         simulation: The simulation that contains the models.
@@ -34,6 +37,8 @@ class RobotDescriptions:
         self._graph = graph
         self._published: dict[str, tuple[RobotDescription, Publisher]] = {}
         self._version = -1
+        self.holders = 0
+        """Number of calls of `hold_descriptions` without `release_descriptions`."""
         self.update()
         self._task = simulation.schedule(_RATE, before=self.update)
 
@@ -75,6 +80,29 @@ class RobotDescriptions:
         publisher = self._graph.advertise(topic, STRING, node=name, qos="latched")
         publisher.publish(message_class(STRING)(data=description.text))
         return publisher
+
+
+def hold_descriptions(session: Session) -> RobotDescriptions:
+    """Publishes the descriptions of a session's robots until they are released.
+
+    Call it on the thread that owns the simulation.
+    """
+    held = session.descriptions
+    if not isinstance(held, RobotDescriptions):
+        session.descriptions = held = RobotDescriptions(session.simulation, session.graph)
+    held.holders += 1
+    held.update()
+    return held
+
+
+def release_descriptions(session: Session) -> None:
+    """Ends one call of `hold_descriptions`. After the last one, nothing is published any more."""
+    held = session.descriptions
+    if isinstance(held, RobotDescriptions):
+        held.holders -= 1
+        if not held.holders:
+            session.descriptions = None
+            held.close()
 
 
 def is_robot(description: RobotDescription) -> bool:

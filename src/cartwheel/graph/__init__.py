@@ -5,7 +5,7 @@ from cartwheel.graph.actionlib import ActionTopics
 from cartwheel.graph.graph import Graph
 from cartwheel.graph.joint_inputs import JointInput, JointInputs
 from cartwheel.graph.mailbox import Mailbox
-from cartwheel.graph.names import resolve_frame, resolve_name
+from cartwheel.graph.names import check_prefix, resolve_frame, resolve_name
 from cartwheel.graph.parameters import Parameters, ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
 from cartwheel.graph.renaming import TopicRenaming
@@ -47,6 +47,7 @@ __all__ = [
     "TopicInfo",
     "TopicRenaming",
     "check_message",
+    "check_prefix",
     "choices",
     "resolve_frame",
     "resolve_name",

@@ -37,3 +37,18 @@ def resolve_frame(frame: str, prefix: str = "") -> str:
         return frame.lstrip("/")
     prefix = prefix.strip("/")
     return f"{prefix}/{frame}" if prefix and frame else frame
+
+
+def check_prefix(prefix: str) -> None:
+    """Refuses a prefix of frames that contains spaces or control characters.
+
+    Raises:
+        GraphError: See above.
+    """
+    if not prefix.isprintable() or any(map(str.isspace, prefix)):
+        raise GraphError(
+            f'"{prefix}" is not a valid prefix of frames',
+            code=GRAPH_NAME_INVALID,
+            hint="Use letters, digits, _ and /, without spaces.",
+            values={"name": prefix},
+        )

@@ -14,6 +14,7 @@ from typing import Any
 
 import msgspec
 
+from cartwheel.messages.defaults import STATED
 from cartwheel.messages.field import Field, empty, field_of
 
 FILLER = "structure_needs_at_least_one_member"
@@ -36,7 +37,7 @@ class Classes(dict[str, Any]):
         self._definitions = definitions
         self._module = module
         self._converted: dict[str, Any] = {}
-        self._stated: dict[str, Mapping[str, Any]] = {}
+        self._stated: dict[str, Mapping[str, Any]] = dict(STATED)
 
     def __getitem__(self, name: str) -> Any:
         made = self._converted.get(name)
@@ -75,7 +76,7 @@ def _convert(
 ) -> Any:
     """Creates the class of a type from a dataclass of rosbags, with its constants.
 
-    Fields that are omitted when a message is created have their default values, as in ROS.
+    Fields that are omitted when a message is created have their default values, as in ROS 2.
 
     Types with fields that are named after Python keywords keep their dataclass, whose constructor
     accepts these names and requires all fields.

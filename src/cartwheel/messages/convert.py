@@ -37,7 +37,10 @@ def to_dict(message: Any) -> dict[str, Any]:
 
 
 def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any:
-    """Creates a message from YAML or JSON values. Omitted fields are zero or empty.
+    """Creates a message from YAML or JSON values.
+
+    Omitted fields have their default values: those that the definition states in ROS 2, such as 1
+    for the w of a quaternion; otherwise zero or empty.
 
     ROS 1 field names (``secs``, ``seq``, ``K``) are accepted. A list contains the fields of a
     message in order, as in ``rostopic pub``. A number stands for a time or duration in s.
@@ -101,7 +104,7 @@ def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str,
 
 
 def zero(type_name: str) -> Any:
-    """Creates a message with all numbers zero, and strings and arrays empty.
+    """Creates a message whose fields have their default values; see `from_dict`.
 
     Raises:
         UnknownNameError: The type does not exist.
@@ -110,7 +113,7 @@ def zero(type_name: str) -> Any:
 
 
 def recast(message: Any, type_name: str) -> Any:
-    """Converts a message to a different type. Fields that only that type has are zero or empty.
+    """Converts a message to a different type. Fields that only that type has have their defaults.
 
     Nested values are not converted. Use it for types that differ in their package or in
     missing fields.

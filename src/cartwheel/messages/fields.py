@@ -6,6 +6,7 @@ import functools
 from dataclasses import replace
 
 from cartwheel.messages.classes import FILLER
+from cartwheel.messages.defaults import STATED
 from cartwheel.messages.field import Field, field_of
 from cartwheel.messages.learnt import learnt
 from cartwheel.messages.store import loaded, message_class
@@ -20,8 +21,9 @@ def fields(name: str) -> tuple[Field, ...]:
     """
     full = message_class(name).__msgtype__
     definition = learnt(full)
-    stated = () if definition is None else definition.fields
-    defaults = {field.name: field.default for field in stated}
+    defaults = STATED.get(full, {})
+    if definition is not None:
+        defaults = {field.name: field.default for field in definition.fields}
     return tuple(
         replace(field_of(field, description), default=defaults.get(field))
         for field, description in loaded().fielddefs[full][1]

@@ -16,7 +16,7 @@ Maker = Callable[[Sequence[float]], Any]
 def maker(type_name: str, names: Sequence[str]) -> Maker:
     """Returns a function that creates messages, as `from_dict` does, but faster.
 
-    All other fields are zero or empty. They are the same objects in all messages.
+    All other fields have their default values. They are the same objects in all messages.
 
     Args:
         type_name: ``pkg/msg/Name``.

@@ -11,7 +11,7 @@ from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.writing import open_writer
-from cartwheel.gazebo.robot_descriptions import RobotDescriptions
+from cartwheel.gazebo.robot_descriptions import hold_descriptions, release_descriptions
 from cartwheel.graph import TopicInfo
 from cartwheel.graph.topic import Subscription
 
@@ -114,12 +114,12 @@ class Recent:
             RecordingError: The file cannot be written.
         """
         # Without these topics, a recording cannot be played.
-        robots = RobotDescriptions(self._simulation, self._graph)
+        hold_descriptions(self._world.session)
         try:
             self._survey()
             self._simulation.drain()
         finally:
-            robots.close()
+            release_descriptions(self._world.session)
         items = sorted(self._items, key=lambda item: item[0])
         start = items[0][0] if items else self._simulation.time_ns
         first = [(start, *item[1:]) for item in self._latched.values()]

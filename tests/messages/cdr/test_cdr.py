@@ -101,7 +101,7 @@ def test_numbers_lie_at_multiples_of_their_size() -> None:
         + struct.pack("<II", 3, 4)
         + struct.pack("<I", 3) + b"ab\0"
         + b"\0" + struct.pack("<I", 2) + b"c\0"
-        + b"\0\0" + struct.pack("<7d", 1.5, 0, 0, 0, 0, 0, 0)
+        + b"\0\0" + struct.pack("<7d", 1.5, 0, 0, 0, 0, 0, 1)
     )  # fmt: skip
 
 
