@@ -153,16 +153,8 @@ def new_page(browser):
     return page
 
 
-def open_page(browser, arena, *, lit=False):
-    """A page that shows the scene, by default with simple lights.
-
-    Without a GPU, shadows double the time of each image. To prepare the light of the surroundings
-    takes as long as 70 images, for each page.
-    """
-    scene = arena.viewer._page.server.scene
-    if not lit:
-        scene.configure_default_lights(enabled=True, cast_shadow=False)
-        scene.configure_environment_map(None)
+def open_page(browser, arena):
+    """A page that shows the scene."""
     page = new_page(browser)
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(error.stack))
@@ -178,8 +170,8 @@ def open_page(browser, arena, *, lit=False):
 
 
 @pytest.fixture(scope="module")
-def shared_page(browser, arena, request):
-    page = open_page(browser, arena, lit=getattr(request.module, "LIT", False))
+def shared_page(browser, arena):
+    page = open_page(browser, arena)
     yield page
     page.close()
     assert page.faults == []

@@ -18,8 +18,6 @@ from tests.viewer.conftest import (
 from cartwheel.geometry import Pose
 
 RED, BLUE = 0, 2
-LIT = True
-"""With the lights that users have."""
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -82,7 +80,7 @@ def test_links_follow_the_simulation(page, arena):
 
 
 def test_two_browsers_see_the_same(browser, arena, page):
-    second = open_page(browser, arena, lit=True)
+    second = open_page(browser, arena)
     close_notes(page)
     close_notes(second)
     hide_frustum(second)
