@@ -16,7 +16,7 @@ PACKAGES = (
 )
 PARTS = 4
 """Tests of a package, each of a part of its robots."""
-SLOW, SHORT = {"large_model.urdf.xacro", "turtlebot3_waffle.urdf.xacro"}, (0.35, 0.1)
+SHORT = {"large_model.urdf.xacro": (0.1, 0.05), "turtlebot3_waffle.urdf.xacro": (0.35, 0.1)}
 """Robots with many links or large images, and the times for which they are simulated, s."""
 
 pytestmark = pytest.mark.skipif(not PACKAGES, reason=f"no robots of others in {CORPUS}")
@@ -36,7 +36,7 @@ def test_each_robot_of_a_package_continues(package, part, robots, elsewhere):
     left_out, simulated = {}, 0
     for file in of_package[part::PARTS]:
         try:
-            left_out[file] = compare(file, elsewhere, SHORT if file.name in SLOW else (1.0, 0.5))
+            left_out[file] = compare(file, elsewhere, SHORT.get(file.name, (1.0, 0.5)))
             simulated += 1
         except cw.CartwheelError as error:
             error.add_note(f"in {file}")
