@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[2]
 ROBOTS = ROOT / "robots" / "rosbots_description"
 # Without it, Ray uses another interface for a cluster whose computers are all this one.
 LOOPBACK = {**os.environ, "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0", "RAY_USAGE_STATS_ENABLED": "0"}
-PATIENCE = 120
+PATIENCE = 480
 
 
 def start(module, *words, **options):
@@ -81,10 +81,11 @@ def test_the_table_is_the_same_on_a_cluster(cluster, built, gyro, tmp_path):
         "folder": str(robot), "topic": "/rosbots/camera1/image_raw",
     }]}  # fmt: skip
     bad = [{"n": 2, "log": log, "how": how, "seed": 7} for how in ("raise", "exit")]
+    slow = {**bad[0], "how": "sleep", "log": log + ".slow"}
     sweeps = [
         {"function": "drive", "cases": cases},
         {"function": "counted", "cases": bad, "results": str(tmp_path / "bad.jsonl")},
-        {"function": "counted", "cases": [{**bad[0], "how": "sleep"}], "timeout": 0.5},
+        {"function": "counted", "cases": [slow], "timeout": 0.5},
         images,
     ]
     address, _ = cluster
@@ -95,7 +96,10 @@ def test_the_table_is_the_same_on_a_cluster(cluster, built, gyro, tmp_path):
     assert "no luck" in failed["error"][0] and "3 times" in failed["error"][1]
     assert "0.5 s" in late["error"][0]
     # An error of the function is its result; a process that ends may have been ended.
-    assert len(Path(log).read_text().split()) == 1 + 3 + 1
+    assert len(Path(log).read_text().split()) == 1 + 3
+    # On a busy computer, its time may pass before it starts. It is not repeated.
+    calls = Path(slow["log"])
+    assert not calls.exists() or len(calls.read_text().split()) == 1
     rows = [json.loads(line) for line in (tmp_path / "bad.jsonl").read_text().splitlines()[1:]]
     assert sorted(row["case"]["how"] for row in rows) == ["exit", "raise"]
     assert not robot.exists() and seen["error"] == [""] and seen["result"][0] > 10
