@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import cartwheel as cw
+from cartwheel.codes.command import COMMAND_EXTRA
 from cartwheel.messages import from_dict
 from cartwheel.scenarios import Options, Runner, cases_of, digests, load_scenario
 from cartwheel.scenarios.lockstep import Lockstep
@@ -97,6 +98,19 @@ def test_time_continues_after_a_late_command():
         assert lockstep.late >= 3 and list(lockstep.missing) == [DRIVE]
         lockstep.close()
         stack.join()
+
+
+def test_two_commands_in_a_period_are_reported_once():
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        twist = from_dict(TWIST, {"linear": {"x": 0.5}})
+        world.subscribe("/odom", lambda _: world.graph.publish(DRIVE, TWIST, twist))
+        lockstep = Lockstep(world, [DRIVE], period=0.1, wall_timeout=30.0)
+        lockstep.start()
+        lockstep.advance(1.0)
+        lockstep.close()
+        (told,) = (each for each in world.diagnostics if each.code is COMMAND_EXTRA)
+        assert told.values["topic"] == DRIVE and told.values["count"] == 10
 
 
 @pytest.mark.parametrize(

@@ -119,6 +119,12 @@ COMMAND_LATE = Code(
     "warning",
     "a stack under test in lockstep sent a command too late",
 )
+COMMAND_EXTRA = Code(
+    "CW044",
+    "command-extra",
+    "warning",
+    "a stack under test in lockstep sent several commands in a period",
+)
 NO_TEST_ROBOT = Code(
     "CW042", "no-test-robot", "error", "a test uses the fixture robot, but names no robot"
 )

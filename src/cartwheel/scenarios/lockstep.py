@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from cartwheel.codes.command import COMMAND_LATE
+from cartwheel.codes.command import COMMAND_EXTRA, COMMAND_LATE
 from cartwheel.graph.holding import hold_back, let_pass
 
 if TYPE_CHECKING:
@@ -26,7 +26,9 @@ _RETRY = 1.0
 """Wall time after which time advances by a period before the first commands, s. Until a stack
 under test has connected all its topics, it may have missed a message."""
 _QUIET = 2.0
-"""Wall time without a command after which all commands of the start have arrived, s."""
+"""Wall time without a command after which all commands of the start have arrived, s.
+
+A stack that needed longer for its first command has as much time for each further one."""
 _MOST = 100
 """Maximum number of commands that are kept back for a topic."""
 _TIME_ERROR = 1e-9
@@ -63,6 +65,8 @@ class Lockstep:
         self._deliver: dict[str, Callable[[Any], None]] = {}
         self._due = world.time
         self._begun = False
+        self._told: set[str] = set()
+        """Topics with several messages in a period."""
         self.late = 0
         """Number of periods in which a message was missing."""
         self.extra = 0
@@ -93,19 +97,21 @@ class Lockstep:
         received a message that was published before it subscribed. So time advances by one period
         for each second in which no command arrives. A slow stack may then send several commands.
         """
-        end = time.monotonic() + self._start_timeout
+        begin = time.monotonic()
+        end = begin + self._start_timeout
         periods = 0
         while not self._complete() and (left := end - time.monotonic()) > 0:
             if not self._wait(min(_RETRY, left)):
                 periods += 1
                 self._world.run(self._period)
         if periods and self._complete():
-            self._settle(periods + 1)
+            took = min(time.monotonic() - begin, self._wall_timeout)
+            self._settle(periods + 1, max(_QUIET, took))
+        self._release()
         self._begun = True
         self._due = self._world.time
-        self._release()
 
-    def _settle(self, most: int) -> None:
+    def _settle(self, most: int, quiet: float) -> None:
         """Waits for further commands of the start.
 
         Otherwise, a command that answers an earlier period would be taken for that of the next one,
@@ -113,17 +119,18 @@ class Lockstep:
 
         Args:
             most: Maximum number of commands for each topic.
+            quiet: Wall time to wait for each further command, s.
         """
         most = min(most, _MOST)
         counts = self._counts()
-        end = time.monotonic() + _QUIET
+        end = time.monotonic() + quiet
         while min(counts) < most and (left := end - time.monotonic()) > 0:
             self._check()
             with self._world.used() as simulation:
                 simulation.wait(min(left, 0.5))
             before, counts = counts, self._counts()
             if counts != before:
-                end = time.monotonic() + _QUIET
+                end = time.monotonic() + quiet
 
     def _counts(self) -> list[int]:
         with self._lock:
@@ -164,10 +171,14 @@ class Lockstep:
         for topic, box in self._boxes.items():
             with self._lock:
                 message = box.pop() if box else None
-                self.extra += len(box)
+                replaced = len(box)
                 box.clear()
+            self.extra += replaced
             if message is not None:
                 self._deliver[topic](message)
+            if replaced and self._begun and topic not in self._told:
+                self._told.add(topic)
+                self._note_extra(topic, replaced + 1)
 
     def _note_late(self) -> None:
         self.late += 1
@@ -181,5 +192,16 @@ class Lockstep:
                 f"no message arrived on {', '.join(missing)} within {self._wall_timeout:g} s of "
                 f"wall time, so simulation time continued at {now:.3f} s without it",
                 values={"topics": tuple(missing), "time": now},
+            )
+        )
+
+    def _note_extra(self, topic: str, count: int) -> None:
+        now = self._world.time
+        self._simulation.report(
+            COMMAND_EXTRA.diagnostic(
+                f"{count} messages arrived on {topic} in the period that ended at {now:.3f} s; "
+                "the newest one has taken effect",
+                hint="Set `period` to the time between two messages.",
+                values={"topic": topic, "count": count, "time": now},
             )
         )
