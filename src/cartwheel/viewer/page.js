@@ -94,25 +94,25 @@
     const panel = document.querySelector(".cw");
     const frozen = panel?.closest('[style*="pointer-events: none"][style*="opacity: 0.5"]');
     const lost = Boolean(frozen) || silent > longest;
-    if (root.classList.contains("cw-offline") && !lost) lighten();
+    if (root.classList.contains("cw-offline") && !lost) shadow();
     root.classList.toggle("cw-offline", lost);
     // Notes stand below it.
     root.style.setProperty("--cw-notice", `${notice.getBoundingClientRect().bottom}px`);
   };
   setInterval(watch, 500);
 
-  // Shadows double the time of a picture where no GPU draws it.
+  // Only a GPU draws shadows: without one, they double the time of each picture.
   const drawing = document.createElement("canvas").getContext("webgl2");
   const info = drawing && drawing.getExtension("WEBGL_debug_renderer_info");
   const renderer = info ? drawing.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
   if (drawing) drawing.getExtension("WEBGL_lose_context")?.loseContext();
-  const lighten = () => {
-    if (!/swiftshader|llvmpipe|softpipe|software/i.test(renderer)) return;
+  const shadow = () => {
+    if (/swiftshader|llvmpipe|softpipe|software/i.test(renderer)) return;
     const wait = setInterval(() => {
       if (!document.querySelector("canvas[data-engine]")) return;
       clearInterval(wait);
-      setTimeout(() => press("__LIGHTLY__"), 1500);
+      setTimeout(() => press("__SHADOWS__"), 1500);
     }, 100);
   };
-  lighten();
+  shadow();
 })();

@@ -27,9 +27,8 @@ _FOLDER = Path(__file__).parent
 _KEEP_SECONDS = 8.0
 _BEAT = 1.0
 """Interval of heartbeats, s; `page.js` disconnects after ten missing ones."""
-_LIGHTLY: Any = "f9"
-"""Key for the command that a browser without a GPU sends itself; viser's types do not include F9.
-"""
+_SHADOWS: Any = "f9"
+"""Key for the command that a browser with a GPU sends itself; viser's types do not include F9."""
 
 T = TypeVar("T")
 
@@ -94,13 +93,14 @@ class Page:
         )
         self.gui.set_panel_label(title)
         viser_internals.run_in_new_browsers(self.gui, _script(title, keys))
-        self._lightly: set[int] = set()
-        lightly = self.gui.add_command(
-            "Toggle shadows",
+        show = self.gui.add_command(
+            "Show shadows",
             description="Without a GPU, shadows double the rendering time",
-            hotkey=_LIGHTLY,
+            hotkey=_SHADOWS,
         )
-        lightly.on_trigger(self.on(self._draw_lightly))
+        show.on_trigger(self.on(lambda event: self._show_shadows(event.client, shown=True)))
+        hide = self.gui.add_command("Hide shadows")
+        hide.on_trigger(self.on(lambda event: self._show_shadows(event.client, shown=False)))
         self._beats = 0
         self._beat_due = Every(1 / _BEAT)
         self._pulses: dict[int, Any] = {}
@@ -283,7 +283,6 @@ class Page:
 
     def _disconnected(self, client: Any) -> None:
         self.clients -= {client.client_id}
-        self._lightly.discard(client.client_id)
         self._pulses.pop(client.client_id, None)
         self._toggles.pop(client.client_id, None)
         try:
@@ -291,11 +290,9 @@ class Page:
         finally:
             viser_internals.remove_controls(client)
 
-    def _draw_lightly(self, event: Any) -> None:
-        """Only for the requesting browser: others may have a GPU."""
-        self._lightly ^= {event.client_id}
-        lightly = event.client_id in self._lightly
-        event.client.scene.configure_default_lights(enabled=True, cast_shadow=not lightly)
+    def _show_shadows(self, client: Any, *, shown: bool) -> None:
+        """Only for the requesting browser: others may have no GPU."""
+        client.scene.configure_default_lights(enabled=True, cast_shadow=shown)
 
     def close(self) -> None:
         """Stops the web server."""
@@ -318,7 +315,7 @@ def _script(title: str, keys: tuple[str, ...]) -> str:
     script = (_FOLDER / "page.js").read_text()
     script = script.replace('"__TITLE__"', json.dumps(title))
     script = script.replace('"__STYLE__"', json.dumps(style))
-    script = script.replace('"__LIGHTLY__"', json.dumps(_LIGHTLY))
+    script = script.replace('"__SHADOWS__"', json.dumps(_SHADOWS))
     return script.replace("__KEYS__", json.dumps([*keys, " "] if keys else [" "]))
 
 

@@ -91,7 +91,7 @@ def pose_in(snapshot: Snapshot, name: str) -> Pose:
 def set_stage(page: Page) -> None:
     """Light from above and behind, soft light from all sides, to make shapes easy to see."""
     page.scene.world_axes.visible = False
-    page.scene.configure_default_lights(enabled=True, cast_shadow=True)
+    page.scene.configure_default_lights(enabled=True, cast_shadow=False)
     # Without a GPU, to prepare an environment map takes as long as 70 images.
     page.scene.configure_environment_map(None)
     page.scene.add_light_hemisphere(

@@ -15,6 +15,7 @@ from tests.viewer.conftest import TWIST, eventually, new_page
 
 import cartwheel as cw
 from cartwheel.messages import from_dict
+from cartwheel.viewer.page import Page
 from cartwheel.viewer.panels.camera import CameraPanel
 from cartwheel.viewer.panels.topics import TopicsPanel
 from cartwheel.viewer.panels.world import WorldPanel
@@ -189,3 +190,39 @@ def test_a_program_waits_for_a_browser(browser):
             assert world.wait_for_browser(timeout=60)
         finally:
             page.close()
+
+
+RENDERER = """
+const ask = WebGL2RenderingContext.prototype.getParameter;
+WebGL2RenderingContext.prototype.getParameter = function (what) {
+  return what === 0x9246 ? "NVIDIA" : ask.call(this, what);
+};
+"""
+"""Claims a GPU: UNMASKED_RENDERER_WEBGL."""
+
+
+def test_only_a_browser_with_a_gpu_draws_shadows(browser, arena, monkeypatch):
+    shown = []
+    real = Page._show_shadows
+
+    def note(page, client, **choice):
+        shown.append((client.client_id, choice["shown"]))
+        real(page, client, **choice)
+
+    monkeypatch.setattr(Page, "_show_shadows", note)
+    numbers = []
+    for script in ("", RENDERER):
+        page = new_page(browser)
+        page.add_init_script(script)
+        before = set(arena.viewer._desk._places)
+        page.goto(arena.url)
+        (number,) = eventually(lambda b=before: set(arena.viewer._desk._places) - b, what="it")
+        page.locator("canvas[data-engine]").wait_for()
+        numbers.append(number)
+        if script:
+            eventually(lambda: shown, what="the shadows")
+        else:
+            # Longer than a browser with a GPU waits.
+            page.wait_for_timeout(2500)
+        page.close()
+    assert shown == [(numbers[1], True)]
