@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,7 +26,7 @@ from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, check_prefix
 from cartwheel.graph.topic import Subscription
-from cartwheel.messages import message_class, stamp
+from cartwheel.messages import Form, zero
 from cartwheel.messages.library.library import TypeLibrary
 from cartwheel.messages.store import finding_with
 from cartwheel.options import STRICT
@@ -151,7 +152,7 @@ class Session:
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE
         )
-        self._Clock: Any = message_class("rosgraph_msgs/msg/Clock")
+        self._clock_form = Form(functools.partial(zero, "rosgraph_msgs/msg/Clock"), "clock")
         self._clock_task = self._schedule_clock(CLOCK_RATE)
         self.descriptions: Descriptions | None = None
         """What publishes the descriptions of the robots, while something needs them."""
@@ -369,7 +370,7 @@ class Session:
         return self.simulation.schedule(rate, after=self._publish_clock, topics=[self._clock])
 
     def _publish_clock(self) -> None:
-        self._clock.publish(self._Clock(stamp(self.simulation.engine.time_ns)))
+        self._clock.publish_values(self._clock_form, (self.simulation.engine.time_ns,))
 
 
 def _no_controllers(robot: RobotDescription, found: Sequence[Path]) -> Diagnostic:

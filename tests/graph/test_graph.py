@@ -16,8 +16,10 @@ from cartwheel.codes.graph import (
 from cartwheel.errors import UnknownNameError
 from cartwheel.graph import Graph, Mailbox, resolve_name
 from cartwheel.graph.holding import hold_back, let_pass
+from cartwheel.messages import Form, zero
 
 TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
+POINT = "geometry_msgs/msg/Point"
 
 
 @pytest.mark.parametrize(
@@ -294,3 +296,58 @@ def test_messages_of_a_topic_can_be_held_back():
 def test_messages_of_an_unknown_topic_cannot_be_held_back():
     with raises(TOPIC_UNKNOWN):
         hold_back(Graph(), "/a", print)
+
+
+def values_of(graph, name, **options):
+    """The subscription to a topic with a function for values, and what both functions receive."""
+    got = []
+    made = graph.subscribe(
+        name, got.append, take_values=lambda *given: got.append(given), **options
+    )
+    return made, got
+
+
+def test_values_become_a_message_only_if_a_subscriber_needs_it():
+    graph = Graph()
+    publisher = graph.advertise("/a", POINT)
+    form = Form(zero(POINT), "x")
+    publisher.publish_values(form, (1.0,))
+    (first, got), (second, others) = values_of(graph, "/a"), values_of(graph, "/a")
+    publisher.publish_values(form, (2.0,))
+    assert got == others == [(form, (2.0,))]
+    messages = []
+    reader = graph.subscribe("/a", messages.append)
+    publisher.publish_values(form, (3.0,))
+    assert [message.x for message in (*got[1:], *others[1:], *messages)] == [3.0, 3.0, 3.0]
+    assert got[1] is others[1]
+    reader.close()
+    second.close()
+    publisher.publish_values(form, (4.0,))
+    assert got[2] == (form, (4.0,))
+    first.close()
+    publisher.publish_values(form, (5.0,))
+    assert (len(got), len(others), publisher.sent) == (3, 2, 5)
+
+
+def test_a_latched_topic_keeps_the_message_of_values():
+    graph = Graph()
+    publisher = graph.advertise("/a", POINT, qos="latched")
+    _, got = values_of(graph, "/a")
+    publisher.publish_values(Form(zero(POINT), "x"), (2.0,))
+    assert [message.x for message in got] == [2.0]
+    assert graph.latched("/a") is got[0]
+
+
+def test_an_error_about_values_is_that_of_its_subscription():
+    graph, failed = Graph(), []
+    publisher = graph.advertise("/a", POINT)
+
+    def refuse(*_):
+        raise RuntimeError("no")
+
+    wrong = graph.subscribe("/a", print, take_values=refuse)
+    _, got = values_of(graph, "/a")
+    wrong.on_error = lambda subscription, error: failed.append((subscription, str(error)))
+    publisher.publish_values(Form(zero(POINT), "x"), (1.0,))
+    assert failed == [(wrong, "no")]
+    assert len(got) == 1

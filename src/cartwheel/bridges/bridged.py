@@ -6,7 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any, Protocol
 
-from cartwheel.graph import ActionListener, Goal, ParameterServer, Service, TopicInfo
+from cartwheel.graph import (
+    ActionListener,
+    Goal,
+    ParameterServer,
+    Service,
+    TakeValues,
+    TopicInfo,
+)
 
 
 class BridgedSubscription(Protocol):
@@ -109,8 +116,12 @@ class BridgedGraph(Protocol):
         *,
         type_name: str | None = None,
         node: str = "cartwheel",
+        take_values: TakeValues | None = None,
     ) -> BridgedSubscription:
-        """Calls `callback` with each message, in the order of publication."""
+        """Calls `callback` with each message, in the order of publication.
+
+        Only a graph in this process calls `take_values`; see `Graph.subscribe`.
+        """
 
     def publish(self, name: str, type_name: str, message: Any) -> None:
         """Publishes one message."""

@@ -17,6 +17,7 @@ from cartwheel.graph.topic import (
     Qos,
     Service,
     Subscription,
+    TakeValues,
     TopicInfo,
     check_message,
 )
@@ -44,6 +45,7 @@ __all__ = [
     "Service",
     "StaticTransforms",
     "Subscription",
+    "TakeValues",
     "TopicInfo",
     "TopicRenaming",
     "check_message",

@@ -38,6 +38,7 @@ from cartwheel.graph.topic import (
     Qos,
     Service,
     Subscription,
+    TakeValues,
     Topic,
     TopicInfo,
     arrive,
@@ -149,6 +150,7 @@ class Graph:
         type_name: str | None = None,
         node: str = "cartwheel",
         anytime: bool = False,
+        take_values: TakeValues | None = None,
     ) -> Subscription:
         """Calls `callback` with each message on the owner's thread, in the order of publication.
 
@@ -159,6 +161,8 @@ class Graph:
             node: Subscriber's name, for listings.
             anytime: Whether the topic's latched message may also be delivered while the simulation
                 waits, on another thread.
+            take_values: Receives the form and the values of a message instead of the message, if
+                all subscribers of the topic have such a function; see `Publisher.publish_values`.
 
         Raises:
             UnknownNameError: The topic does not exist, and no type is given.
@@ -172,7 +176,7 @@ class Graph:
                     raise UnknownNameError("topic", name, self._topics, code=TOPIC_UNKNOWN)
                 type_name = self._topics[name].type
             topic = self._topic(name, type_name)
-            subscription = Subscription(self, topic, callback, node=node)
+            subscription = Subscription(self, topic, callback, node=node, take_values=take_values)
             topic.subscriptions += (subscription,)
             self._changed(topic)
             if (latched := topic.latched) is not None:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any, Generic, Literal
 from cartwheel.calls import Post
 from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
-from cartwheel.messages import CdrCache, type_name
+from cartwheel.messages import CdrCache, Form, type_name
 from cartwheel.messages.typed import M
 
 if TYPE_CHECKING:
     from cartwheel.graph.graph import Graph
 
 Callback = Callable[[Any], None]
+TakeValues = Callable[[Form, tuple[Any, ...]], None]
+"""Receives the values of a message instead of the message."""
 Handler = Callable[[Any], Any]
 Qos = Literal["default", "sensor", "latched"]
 TWIST = "geometry_msgs/msg/Twist"
@@ -65,6 +67,9 @@ class Topic:
         self.subscriptions: tuple[Subscription, ...] = ()
         self.callbacks: tuple[Callback, ...] = ()
         """Callbacks of all subscriptions."""
+        self.takers: tuple[tuple[TakeValues, Callback], ...] = ()
+        """The subscriptions' functions that receive values, with the callbacks, if all of them have
+        one. Otherwise messages are created."""
         self.latched: Any = None
         self.take: Callback | None = None
         """Receives messages from other threads instead of the subscribers; see
@@ -88,6 +93,10 @@ class Topic:
         Publishers cache the value, because they check it several times per message.
         """
         self.callbacks = tuple(subscription.callback for subscription in self.subscriptions)
+        takers = [(each.take_values, each.callback) for each in self.subscriptions]
+        self.takers = tuple((take, callback) for take, callback in takers if take is not None)
+        if len(self.takers) != len(takers) or any(p.qos == "latched" for p in self.publishers):
+            self.takers = ()
         changed = False
         for publisher in self.publishers:
             wanted = bool(self.subscriptions) or publisher.qos == "latched"
@@ -98,6 +107,7 @@ class Topic:
     def forget(self) -> None:
         """Clears all references when the graph is closed."""
         self.publishers, self.subscriptions, self.callbacks = (), (), ()
+        self.takers = ()
         self.latched = self.take = None
         self.failed = _raise
 
@@ -180,6 +190,23 @@ class Publisher(Generic[M]):
             except (Exception, SystemExit) as error:  # noqa: BLE001 - the callback is foreign code
                 topic.failed(topic, callback, error)
 
+    def publish_values(self, form: Form, values: tuple[Any, ...]) -> None:
+        """Publishes the message that a form makes of values.
+
+        The message is not created if all subscribers only need its bytes, such as recorders and
+        bridges. Call it on the owner's thread, with a new tuple for each message.
+        """
+        takers = self._topic.takers
+        if not takers:
+            self.publish(form.message(*values))
+            return
+        self.sent += 1
+        for take, callback in takers:
+            try:
+                take(form, values)
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - as in `publish`
+                self._topic.failed(self._topic, callback, error)
+
     def close(self) -> None:
         """Removes the publisher from the graph."""
         self._graph._remove_publisher(self._topic, self)
@@ -219,10 +246,19 @@ def check_message(topic: str, kind: str, message: Any) -> None:
 class Subscription:
     """A callback on a topic, called on the owner's thread."""
 
-    def __init__(self, graph: Graph, topic: Topic, callback: Callback, *, node: str) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        topic: Topic,
+        callback: Callback,
+        *,
+        node: str,
+        take_values: TakeValues | None = None,
+    ) -> None:
         self._graph = graph
         self._topic = topic
         self.callback = callback
+        self.take_values = take_values
         self.node = node
         self.on_error: OnError | None = None
         """Called with the exception of the callback. None means `Graph.on_error`."""

@@ -25,7 +25,7 @@ from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.graph import Action, ActionTopics, Graph, Mailbox, Publisher, ReconfigureServer
 from cartwheel.graph.joint_inputs import JointInput
 from cartwheel.graph.topic import Service, Subscription, Topic
-from cartwheel.messages import CdrCache
+from cartwheel.messages import CdrCache, Form
 from cartwheel.messages.library.library import TypeLibrary
 from cartwheel.saving.encoded import Adapter
 from cartwheel.simulation import Part, Simulation
@@ -83,6 +83,7 @@ STRUCTURE: tuple[type, ...] = (
     Mailbox,
     TypeLibrary,
     CdrCache,
+    Form,
     PluginFiles,
     ControllerFiles,
     contextlib.ExitStack,

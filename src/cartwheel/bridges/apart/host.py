@@ -17,9 +17,9 @@ from cartwheel.bridges.apart.ring import Put, RingWriter
 from cartwheel.bridges.mirror import Arrivals
 from cartwheel.calls import answered, mapped
 from cartwheel.codes.wires import MESSAGE_NOT_SENT
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.graph import Graph, Service, Subscription
-from cartwheel.messages import decode_cdr, encode_cdr, service_classes
+from cartwheel.messages import Form, decode_cdr, encode_cdr, service_classes
 from cartwheel.messages.definition import Definition
 from cartwheel.messages.learnt import needed
 from cartwheel.reporting import Reporter
@@ -155,7 +155,12 @@ class GraphHost:
         kind = _Times if type_name == _CLOCK and not self._patient else _Relay
         relay = kind(self, number, name)
         relay.subscription = self._graph.subscribe(
-            name, relay.take, type_name=type_name, node=node, anytime=True
+            name,
+            relay.take,
+            type_name=type_name,
+            node=node,
+            anytime=True,
+            take_values=relay.take_values if kind is _Relay else None,
         )
         relay.subscription.dropped = lambda: relay.dropped + relay.beyond
         self._relays[number] = relay
@@ -198,14 +203,29 @@ class GraphHost:
         try:
             data = self._graph.cdr.encode(message)
         except Exception as error:  # noqa: BLE001 - rosbags does not catch all errors of its code
-            self._warn(
-                MESSAGE_NOT_SENT.because(
-                    f"a message on {relay.topic} cannot be sent",
-                    error,
-                    values={"topic": relay.topic},
-                )
-            )
+            self._refuse(relay, error)
             return
+        self._put(relay, data)
+
+    def pass_on_values(self, relay: _Relay, form: Form, values: tuple[Any, ...]) -> None:
+        """Sends the message that a form makes of values to the bridge."""
+        try:
+            data = form.encode(values)
+        except CartwheelError as error:
+            self._refuse(relay, error)
+            return
+        self._put(relay, data)
+
+    def _refuse(self, relay: _Relay, error: Exception) -> None:
+        self._warn(
+            MESSAGE_NOT_SENT.because(
+                f"a message on {relay.topic} cannot be sent",
+                error,
+                values={"topic": relay.topic},
+            )
+        )
+
+    def _put(self, relay: _Relay, data: bytes) -> None:
         if self._patient:
             put, waited = self._ring.put_patiently(relay.number, self._time_ns(), data)
             self.waited += waited
@@ -235,6 +255,10 @@ class _Relay:
     def take(self, message: Any) -> None:
         """Called on the simulation's thread."""
         self._host.pass_on(self, message)
+
+    def take_values(self, form: Form, values: tuple[Any, ...]) -> None:
+        """Called on the simulation's thread."""
+        self._host.pass_on_values(self, form, values)
 
     def close(self) -> None:
         """Unsubscribes."""

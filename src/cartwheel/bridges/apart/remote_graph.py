@@ -17,7 +17,7 @@ from cartwheel.bridges.packed import Packed
 from cartwheel.calls import answered, mapped
 from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_UNKNOWN
 from cartwheel.errors import UnknownNameError
-from cartwheel.graph import ParameterServer, Service, TopicInfo
+from cartwheel.graph import ParameterServer, Service, TakeValues, TopicInfo
 from cartwheel.messages import decode_cdr, encode_cdr, service_classes
 from cartwheel.messages.definition import Definition
 from cartwheel.messages.learnt import register
@@ -175,6 +175,7 @@ class RemoteGraph:
         *,
         type_name: str | None = None,
         node: str = "cartwheel",
+        take_values: TakeValues | None = None,  # noqa: ARG002 - messages arrive as bytes
     ) -> RemoteSubscription:
         """Calls `callback` with each message, on the thread that reads messages.
 

@@ -15,6 +15,7 @@ CHUNK = 768 << 10
 """Maximum size of a chunk in bytes. A larger message has its own chunk."""
 _HEADER_SIZE = 4096
 """Size in bytes of the first record without its two lengths, as written by ROS tools."""
+_NEVER = 1 << 64
 _EARLIEST = 1
 """Earliest timestamp in ns, because rosbag does not play messages before ROS 1's first time."""
 
@@ -30,6 +31,13 @@ class _Connection:
     count: int = 0
     index: list[tuple[bytes, int]] = field(default_factory=list)
     """Time and offset of each message in the current chunk."""
+    head: bytes = field(init=False)
+    """The beginning of the record of each message, up to its time."""
+
+    def __post_init__(self) -> None:
+        fields = {"op": bytes([MESSAGE]), "conn": _u32(self.number), "time": bytes(8)}
+        whole = header(fields)
+        self.head = _u32(len(whole)) + whole[:-8]
 
     @property
     def record(self) -> bytes:
@@ -79,24 +87,30 @@ class BagWriter:
         return number
 
     def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
-        for each in zip(channels, times, data, strict=True):
-            self._write(*each)
-
-    def _write(self, channel: int, time_ns: int, data: bytes) -> None:
-        into = self._connections[channel]
-        if self._chunk and len(self._chunk) + len(data) > CHUNK:
-            self.flush()
-        if into.number not in self._stated:
-            self._stated.add(into.number)
-            self._chunk += into.record
-        time_ns = max(time_ns, _EARLIEST)
-        time = _time(time_ns)
-        into.count += 1
-        into.index.append((time, len(self._chunk)))
-        head = {"op": bytes([MESSAGE]), "conn": _u32(into.number), "time": time}
-        self._chunk += record(head, data)
-        first, last = self._span or (time_ns, time_ns)
-        self._span = (min(first, time_ns), max(last, time_ns))
+        # The loop runs for each message, so it uses local names and avoids calls.
+        known, stated, chunk = self._connections, self._stated, self._chunk
+        first, last = self._span or (_NEVER, -1)
+        for number, given_ns, each in zip(channels, times, data, strict=True):
+            into, size = known[number], len(each)
+            if chunk and len(chunk) + size > CHUNK:
+                self._span = (first, last)
+                self.flush()
+                chunk, first, last = self._chunk, _NEVER, -1
+            if number not in stated:
+                stated.add(number)
+                chunk += into.record
+            time_ns = max(given_ns, _EARLIEST)
+            time = _pack_time(*divmod(time_ns, 1_000_000_000))
+            into.count += 1
+            into.index.append((time, len(chunk)))
+            chunk += b"%b%b%b%b" % (into.head, time, _pack_size(size), each)
+            # Comparisons take a quarter of the time of `min` and `max`.
+            if time_ns < first:  # noqa: PLR1730
+                first = time_ns
+            if time_ns > last:  # noqa: PLR1730
+                last = time_ns
+        if last >= 0:
+            self._span = (first, last)
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         """Does nothing, because bags cannot contain attachments."""
@@ -189,9 +203,12 @@ def record(fields: dict[str, bytes], data: bytes) -> bytes:
     return b"".join((_u32(len(head)), head, _u32(len(data)), data))
 
 
+_pack_size, _pack_time = struct.Struct("<I").pack, struct.Struct("<II").pack
+
+
 def _u32(value: int) -> bytes:
-    return struct.pack("<I", value)
+    return _pack_size(value)
 
 
 def _time(time_ns: int) -> bytes:
-    return struct.pack("<II", *divmod(time_ns, 1_000_000_000))
+    return _pack_time(*divmod(time_ns, 1_000_000_000))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -85,20 +86,31 @@ class Db3Writer:
         return number - 1
 
     def write(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
-        for each in zip(channels, times, data, strict=True):
-            self._write(*each)
+        # Messages are inserted together up to the end of a transaction.
+        begin, size = 0, self._open_size
+        for end, each in enumerate(data, 1):
+            size += len(each)
+            if size > _TRANSACTION:
+                self._insert(channels[begin:end], times[begin:end], data[begin:end])
+                self.flush()
+                begin, size = end, 0
+        self._open_size = size
+        self._insert(channels[begin:], times[begin:], data[begin:])
 
-    def _write(self, channel: int, time_ns: int, data: bytes) -> None:
-        self._run(
-            "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
-            (channel + 1, time_ns, data),
-        )
-        self._topics[channel].count += 1
-        self._open_size += len(data)
-        if self._open_size > _TRANSACTION:
-            self.flush()
-        first, last = self._span or (time_ns, time_ns)
-        self._span = (min(first, time_ns), max(last, time_ns))
+    def _insert(self, channels: Sequence[int], times: Sequence[int], data: Sequence[bytes]) -> None:
+        if not times:
+            return
+        rows = zip((channel + 1 for channel in channels), times, data, strict=True)
+        try:
+            self._base.executemany(
+                "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", rows
+            )
+        except sqlite3.Error as error:
+            raise OSError(None, str(error)) from error
+        for channel, count in Counter(channels).items():
+            self._topics[channel].count += count
+        first, last = self._span or (times[0], times[0])
+        self._span = (min(first, *times), max(last, *times))
 
     def attach(self, name: str, media_type: str, data: bytes, time_ns: int) -> None:
         """Does nothing, because rosbag2 does not support attachments."""

@@ -36,8 +36,8 @@ from cartwheel.errors import (
     UnknownNameError,
     one_line,
 )
-from cartwheel.graph import TopicInfo
-from cartwheel.messages import decode_cdr, encode_cdr, zero
+from cartwheel.graph import TakeValues, TopicInfo
+from cartwheel.messages import Form, decode_cdr, encode_cdr, zero
 
 _LONG_WAIT = 1.0
 """Total waiting time of the simulation in s from which it is reported."""
@@ -210,6 +210,34 @@ class Recorder:
 
         return take
 
+    def _take_values_of(self, tap: Tap) -> TakeValues | None:
+        """Returns the function that receives values instead of messages, which it encodes and
+        queues; None if the tap needs the messages.
+        """
+        if tap.describes:
+            return None
+        now, put, number = self._time_ns, self._backlog.put, tap.number
+        counts = self._counts if self._is_ros1 else None
+
+        def take_values(form: Form, values: tuple[Any, ...]) -> None:
+            time_ns = now()
+            if time_ns < self._time:
+                self._restart(tap, time_ns)
+            self._time = time_ns
+            try:
+                if counts is None:
+                    data = form.encode(values)
+                else:
+                    count = counts.get(number, 0) + 1
+                    data = form.encode_ros1(values, seq=count)
+                    counts[number] = count
+            except CartwheelError as error:
+                self._refuse(tap, error)
+                return
+            put(number, time_ns, data)
+
+        return take_values
+
     def _restart(self, tap: Tap, time_ns: int) -> None:
         """Begins a new file with the latched messages, except that of a tap, which follows."""
         self._counts.clear()
@@ -291,7 +319,7 @@ class Recorder:
         for name, info in topics.items():
             if name not in self._taps and self._patterns.match(name):
                 self._taps[name] = tap = self._tap(info)
-                tap.open(self._graph, self._take_of(tap))
+                tap.open(self._graph, self._take_of(tap), self._take_values_of(tap))
 
     def _tap(self, info: TopicInfo) -> Tap:
         """Creates the tap of a topic. A topic that returns keeps its channel in the file."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from cartwheel.bridges.bridged import BridgedGraph, BridgedSubscription
-from cartwheel.graph import TopicInfo
+from cartwheel.graph import TakeValues, TopicInfo
 
 READER = "recorder"
 """Node name of the recorder in the graph."""
@@ -32,14 +32,19 @@ class Tap:
         """The last message of a latched topic."""
         self._subscription: BridgedSubscription | None = None
 
-    def open(self, graph: BridgedGraph, take: Callable[[Any], None]) -> None:
+    def open(
+        self, graph: BridgedGraph, take: Callable[[Any], None], take_values: TakeValues | None
+    ) -> None:
         """Subscribes.
 
         Args:
             graph: Graph with the topic.
             take: Receives each message.
+            take_values: Receives the values of each message instead; see `Graph.subscribe`.
         """
-        self._subscription = graph.subscribe(self.topic, take, type_name=self.type, node=READER)
+        self._subscription = graph.subscribe(
+            self.topic, take, type_name=self.type, node=READER, take_values=take_values
+        )
 
     def close(self) -> None:
         """Unsubscribes."""

@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.component import Scope
 from cartwheel.devices.topic_sensor import TopicSensor
 from cartwheel.geometry import Array
-from cartwheel.messages import message_class
+from cartwheel.messages import Form, header, message_class
 from cartwheel.simulation import Contact
 
 
@@ -47,9 +47,19 @@ class Bumper(TopicSensor):
         self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._publisher = self._offer(config.topic, "gazebo_msgs/msg/ContactsState", qos="default")
 
+        self._untouched = Form(self._template, "header.stamp")
+        """Messages without contacts."""
+
+    def _template(self) -> Any:
+        return self._ContactsState(header=header(0, self._frame))
+
     def _measure(self) -> None:
+        contacts = self.part.contacts(self._collisions)
+        if not contacts:
+            self._publisher.publish_values(self._untouched, (self.part.time_ns,))
+            return
         pairs: dict[tuple[str, str], list[Contact]] = {}
-        for contact in self.part.contacts(self._collisions):
+        for contact in contacts:
             pairs.setdefault((contact.first, contact.second), []).append(contact)
         states = [
             self._state(first, second, pairs[first, second]) for first, second in sorted(pairs)

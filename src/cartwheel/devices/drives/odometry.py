@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -12,8 +13,9 @@ from cartwheel.component import Component, Scope
 from cartwheel.devices.drives.odometry_frame import OdometryFrame
 from cartwheel.devices.drives.reckoning import Motion
 from cartwheel.devices.joints.transforms import JointTransforms
-from cartwheel.geometry import Array, Quat, Vec3, yaw_of
-from cartwheel.messages import header, message_class
+from cartwheel.devices.transforms import TF_MESSAGE, transform_stamped
+from cartwheel.geometry import Array, Pose, Quat, Vec3, yaw_of
+from cartwheel.messages import Form, header, zero
 from cartwheel.simulation.handles import LinkHandle
 
 NO_COVARIANCE = np.zeros(36)
@@ -59,17 +61,6 @@ class Odometry(Component):
         self._joints = JointTransforms(self, config.joints) if config.joints else None
         self.pose_covariance = config.pose_covariance
         self.twist_covariance = config.twist_covariance
-        self._Odometry = message_class("nav_msgs/msg/Odometry")
-        self._PoseWithCovariance = message_class("geometry_msgs/msg/PoseWithCovariance")
-        self._TwistWithCovariance = message_class("geometry_msgs/msg/TwistWithCovariance")
-        self._Pose = message_class("geometry_msgs/msg/Pose")
-        self._Point = message_class("geometry_msgs/msg/Point")
-        self._Quaternion = message_class("geometry_msgs/msg/Quaternion")
-        self._Twist = message_class("geometry_msgs/msg/Twist")
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
-        self._Transform = message_class("geometry_msgs/msg/Transform")
-        self._TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
-        self._TFMessage = message_class("tf2_msgs/msg/TFMessage")
         rate = config.rate or None
         self._odometry = (
             self.advertise(config.topic, "nav_msgs/msg/Odometry", rate=rate)
@@ -82,6 +73,45 @@ class Odometry(Component):
             else None
         )
         self._child = self.keep(OdometryFrame(self, config.base)) if config.transform else None
+        self._form = self._odometry_form()
+        self._tf_form = self._transforms_form()
+
+    def _odometry_form(self) -> Form:
+        return Form(
+            self._odometry_template,
+            "header.stamp",
+            "pose.pose.position",
+            "pose.pose.orientation",
+            "pose.covariance",
+            "twist.twist.linear",
+            "twist.twist.angular",
+            "twist.covariance",
+        )
+
+    def _odometry_template(self) -> Any:
+        template = zero("nav_msgs/msg/Odometry")
+        template.header.frame_id, template.child_frame_id = self._frame, self._base
+        return template
+
+    def _transforms_form(self) -> Form:
+        fields: list[str | tuple[str, ...]] = []
+        if self._child is not None:
+            fields += ("header.stamp", "transform.translation", "transform.rotation")
+            fields = [f"transforms.0.{field}" for field in fields]
+        if self._joints is not None:
+            fields += self._joints.fields(0 if self._child is None else 1)
+        return Form(self._transforms_template, *fields)
+
+    def _transforms_template(self) -> Any:
+        template = zero(TF_MESSAGE)
+        if self._child is not None:
+            still, moment = Pose(), header(0, self._frame)
+            template.transforms.append(
+                transform_stamped(moment, self._child.name, still.position, still.orientation)
+            )
+        if self._joints is not None:
+            template.transforms += self._joints.messages()
+        return template
 
     def wanted(self) -> bool:
         """Whether one of the topics has subscribers."""
@@ -106,35 +136,25 @@ class Odometry(Component):
             linear: Velocity, usually in the base frame, m/s, shape (3,).
             angular: Angular velocity, usually in the base frame, rad/s, shape (3,).
         """
-        # The hottest path of all messages. Positional fields and shared sub-messages halve its
-        # cost. Local names for the classes save attribute lookups.
-        Vector3, Quaternion = self._Vector3, self._Quaternion
-        head, rotation = header(time_ns, self._frame), Quaternion(*turn)
-        if self._tf is not None and self._tf.wanted:
-            sent = []
-            if self._child is not None:
-                Transform, TransformStamped = self._Transform, self._TransformStamped
-                where, turned = self._child.place(place, turn)
-                turning = rotation if turned is turn else Quaternion(*turned)
-                moved = Transform(Vector3(*where), turning)
-                sent.append(TransformStamped(head, self._child.name, moved))
+        # The hottest path of all messages.
+        tf, odometry = self._tf, self._odometry
+        if tf is not None and tf.wanted:
+            values = [] if self._child is None else [time_ns, *self._child.place(place, turn)]
             if self._joints is not None:
-                sent += self._joints.at(time_ns)
-            TFMessage = self._TFMessage
-            self._tf.publish(TFMessage(sent))
-        if self._odometry is not None and self._odometry.wanted:
-            Odometry, Pose, Point, Twist = self._Odometry, self._Pose, self._Point, self._Twist
-            PoseWithCovariance = self._PoseWithCovariance
-            TwistWithCovariance = self._TwistWithCovariance
-            pose = Pose(Point(*place), rotation)
-            twist = Twist(Vector3(*linear), Vector3(*angular))
-            self._odometry.publish(
-                Odometry(
-                    head,
-                    self._base,
-                    PoseWithCovariance(pose, self.pose_covariance),
-                    TwistWithCovariance(twist, self.twist_covariance),
-                )
+                values += self._joints.values(time_ns)
+            tf.publish_values(self._tf_form, tuple(values))
+        if odometry is not None and odometry.wanted:
+            odometry.publish_values(
+                self._form,
+                (
+                    time_ns,
+                    place,
+                    turn,
+                    self.pose_covariance,
+                    linear,
+                    angular,
+                    self.twist_covariance,
+                ),
             )
 
 

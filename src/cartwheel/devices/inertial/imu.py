@@ -11,7 +11,7 @@ import numpy as np
 
 from cartwheel.component import Scope
 from cartwheel.devices.elementwise import Number, cos, sin
-from cartwheel.devices.inertial.messages import imu_message
+from cartwheel.devices.inertial.messages import imu_form
 from cartwheel.devices.inertial.unit import InertialUnit, InertialUnitConfig
 from cartwheel.devices.noise import DriftingError, DriftingErrorConfig, VectorNoise
 from cartwheel.devices.topic_sensor import TopicSensor
@@ -94,7 +94,7 @@ class Imu(TopicSensor):
             for error in (config.acceleration_error, config.rate_error, config.yaw_error)
         )
         self._strength = math.hypot(*part.world.gravity)
-        self._covariances = self._stated_covariances()
+        self._form = imu_form(self._frame, self._stated_covariances())
         self._publisher = self._offer(config.topic, _IMU)
         self._biases: Publisher | None = None
         if config.bias_topic is not None:
@@ -166,14 +166,12 @@ class Imu(TopicSensor):
         if self._yaw is not None and self._acceleration is not None:
             error = self._orientation_error(self._yaw, self._acceleration)
             orientation = quat_multiply(error, orientation)
-        moment = self._header()
+        time_ns = self.part.time_ns
         if self._publisher.wanted:
-            self._publisher.publish(
-                imu_message(moment, orientation, rate, acceleration, self._covariances)
-            )
+            self._publisher.publish_values(self._form, (time_ns, orientation, rate, acceleration))
         if self._biases is not None and self._biases.wanted:
             biases = (_bias(self._rate), _bias(self._acceleration))
-            self._biases.publish(imu_message(moment, error, *biases, self._covariances))
+            self._biases.publish_values(self._form, (time_ns, error, *biases))
 
     def _orientation_error(self, yaw: DriftingError, acceleration: DriftingError) -> Quat:
         (angle,) = yaw.add([0.0])

@@ -6,8 +6,8 @@ import functools
 from collections.abc import Sequence
 from typing import Any
 
-from cartwheel.geometry import Array
-from cartwheel.messages import message_class
+from cartwheel.geometry import IDENTITY, Array
+from cartwheel.messages import Form, header, message_class
 
 
 def imu_message(
@@ -37,6 +37,22 @@ def imu_message(
         Vector3(*acceleration),
         of_acceleration,
     )
+
+
+def imu_form(frame: str, covariances: Sequence[Array]) -> Form:
+    """Returns the form of Imu messages, whose values are the time, the orientation, the angular
+    velocity and the proper acceleration.
+
+    Args:
+        frame: Frame ID of the messages.
+        covariances: Covariances of the three quantities, shape (9,) each.
+    """
+
+    def template() -> Any:
+        still = (0.0, 0.0, 0.0)
+        return imu_message(header(0, frame), IDENTITY, still, still, covariances)
+
+    return Form(template, "header.stamp", "orientation", "angular_velocity", "linear_acceleration")
 
 
 @functools.cache

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from cartwheel.component import Component, Scope
-from cartwheel.messages import header, message_class
-
-_NOTHING = np.zeros(0)
+from cartwheel.messages import Form, zero
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,11 +42,22 @@ class JointStates(Component):
         self._names = list(config.joints)
         self._velocities, self._efforts = config.velocities, config.efforts
         self._frame = self.frame(config.frame) if config.frame else ""
-        self._JointState = message_class("sensor_msgs/msg/JointState")
+        fields = ["header.stamp", "position"]
+        fields += ["velocity"] * config.velocities + ["effort"] * config.efforts
+        self._form = Form(self._template, *fields)
         self._rate = config.rate
         self._publisher = self.advertise(
             config.topic, "sensor_msgs/msg/JointState", rate=config.rate or None
         )
+
+    def _template(self) -> Any:
+        template, still = zero("sensor_msgs/msg/JointState"), np.zeros(len(self._names))
+        template.header.frame_id, template.name, template.position = self._frame, self._names, still
+        if self._velocities:
+            template.velocity = still
+        if self._efforts:
+            template.effort = still
+        return template
 
     def schedule(self) -> None:
         """Publishes at the rate from now on, while the topic has subscribers."""
@@ -61,11 +71,10 @@ class JointStates(Component):
 
     def publish(self, time_ns: int) -> None:
         """Publishes the current state."""
-        joints, JointState = self._joints, self._JointState
-        velocities = joints.velocities() if self._velocities else _NOTHING
-        efforts = joints.efforts() if self._efforts else _NOTHING
-        self._publisher.publish(
-            JointState(
-                header(time_ns, self._frame), self._names, joints.positions(), velocities, efforts
-            )
-        )
+        joints = self._joints
+        values: list[Any] = [time_ns, joints.positions()]
+        if self._velocities:
+            values.append(joints.velocities())
+        if self._efforts:
+            values.append(joints.efforts())
+        self._publisher.publish_values(self._form, tuple(values))

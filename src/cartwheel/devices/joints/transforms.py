@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from cartwheel.devices.transforms import transform_classes
+from cartwheel.devices.transforms import transform_stamped
+from cartwheel.geometry import Pose
 from cartwheel.messages import header
 
 if TYPE_CHECKING:
@@ -30,20 +31,32 @@ class JointTransforms:
             )
             for name in joints
         ]
-        self._classes = transform_classes()
 
-    def at(self, time_ns: int) -> list[Any]:
-        """Returns the current ``TransformStamped`` messages."""
-        TransformStamped, Transform, Vector3, Quaternion = self._classes
-        sent, of, head = [], None, None
-        for joint, parent, child in self._joints:
-            if parent != of:
-                # robot_state_publisher publishes transforms of the same joints with the stamp of
-                # our joint states. Ours is a nanosecond later, so that tf does not warn about
-                # repeated data.
-                of, head = parent, header(time_ns + 1, parent)
-            place, turn = joint.child_place()
-            # This is `transform_stamped` inlined: it runs for each wheel at the rate of odometry.
-            moved = Transform(Vector3(*place), Quaternion(*turn))
-            sent.append(TransformStamped(head, child, moved))
-        return sent
+    def messages(self) -> list[Any]:
+        """``TransformStamped`` messages of all joints, with their frames only."""
+        still = Pose()
+        return [
+            transform_stamped(header(0, parent), child, still.position, still.orientation)
+            for _, parent, child in self._joints
+        ]
+
+    def fields(self, first: int) -> Iterator[str | tuple[str, ...]]:
+        """The fields of a ``TFMessage`` that `values` sets, for `Form`.
+
+        Args:
+            first: Index of the first of the messages.
+        """
+        paths = [f"transforms.{first + index}" for index in range(len(self._joints))]
+        yield tuple(f"{path}.header.stamp" for path in paths)
+        for path in paths:
+            yield f"{path}.transform.translation"
+            yield f"{path}.transform.rotation"
+
+    def values(self, time_ns: int) -> list[Any]:
+        """The current values of `fields`."""
+        # robot_state_publisher publishes transforms of the same joints with the stamp of our joint
+        # states. Ours is a nanosecond later, so that tf does not warn about repeated data.
+        values: list[Any] = [time_ns + 1]
+        for joint, _, _ in self._joints:
+            values += joint.child_place()
+        return values

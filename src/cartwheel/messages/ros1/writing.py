@@ -110,7 +110,7 @@ def _flat(name: str, prefix: str) -> Iterator[_Fixed | _Counted]:
     """The fields of a type and its nested types, in byte order."""
     for pair in pairs(name):
         if pair.name is None:
-            yield _Fixed(f"{_zero_size(pair.field)}x", None)
+            yield _Fixed(f"{zero_size(pair.field)}x", None)
             continue
         path = prefix + pair.name
         if pair.form == "number" and pair.field.kind == "message":
@@ -121,12 +121,12 @@ def _flat(name: str, prefix: str) -> Iterator[_Fixed | _Counted]:
             yield _Counted(pair.field, path)
 
 
-def _zero_size(field: Field) -> int:
+def zero_size(field: Field) -> int:
     """Size in bytes of a zero or empty field, whose bytes are all zero."""
     if field.array and field.length is None:
         return 4
     if field.kind == "message":
-        one = sum(_zero_size(pair.field) for pair in pairs(field.type))
+        one = sum(zero_size(pair.field) for pair in pairs(field.type))
     elif field.kind == "string":
         one = 4
     else:
