@@ -27,10 +27,15 @@ class Wheel:
     position: float = 0.0
     velocity: float = 0.0
     command: float = 0.0
+    qposadr: int = 0
 
     @property
     def state(self):
         return self
+
+    @property
+    def qpos(self):
+        return [self.position]
 
 
 @pytest.fixture

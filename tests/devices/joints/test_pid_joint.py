@@ -19,9 +19,19 @@ class Joint:
         self.type, self.limits, self.lightness = kind, JointLimits(lower=-1.0, upper=1.0), 0.0
         self.command = math.nan
 
+    qposadr = dofadr = 0
+
     @property
     def state(self):
         return self
+
+    @property
+    def qpos(self):
+        return [self.position]
+
+    @property
+    def qvel(self):
+        return [self.velocity]
 
     def error(self, target):
         return target - self.position

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from cartwheel.simulation import Simulation
+from cartwheel.simulation.dynamics.joint_servo import POSITION_BANDWIDTH
 
 MASS, ARM, INERTIA, GRAVITY = 2.0, 0.5, 0.1, 9.8
 TURNED = INERTIA + MASS * ARM**2
@@ -50,6 +51,26 @@ def test_it_goes_to_a_position_and_bears_the_weight_there(make, step):
     beam.servo.command_position(-0.6)
     beam.run(1.0)
     assert beam.angle == pytest.approx(-0.6, abs=1e-4)
+
+
+@pytest.mark.parametrize("strength", [1e-300, 0.01, 3.0, 200.0, math.inf])
+def test_the_speed_toward_a_target_has_the_bits_of_the_formula(make, strength):
+    servo = Beam(make, strength=strength).servo
+    near = servo._braking / POSITION_BANDWIDTH**2
+    places = [near * (1.0 + ulps * 2.0**-52) for ulps in range(-4, 5)]
+    places += [near * factor for factor in (1 - 2e-9, 1 - 5e-10, 1 + 1e-9, 0.5, 3.0, 1e6)]
+    places += [0.0, 5e-324, 1e-300, 1.0, 1e3]
+    for size in places:
+        for error in (size, -size):
+            for rate, fastest in ((0.0, math.inf), (-0.0, math.inf), (0.3, 0.25), (-0.3, 0.0)):
+                speed = POSITION_BANDWIDTH * abs(error)
+                braked = math.sqrt(servo._braking * abs(error))
+                wanted = rate + math.copysign(braked if braked < speed else speed, error)
+                wanted = min(max(wanted, -fastest), fastest)
+                servo.command_position(error, rate, fastest)
+                assert servo._turning.hex() == wanted.hex()
+                servo._lead()
+                assert servo._turning.hex() == wanted.hex()
 
 
 def test_far_away_it_brakes_in_time(make):

@@ -9,7 +9,7 @@ from typing import Literal
 from cartwheel.component import Scope
 from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
-from cartwheel.devices.drives.kinematics import axle_motion, rim_speeds
+from cartwheel.devices.drives.kinematics import rim_speeds
 from cartwheel.devices.drives.limiter import NO_LIMITS, Limiter, Limits
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
 from cartwheel.devices.ramp import ramp
@@ -191,10 +191,10 @@ class DifferentialDrive(Drive):
         if source == "commands":
             forward, turn = self.linear.value * seconds, self.angular.value * seconds
         else:
+            # This is `axle_motion` inlined, because it runs at every step.
             pair = self._config.pairs[0]
-            forward, turn = axle_motion(
-                left * pair.left_radius, right * pair.right_radius, pair.separation
-            )
+            left, right = left * pair.left_radius, right * pair.right_radius
+            forward, turn = (left + right) / 2, (right - left) / pair.separation
         if self._yaw_rate is not None:
             turn = self._yaw_rate() * seconds
         self.reckoning.go(forward, turn, seconds)
@@ -223,12 +223,17 @@ class DifferentialDrive(Drive):
         ]
 
     def _rotations(self) -> tuple[float, float]:
+        # This runs at every step, so it reads the positions without calls.
         lefts, rights = self._lefts, self._rights
         count = len(lefts)
         if count == 1:
-            return lefts[0].position, rights[0].position
-        left_sum = sum([each.position for each in lefts])
-        return left_sum / count, sum([each.position for each in rights]) / count
+            left, right = lefts[0], rights[0]
+            return left.qpos[left.qposadr], right.qpos[right.qposadr]
+        left_sum = right_sum = 0.0
+        for left, right in zip(lefts, rights, strict=True):
+            left_sum += left.qpos[left.qposadr]
+            right_sum += right.qpos[right.qposadr]
+        return left_sum / count, right_sum / count
 
     def _motor_wheel(self, joint: str) -> CommandedJoint:
         torque = self._config.max_torque

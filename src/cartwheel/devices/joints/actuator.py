@@ -91,7 +91,8 @@ class JointActuator:
         """Rate of change of a commanded position, rad/s or m/s; 0 if unknown."""
         self.strength = math.inf
         """Maximum effort of a position command, N m or N. A gripper controller can lower it."""
-        self._damping = 0.0
+        self.damping = 0.0
+        """Decrease of a commanded effort with velocity, N m s/rad or N s/m."""
         self._led = config.led
         limits = config.limits
         self._slows = limits.soft is not None and math.inf not in (-limits.lower, limits.upper)
@@ -132,7 +133,7 @@ class JointActuator:
     def activate(self, command: str) -> None:
         """Selects the active command. The joint stays at its position."""
         self._active = command
-        self._damping = 0.0
+        self.damping = 0.0
         self.strength = math.inf
         self.command = self.position if command == "position" else 0.0
         self.rate = 0.0
@@ -144,7 +145,7 @@ class JointActuator:
 
         A position command is kept; velocity and effort commands become 0.
         """
-        self.rate = self._damping = 0.0
+        self.rate = self.damping = 0.0
         if self._active in ("velocity", "effort"):
             self.command = 0.0
 
@@ -167,7 +168,7 @@ class JointActuator:
 
     def set_effort(self, command: DampedEffort) -> None:
         """Commands an effort that decreases with velocity, for controllers with their own PID."""
-        self.command, self._damping = command.effort, command.damping
+        self.command, self.damping = command.effort, command.damping
 
     def write(self, seconds: float, lead: float = 0.0) -> None:
         """Applies the command to the joint.
@@ -250,7 +251,7 @@ class JointActuator:
             self._servo.command_effort(*command)
 
     def _write_effort(self, seconds: float) -> None:
-        effort, damping, limits, state = self.command, self._damping, self.limits, self.state
+        effort, damping, limits, state = self.command, self.damping, self.limits, self.state
         position, velocity = state.qpos[state.qposadr], state.qvel[state.dofadr]
         most = limits.velocity
         if limits.soft is not None or (

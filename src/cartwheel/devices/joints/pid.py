@@ -204,7 +204,18 @@ class Pid:
         rate: float | None = None,
         lightness: float = 0.0,
     ) -> DampedEffort:
-        """Returns the effort for a position error.
+        """Returns the effort for a position error; see `position_terms`."""
+        return _damped(self.position_terms(error, seconds, target, rate, lightness))
+
+    def position_terms(
+        self,
+        error: float,
+        seconds: float,
+        target: float,
+        rate: float | None = None,
+        lightness: float = 0.0,
+    ) -> tuple[float, float]:
+        """Returns the effort for a position error and its damping, as a `DampedEffort` has them.
 
         Args:
             error: Target minus position, rad or m.
@@ -234,7 +245,7 @@ class Pid:
         effort = p * error + term + d * rate
         if p * seconds * seconds * lightness > _STIFF:
             effort, d = effort + p * seconds * rate, d + p * seconds
-        return _damped((effort, d))
+        return effort, d
 
     def velocity(
         self, target: float, velocity: float, seconds: float, lightness: float = 0.0

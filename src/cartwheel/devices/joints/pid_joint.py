@@ -12,6 +12,7 @@ from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 
 Quantity = Literal["position", "velocity", "effort"]
 UNKNOWN = (math.nan, math.nan)
+_TURN = 2 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,12 +51,13 @@ class PidJoint:
         Args:
             seconds: Time since the last call, s.
         """
+        # This runs at every step, so it reads the state without calls.
         joint, target = self.joint, self.target
         state = joint.state
-        velocity = state.velocity
+        velocity = state.qvel[state.dofadr]
         if self.config.quantity == "velocity":
             error = target - velocity
-            command = self._pid.velocity(target, velocity, seconds, state.lightness)
+            effort, damping = self._pid.velocity(target, velocity, seconds, state.lightness)
         else:
             if joint.type != "continuous":
                 # Comparisons take a quarter of the time of `clamp`.
@@ -64,14 +66,15 @@ class PidJoint:
                     target = limits.lower
                 if limits.upper < target:  # noqa: PLR1730
                     target = limits.upper
-                error = target - state.position
+                error = target - state.qpos[state.qposadr]
             else:
-                error = joint.error(target)
-            command = self._pid.position(error, seconds, target, None, state.lightness)
-        effort, damping = command
+                error = math.remainder(target - state.qpos[state.qposadr], _TURN)
+            effort, damping = self._pid.position_terms(
+                error, seconds, target, None, state.lightness
+            )
         output: float = effort - damping * velocity
         if self.config.commands_effort:
-            joint.set_effort(command)
+            joint.command, joint.damping = effort, damping
         else:
             joint.command = output
         return error, output
