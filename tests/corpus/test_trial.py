@@ -19,11 +19,13 @@ from cartwheel.codes.robot import (
     UNBALANCED,
     WHEEL_DIAMETER_MISMATCH,
     WHEEL_FRICTIONLESS,
+    WHEEL_NOT_ROUND,
     WHEEL_SEPARATION_MISMATCH,
     WHEELS_SWAPPED,
 )
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
 from cartwheel.corpus import trial, try_robot
+from cartwheel.corpus.diagnosis import _of_drive
 from cartwheel.corpus.trial import _listened
 from cartwheel.description import load_text
 from cartwheel.description.launches import launches_near
@@ -129,6 +131,16 @@ def test_a_separation_explains_the_turn_rate_that_follows_from_it_and_no_other(t
     )
     verdict = tried(wide, slippery)
     assert {fault.code for fault in verdict.faults} == {WHEEL_FRICTIONLESS}
+
+
+def test_a_size_does_not_explain_an_error_in_the_other_direction():
+    """It turns 12 % more than commanded; by its separation alone, it would turn 2 % less."""
+    separation = WHEEL_SEPARATION_MISMATCH.diagnostic(
+        "2 % less", severity="warning", values={"stated": 0.39, "measured": 0.3985}
+    )
+    shape = WHEEL_NOT_ROUND.diagnostic("not round", severity="warning")
+    assert _of_drive([separation, shape], 1.12, turning=True) is shape
+    assert _of_drive([separation, shape], 0.98, turning=True) is separation
 
 
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):
@@ -368,6 +380,18 @@ def test_an_effort_moves_a_light_link_without_throwing_it(tmp_path, tried):
     assert verdict.good, verdict.faults
 
 
+def test_an_effort_moves_a_damped_joint_of_little_inertia(tmp_path, tried):
+    """The effort for an acceleration of 5 rad/s² alone would turn it at 5e-6 rad/s."""
+    path = tmp_path / "push.yaml"
+    path.write_text("push:\n  type: effort_controllers/JointEffortController\n  joint: shoulder\n")
+    light = ARM.format(kind="Effort").replace('"0.01"', '"1e-8"').replace("0 0 0.1", "0 0 0")
+    damped = light.replace("<limit", '<dynamics damping="0.01"/><limit')
+    verdict = tried(damped, controllers=[path])
+    (spin,) = verdict.spins
+    assert spin.measured == pytest.approx(0.5, rel=0.1)
+    assert verdict.good, verdict.faults
+
+
 def test_a_joint_that_is_too_weak_does_not_arrive(tmp_path, tried):
     path = tmp_path / "weak.yaml"
     path.write_text(PID.format(p=100.0))
@@ -510,6 +534,25 @@ def test_joints_are_moved_by_velocities_and_efforts(tmp_path, tried, kind):
     assert verdict.good
 
 
+def test_the_velocities_of_a_joint_with_close_limits_end_within_them(tmp_path):
+    """The joint has 0.15 rad in each direction: at 0.5 rad/s, it would be there after 0.3 s."""
+    path = tmp_path / "robot.sdf"
+    path.write_text(
+        '<sdf version="1.9"><model name="robot"><link name="base"/><joint name="bolt" type="fixed">'
+        "<parent>world</parent><child>base</child></joint><link name='beam'><inertial>"
+        "<mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link>"
+        "<joint name='tilt' type='revolute'><parent>base</parent><child>beam</child><axis>"
+        "<xyz>0 1 0</xyz><limit><lower>-0.15</lower><upper>0.15</upper></limit></axis></joint>"
+        '<plugin filename="gz-sim-joint-controller-system" name="c"><joint_name>tilt</joint_name>'
+        "</plugin></model></sdf>"
+    )
+    verdict = try_robot(path, standing=2.0)
+    assert verdict.good, verdict
+    (spin,) = verdict.spins
+    assert 0 < abs(spin.commanded) < 0.15 / 2
+    assert spin.measured == pytest.approx(spin.commanded, rel=0.01)
+
+
 def test_plugins_that_are_not_there_are_listed_and_cost_nothing_else(tried):
     extra = '<gazebo><plugin name="x" filename="libmy_own_thing.so"/></gazebo>'
     verdict = tried(cart(0.1), extra)
@@ -587,7 +630,12 @@ def test_arguments_and_controllers_come_from_the_launch_files_of_the_robot(tmp_p
 
 
 @pytest.mark.parametrize(
-    ("name", "moves"), [("libown_gm_status.so", False), ("libown_gm_thing.so", True)]
+    ("name", "moves"),
+    [
+        ("libown_gm_status.so", False),
+        ("librotors_gazebo_own_wind.so", False),
+        ("libown_gm_thing.so", True),
+    ],
 )
 def test_an_unsupported_plugin_that_measures_a_joint_moves_nothing(tried, name, moves):
     plugin = (

@@ -330,3 +330,18 @@ def test_a_stranger_with_many_arguments_does_not_make_the_search_long(sizes, mon
     monkeypatch.setattr(search, "beside", beside)
     assert launches_near(folder)
     assert 0 < len(searched) <= 100
+
+
+def test_the_launch_file_that_starts_controllers_is_chosen(package):
+    """Another one, whose name comes first, loads a file of controllers and starts none of it."""
+    spawner = '<node name="s" pkg="controller_manager" type="spawner" args=""/>'
+    sleeper = ROS1.replace("control.launch", "none.launch")
+    none = CONTROL.replace(CONTROL.splitlines()[2].strip(), spawner)
+    folder = package(
+        a_dot_launch=sleeper, none_dot_launch=none, b_dot_launch=ROS1, control_dot_launch=CONTROL
+    )
+    launches = launches_near(folder)
+    assert any(each.file.name == "a.launch" and each.controllers for each in launches)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches)
+    assert use.file == folder / "launch/b.launch"
+    assert use.spawned == ("arm_controller", "joints")

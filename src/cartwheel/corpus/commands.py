@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from cartwheel.api import Model, World
 from cartwheel.corpus.motion import degree, positions, resistance
 from cartwheel.corpus.thrusters import thruster_topics
 from cartwheel.corpus.verdict import RISEN, Flight, Spin
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.graph import TopicInfo
@@ -24,6 +24,8 @@ _ACTUATORS = {
 """Fields with the propellers' speeds by message type."""
 _VELOCITY = 0.5
 """rad/s or m/s."""
+_ROOM = 0.8
+"""Fraction of the way to a joint's limit that it may move."""
 _ACCELERATION = 5.0
 """rad/s² or m/s², commanded by an effort beyond what holds a joint: the limit of a strong motor
 would accelerate a light link beyond all bounds."""
@@ -68,15 +70,20 @@ def spins(
                 pushes = re.search("effort|force", kind, re.IGNORECASE) and "Velocity" not in kind
                 (by_effort if pushes else by_velocity).append((info, joints))
     if by_velocity:
-        before, after = _moved(world, model, by_velocity, _VELOCITY, (_SPEEDING, _MEASURED))
+        speeds: dict[str, float] = {}
+
+        def speed_of(name: str) -> float:
+            speeds[name] = _velocity(robot.joint(name), model.joint(name))
+            return speeds[name]
+
+        before, after = _moved(world, model, by_velocity, speed_of, (_SPEEDING, _MEASURED))
         for info, joints in by_velocity:
             for name in joints:
-                speed = (after[name] - before[name]) / _MEASURED
                 yield Spin(
                     topic=info.name,
                     joint=name,
-                    commanded=_VELOCITY,
-                    measured=speed,
+                    commanded=speeds[name],
+                    measured=(after[name] - before[name]) / _MEASURED,
                     effort=False,
                     sag=_sag(world, model, name, gains.get(name, 0.0)),
                 )
@@ -85,8 +92,10 @@ def spins(
             # An effort on several joints of a chain may move one of them backward.
             effort = _effort(world, model, robot, name)
             only = index if info.type == _FLOATS else None
-            _, pushed = _moved(world, model, [(info, joints)], effort, (0.0, _PUSHING), only=only)
-            _, pulled = _moved(world, model, [(info, joints)], -effort, (0.0, _PUSHING), only=only)
+            pushed, pulled = (
+                _moved(world, model, [(info, joints)], _always(push), (0.0, _PUSHING), only=only)[1]
+                for push in (effort, -effort)
+            )
             speed = (pushed[name] - pulled[name]) / 2 / _PUSHING
             yield Spin(topic=info.name, joint=name, commanded=effort, measured=speed, effort=True)
 
@@ -129,8 +138,31 @@ def _sag(world: World, model: Model, joint: str, gain: float) -> float:
     if gain <= 0:
         return 0.0
     load, _ = resistance(world, model, joint)
-    damping = float(world.session.simulation.model.dof_damping[degree(world, model, joint)])
-    return (load + damping * _VELOCITY) / gain
+    return (load + _damping(world, model, joint) * _VELOCITY) / gain
+
+
+def _damping(world: World, model: Model, joint: str) -> float:
+    """N m s/rad or N s/m."""
+    return float(world.session.simulation.model.dof_damping[degree(world, model, joint)])
+
+
+def _always(value: float) -> Callable[[str], float]:
+    """The same command for all joints."""
+    return lambda _: value
+
+
+def _velocity(joint: Joint | None, position: float) -> float:
+    """A velocity at which a joint stays within its limits during the test, rad/s or m/s."""
+    if joint is None:
+        return _VELOCITY
+    fastest = min(_VELOCITY, joint.axis.velocity or _VELOCITY)
+    lower, upper = joint.axis.lower, joint.axis.upper
+    if joint.type == "continuous" or lower is None or upper is None:
+        return fastest
+    room, sign = max((upper - position, 1.0), (position - lower, -1.0))
+    if upper <= lower or room <= 0:
+        return fastest
+    return sign * min(fastest, _ROOM * room / (_SPEEDING + _MEASURED))
 
 
 def _effort(world: World, model: Model, robot: RobotDescription, name: str) -> float:
@@ -138,29 +170,33 @@ def _effort(world: World, model: Model, robot: RobotDescription, name: str) -> f
     load, inertia = resistance(world, model, name)
     joint = robot.joint(name)
     limit = (joint.axis.effort if joint is not None else None) or math.inf
-    return min(load + _ACCELERATION * inertia, limit)
+    # A damped joint of little inertia would not move otherwise.
+    damped = _damping(world, model, name) * _VELOCITY
+    return min(load + _ACCELERATION * inertia + damped, limit)
 
 
 def _moved(
     world: World,
     model: Model,
     inputs: Sequence[tuple[TopicInfo, tuple[str, ...]]],
-    value: float,
+    value: Callable[[str], float],
     seconds: tuple[float, float],
     *,
     only: int | None = None,
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Positions at the beginning and end of a measurement, after a reset and a command.
 
-    `seconds` contains the time before the measurement and its duration. `only` is the index of the
-    joint that receives the value; the others of its topic receive 0.
+    `value` returns the command of a joint. `seconds` contains the time before the measurement and
+    its duration. `only` is the index of the joint that receives its value; the others of its topic
+    receive 0.
     """
     world.reset()
     world.run(0.5)
     for info, joints in inputs:
-        said: Any = value
-        if info.type != _FLOAT:
-            said = [value if only in (None, index) else 0.0 for index in range(len(joints))]
+        values = [
+            value(name) if only in (None, index) else 0.0 for index, name in enumerate(joints)
+        ]
+        said: Any = values[0] if info.type == _FLOAT else values
         world.publish(info.name, {"data": said})
     if seconds[0]:
         world.run(seconds[0])

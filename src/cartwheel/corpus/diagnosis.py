@@ -228,7 +228,7 @@ def _of_drive(
             continue
         for each, factor in (*factors.values(), (cause, 1.0)):
             ratios = (sign * factor, sign * product)
-            if each is not None and any(abs(ratio - e) <= _AGREES * abs(e) for e in ratios):
+            if each is not None and any(_follows(ratio, e) for e in ratios):
                 return each
     if arc and factors:
         # Steering and rim speeds contradict each other, so the wheels slide.
@@ -237,6 +237,12 @@ def _of_drive(
             return next(iter(factors.values()))[0]
     codes = _TURNING if turning else _DRIVING
     return _first(each for each in found if each.code in codes)
+
+
+def _follows(ratio: float, expected: float) -> bool:
+    """Whether a measured ratio follows from a mistake, rather than from none."""
+    error = abs(ratio - expected)
+    return error <= _AGREES * abs(expected) and error < abs(ratio - 1.0)
 
 
 def _rolling(skids: Diagnostic) -> float:

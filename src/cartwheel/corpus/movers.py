@@ -11,14 +11,14 @@ from cartwheel.dialects.world_plugins import BUILT_IN
 
 _MOVES = re.compile(
     r"drive|steer|drone|copter|planar_move|force_based_move|motor|mecanum|tricycle|kobuki|multi_wheel|thruster"
-    r"|propeller|rotor|velocity-control|joint-.*controller|ackerman|trajectory|(?<!_ros)_control",
+    r"|propeller|rotor(?!s_gazebo)|velocity-control|joint-.*controller|ackerman|trajectory|(?<!_ros)_control",
     re.IGNORECASE,
 )
 """Names of plugins that move something. Those of controller managers are not among them."""
 _RECORDS = re.compile(r"(?:^|_)bag_plugin|record", re.IGNORECASE)
 """Names of plugins that only record what moves."""
-_REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom", re.IGNORECASE)
-"""Names of unsupported plugins that only measure, although their tags contain joints."""
+_REPORTS = re.compile(r"status|state|monitor|publisher|sensor|encoder|odom|wind", re.IGNORECASE)
+"""Names of unsupported plugins without commands, although their tags contain joints or forces."""
 _MANAGER = re.compile(r"ros2?_control")
 _COMMANDS = re.compile(r"gain|force|torque|thrust|motor|rotor|cmd_?vel", re.IGNORECASE)
 """Names of the tags of unsupported plugins that move something."""

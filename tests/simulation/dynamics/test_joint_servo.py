@@ -10,6 +10,8 @@ from cartwheel.simulation.dynamics.joint_servo import POSITION_BANDWIDTH
 MASS, ARM, INERTIA, GRAVITY = 2.0, 0.5, 0.1, 9.8
 TURNED = INERTIA + MASS * ARM**2
 WEIGHT = MASS * GRAVITY * ARM
+STRONGEST = 1e6
+"""N m; of a motor without a stated limit."""
 BEAM = f"""<model name="arm"><link name="base"/><joint name="bolt" type="fixed">
   <parent>world</parent>
   <child>base</child></joint><link name="beam"><inertial><pose>{ARM} 0 0 0 0 0</pose>
@@ -21,7 +23,7 @@ BEAM = f"""<model name="arm"><link name="base"/><joint name="bolt" type="fixed">
 class Beam:
     """A beam of known weight on a servo."""
 
-    def __init__(self, make, strength=200.0, step=None):
+    def __init__(self, make, strength=200.0, step=None, limits=""):
         self.handles = []
 
         def attach(part):
@@ -30,7 +32,8 @@ class Beam:
 
         world = make.world(step=step, ground=None).session.simulation.world
         self.simulation = Simulation(world, attach=attach)
-        self.simulation.spawn(make.sdf(BEAM))
+        model = BEAM.replace("</xyz></axis>", f"</xyz>{limits}</axis>")
+        self.simulation.spawn(make.sdf(model))
         (self.servo,) = self.handles
 
     def run(self, seconds):
@@ -105,6 +108,22 @@ def test_a_velocity_is_held(make):
     beam.servo.command_velocity(-0.5)
     beam.run(2.0)
     assert beam.angle == pytest.approx(-1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("velocity", [0.5, -0.5])
+def test_no_velocity_drives_a_joint_through_its_limit(make, velocity):
+    """However strong the motor, as in Gazebo, where the limit comes before the motor."""
+    limits = "<limit><lower>-0.3</lower><upper>0.3</upper></limit>"
+    beam = Beam(make, strength=STRONGEST, limits=limits)
+    beam.servo.command_velocity(velocity)
+    beam.run(0.4)
+    assert beam.angle == pytest.approx(0.4 * velocity, abs=0.01)
+    beam.run(1.6)
+    assert beam.angle == pytest.approx(math.copysign(0.3, velocity), abs=1e-3)
+    assert beam.speed == pytest.approx(0.0, abs=1e-3)
+    beam.servo.command_velocity(-velocity)
+    beam.run(0.4)
+    assert beam.angle == pytest.approx(math.copysign(0.1, velocity), abs=0.01)
 
 
 def test_a_gentle_position_takes_no_more_effort_than_it_may(make):

@@ -148,10 +148,11 @@ def controllers_for(
     return min(others, key=lambda each: (-_common(each.file, home), str(each.file)), default=None)
 
 
-def _order(use: LaunchUse) -> tuple[bool, bool, int, int, str]:
+def _order(use: LaunchUse) -> tuple[bool, int, int, int, str]:
     return (
         not use.simulated,
-        not use.spawned and not use.controllers,
+        # A file may be loaded without a controller in it being started.
+        -bool(use.spawned) - bool(use.controllers),
         use.unknown,
         len(use.file.parts),
         str(use.file),

@@ -26,7 +26,8 @@ class ServoHandle:
     """Applies an effort, or holds a velocity or position with limited effort.
 
     Velocities and positions are held by dry friction with a rotor, as in a `MotorHandle`: exact
-    below the effort limit, whatever the load.
+    below the effort limit, whatever the load. A velocity does not move a joint beyond its limits,
+    as in Gazebo: close to a limit, the joint approaches it as a target position.
 
     A drive plugin may drive the same joint. As in Gazebo, the joint then has one motor plus
     efforts: the drive uses the motor while no velocity or position is commanded here.
@@ -48,6 +49,8 @@ class ServoHandle:
         self._applied: Mode = "idle"
         """The mode in which `_apply` set the actuator; idle if it must be set again."""
         self._awake = False
+        self._ends: tuple[float, float] | None = None
+        """The joint's limits, rad or m; None without limits."""
         self._law = (0.0, 0.0)
         self._turning = 0.0
         self._target = self._rate = 0.0
@@ -74,6 +77,8 @@ class ServoHandle:
         self._tendon = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._strength = float(self._grip[self._tendon])
         self._dof = int(model.jnt_dofadr[joint])
+        lower, upper = (float(end) for end in model.jnt_range[joint])
+        self._ends = (lower, upper) if model.jnt_limited[joint] else None
         self.weigh(model)
         self._commanded_again = self.period <= self._step
         if self._first is None:
@@ -115,7 +120,12 @@ class ServoHandle:
             self._give("effort", effort, damping)
 
     def command_velocity(self, velocity: float) -> None:
-        """Holds a velocity in rad/s or m/s."""
+        """Holds a velocity in rad/s or m/s, but stops at the joint's limits."""
+        if self._ends is not None:
+            self._rate = velocity
+            if not self._awake:
+                self._rouse()
+            velocity = self._inside(velocity, *self._ends)
         if self._applied == "velocity":
             self._turning = self._qvel[self._rotor] = velocity
         else:
@@ -165,10 +175,23 @@ class ServoHandle:
         return self.mode != "idle" and (self._law[0] != 0.0 or self._turning != 0.0)
 
     def follow(self) -> None:
-        """Moves the joint toward its target position, if there is one; called at every step."""
+        """Moves the joint toward its target position, or stops it at a limit; called at every
+        step.
+        """
         if self.mode == "position":
             self._target += self._rate * self._step
             self._lead()
+        elif self.mode == "velocity" and self._ends is not None:
+            self.command_velocity(self._rate)
+
+    def _inside(self, velocity: float, lower: float, upper: float) -> float:
+        """The velocity that does not move the joint beyond its limits."""
+        position: float = self._qpos[self._position]
+        if velocity > 0.0:
+            return min(velocity, POSITION_BANDWIDTH * (upper - position))
+        if velocity < 0.0:
+            return max(velocity, POSITION_BANDWIDTH * (lower - position))
+        return velocity
 
     def _lead(self) -> None:
         error, rate, fastest = self._target - self._qpos[self._position], self._rate, self._fastest
