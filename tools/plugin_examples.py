@@ -126,14 +126,23 @@ def robot(plugin: type[Plugin[Any]], inside: str) -> str:
         f'<link name="{LINK}">{mass}<collision name="{LINK}_collision">'
         '<geometry><sphere radius="0.1"/></geometry></collision></link>'
     ]
-    for name in _joint_names(plugin):
+    wheels = _joint_names(plugin)
+    rotors = sorted(set(re.findall(r"<jointName>(\w+)</jointName>", inside)) - set(wheels))
+    for name in (*wheels, *rotors):
+        axis = "0 0 1" if name in rotors else "0 1 0"
         # Where its name says, so that a drive measures its axles apart.
         x, y = (0.2 if "front" in name else -0.2), (0.2 if "left" in name else -0.2)
         parts.append(
             f'<link name="{name}_wheel">{mass}<collision><geometry><sphere radius="0.1"/>'
             f'</geometry></collision></link><joint name="{name}" type="continuous">'
             f'<parent link="{LINK}"/><child link="{name}_wheel"/><origin xyz="{x} {y} 0"/>'
-            '<axis xyz="0 1 0"/></joint>'
+            f'<axis xyz="{axis}"/></joint>'
+        )
+    for name in sorted(set(re.findall(r"<link>(\w+)</link>", inside)) - {LINK}):
+        y = 0.2 if "left" in name else -0.2
+        parts.append(
+            f'<link name="{name}">{mass}</link><joint name="{name}_joint" type="fixed">'
+            f'<parent link="{LINK}"/><child link="{name}"/><origin xyz="0 {y} 0"/></joint>'
         )
     parts += [
         _element(

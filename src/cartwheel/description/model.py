@@ -250,6 +250,10 @@ class Inertial:
     ixz: float = 0.0
     iyz: float = 0.0
     """kg m²."""
+    added_mass: tuple[float, ...] = ()
+    """Mass of the water that moves with the link: the upper triangle of a symmetric 6 × 6 matrix,
+    row by row, in kg, kg m and kg m². Its rows and columns are x, y, z and the rotations about
+    them, in the axes of the link and about its origin. Empty: none."""
     origin: Origin
 
     @property

@@ -74,7 +74,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             and not any(plugin_named(tag.filename, more) for tag in one.plugins)
         ]
         plugins += _serve(part, shared, alone, systems)
-        effects = list(_effects_of_world(part, shared, more))
+        effects = [*_effects_of_world(part, shared, more), *_added_masses(part, shared)]
     except BaseException:
         for created in plugins:
             created.close()
@@ -91,6 +91,16 @@ def _effects_of_world(part: Part, shared: Shared, more: Plugins) -> Iterator[Beh
             tags.setdefault(plugin, tag)
     for plugin, tag in tags.items():
         yield from plugin.added_to(part, shared, tag)
+
+
+def _added_masses(part: Part, shared: Shared) -> Iterator[Behaviour]:
+    """Creates the forces of the water that moves with links, as their inertials state."""
+    inertials = [link.inertial for link in part.description.links]
+    if not any(each is not None and each.added_mass for each in inertials):
+        return
+    from cartwheel.dialects.gz.fluids.hydrodynamics import HydrodynamicsSystem
+
+    yield from HydrodynamicsSystem.of_inertials(part, shared)
 
 
 def _serve(

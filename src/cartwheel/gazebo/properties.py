@@ -150,7 +150,8 @@ class Properties:
                     "mass",
                     value=values["mass"],
                 )
-            inertial = Inertial(pose=com, origin=link.origin, **values)
+            water = link.inertial.added_mass if link.inertial is not None else ()
+            inertial = Inertial(pose=com, added_mass=water, origin=link.origin, **values)
             moments = principal_moments(inertial.diagonal, inertial.products)
             if (reason := impossibility(moments)) is not None:
                 raise GraphError(

@@ -26,6 +26,7 @@ from cartwheel.geometry import (
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.moving_surface import SurfaceHandle
 from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
 from cartwheel.world.entry import ROTOR, Motor, scoped
 
@@ -391,4 +392,5 @@ Handle = (
     | AttachmentHandle
     | SurroundingsHandle
     | SlipHandle
+    | SurfaceHandle
 )

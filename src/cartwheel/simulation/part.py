@@ -9,10 +9,12 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from cartwheel.description.model import WorldDescription
+from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 from cartwheel.simulation.clock import NANOSECONDS, SLOWEST, Task
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.moving_surface import SurfaceHandle
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import (
     CameraHandle,
@@ -152,6 +154,20 @@ class Part(Requests):
             geoms = self._touched[key] = geoms_of(model, names)
         return contacts_of(model, self._engine.data, geoms)
 
+    def surface(self, link: str, *, origin: Origin | None = None) -> SurfaceHandle:
+        """The surfaces of a link's collisions, which can move along themselves.
+
+        Raises:
+            UnknownNameError: The link does not exist; the error has this `origin`.
+        """
+        self.link(link, origin=origin)
+        # The surface must be able to move a body that rests on it.
+        self.feel(link)
+        self._entry.tracks.append(link)
+        handle = SurfaceHandle(self.name, link)
+        self.handles.append(handle)
+        return handle
+
     def tune(self, joint: str, controller: Tuned) -> None:
         """States that a PID controller moves a joint, so that users can change its gains."""
         self.tuned.append((joint, controller))
@@ -184,6 +200,8 @@ class Part(Requests):
                     handle.release()
                 elif isinstance(handle, WrenchHandle):
                     handle.apply((0.0,) * 3, (0.0,) * 3)
+                elif isinstance(handle, SurfaceHandle):
+                    handle.stop()
 
     def fail(self, plugin: object, error: BaseException) -> None:
         """Disables a plugin of this model that failed outside its tasks."""
@@ -201,6 +219,7 @@ class Part(Requests):
             entry.drives,
             entry.cameras,
             entry.attachments,
+            entry.tracks,
             entry.felt,
         )
         tables: tuple[dict[str, Any], ...] = (entry.motors, entry.mimics, entry.slips)

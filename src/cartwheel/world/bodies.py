@@ -277,6 +277,7 @@ class BodyBuilder:
                         origin=collision.origin,
                         direction=_direction(entry, link, collision),
                         slips=link.name in entry.slips,
+                        travels=link.name in entry.tracks,
                     )
                 )
 

@@ -44,11 +44,12 @@ TRAILING_TIME_CONSTANT = 0.4
 The wheels prevent creep, and friction that stops such a part at once would throw it up.
 """
 SCRUBBING_TIME_CONSTANT = 0.12
-"""The same for wheels that slide sideways when their robot turns, such as those of skid steers, s.
+"""The same for tracks, and for wheels that slide sideways when their robot turns, such as those of
+skid steers, s.
 """
 SCRUBBING_IMPEDANCE = (0.5, 0.5, 0.0005, 0.5, 2.0)
-"""MuJoCo's solimp for these wheels. They sink by g T² / 2, with the time constant T of the contact,
-which is more than the sliding friction lifts them.
+"""MuJoCo's solimp for both. They sink by g T² / 2, with the time constant T of the contact, which
+is more than the sliding friction lifts them.
 """
 TORSION = 0.005
 """m; MuJoCo's default, which contacts with three dimensions do not use."""
@@ -96,6 +97,8 @@ class BuiltSurface:
     """Whether it is a wheel of a robot that also drags parts, for which it needs stiff friction."""
     slips: bool = False
     """Whether it is a wheel whose slip a plugin controls, so that its contact must not add any."""
+    travels: bool = False
+    """Whether it is a track or a belt, whose surface moves."""
 
     @property
     def slides(self) -> bool:
@@ -104,8 +107,8 @@ class BuiltSurface:
 
     @property
     def scrubs_softly(self) -> bool:
-        """Whether it is a wheel with the soft contact of skid steers."""
-        return self.scrubs and not (self.pulls or self.slips)
+        """Whether it is a track, or a wheel with the soft contact of skid steers."""
+        return self.travels or (self.scrubs and not (self.pulls or self.slips))
 
     @property
     def friction_time(self) -> float | None:

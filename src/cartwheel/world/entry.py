@@ -99,6 +99,8 @@ class ModelEntry:
     cameras: list[CameraMount] = field(default_factory=list)
     slips: dict[str, float] = field(default_factory=dict)
     """Wheels with slipping tyres by link, with their radius in m; see `SlipHandle`."""
+    tracks: list[str] = field(default_factory=list)
+    """Links whose surface moves along itself; see `SurfaceHandle`."""
     felt: list[str] = field(default_factory=list)
     """Links whose contacts must stay awake, besides those with contact sensors."""
     attachments: list[str] = field(default_factory=list)
@@ -113,6 +115,7 @@ class ModelEntry:
             drives=list(self.drives),
             cameras=list(self.cameras),
             slips=dict(self.slips),
+            tracks=list(self.tracks),
             felt=list(self.felt),
             attachments=list(self.attachments),
         )

@@ -82,9 +82,9 @@ def stated_pairs(
     with the damping b of friction and the stiffness k of the normal direction, and skips. Only an
     explicit pair can have a separate b, so sliding bodies get pairs with fixed bodies. A wheel
     keeps the stiff value, because it slips sideways by ω v/b in a turn at rate ω. Wheels that slide
-    in each turn are softer, also in the normal direction, so that they stay on the ground. Parts of
-    a robot's trunk that are dragged where its wheels roll are guided by the wheels and are softer
-    still.
+    in each turn, and tracks, are softer, also in the normal direction, so that they stay on the
+    ground. Parts of a robot's trunk that are dragged where its wheels roll are guided by the wheels
+    and are softer still.
 
     Each pair is tested in every step, near or far. In a world with more than `MOST_PAIRS`, only the
     largest floors get pairs, and bodies that slide on smaller ones are lifted.

@@ -5,10 +5,10 @@ import math
 from pathlib import Path
 
 import pytest
-from tests.coded import raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
-from cartwheel.codes import devices
+from cartwheel.codes import devices, tags
 from cartwheel.description import load_text
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import quat_from_rpy
@@ -404,3 +404,56 @@ def test_a_body_that_is_tilted_in_the_fluid_stays_so(water):
     world, boat = water(UNIFORM.format(""), mass=1000, i=100, yaw=1.0, pitch=0.5)
     world.run(2.0)
     assert boat.pose.orientation == pytest.approx(quat_from_rpy(0.0, 0.5, 1.0), abs=1e-6)
+
+
+def weighted(tags):
+    """The ``<fluid_added_mass>`` of an inertial, instead of its pose."""
+    return f"<fluid_added_mass>{tags}</fluid_added_mass>"
+
+
+def motion(world, axis):
+    """A velocity of the body: 0 to 2 along the world's axes, 3 to 5 about its own."""
+    return float(world.session.simulation.data.joint("boat::base").qvel[axis])
+
+
+def acceleration(world, axis=2):
+    """Its change in a second. The water's force is known from the third step on."""
+    world.run(0.1)
+    before = motion(world, axis)
+    world.run(1.0)
+    return motion(world, axis) - before
+
+
+@pytest.mark.parametrize("added", [0.5, 10.0, 500.0])
+def test_the_added_mass_of_an_inertial_is_accelerated_but_has_no_weight(water, added):
+    world, _ = water("", mass=2.0, size="", at=weighted(f"<zz>{added}</zz>"))
+    assert acceleration(world) == pytest.approx(-GRAVITY * 2.0 / (2.0 + added), rel=1e-3)
+
+
+def test_each_direction_has_its_own_added_mass(water):
+    """A body that lies on its side falls along its own y axis."""
+    world, _ = water("", mass=2.0, size="", at=weighted("<yy>6</yy>"), roll=math.pi / 2)
+    assert acceleration(world) == pytest.approx(-GRAVITY * 2.0 / 8.0, rel=1e-3)
+    world, _ = water("", mass=2.0, size="", at=weighted("<yy>6</yy>"))
+    assert acceleration(world) == pytest.approx(-GRAVITY, rel=1e-3)
+
+
+def test_the_added_inertia_resists_a_torque(water):
+    world, boat = water("", mass=2.0, i=0.5, size="", at=weighted("<pp>1.5</pp>"))
+    boat.link("base").push(torque=(1.0, 0.0, 0.0), seconds=math.inf)
+    assert acceleration(world, 3) == pytest.approx(1.0 / 2.0, rel=1e-3)
+
+
+def test_a_plugin_of_the_link_includes_the_added_mass_of_the_inertial(water):
+    """Both together resist as one mass, also if it is much larger than that of the body."""
+    world, _ = water(
+        "", HYDRO.format("<zDotW>-100</zDotW>"), mass=2.0, size="", at=weighted("<zz>100</zz>")
+    )
+    assert acceleration(world) == pytest.approx(-GRAVITY * 2.0 / 202.0, rel=1e-3)
+
+
+def test_a_negative_added_mass_is_reported(water):
+    world, _ = water("", mass=2.0, size="", at=weighted("<xx>1</xx><xy>3</xy><yy>1</yy>"))
+    (told,) = coded(world, tags.NOT_SIMULATED)
+    assert told.values["tag"] == "fluid_added_mass"
+    assert acceleration(world) == pytest.approx(-GRAVITY, rel=1e-3)

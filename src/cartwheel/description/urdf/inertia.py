@@ -18,7 +18,8 @@ def read_inertial(node: Node) -> Inertial:
         raise node.fail(f"a mass must be at most {HEAVIEST:g} kg (got {mass:g})")
     tensor = node.child("inertia")
     values = {key: tensor.number_of(key, 0.0) if tensor is not None else 0.0 for key in MOMENTS}
-    return Inertial(mass=mass, pose=read_origin(node), origin=node.origin, **values)
+    pose = read_origin(node)
+    return Inertial(mass=mass, pose=pose, added_mass=(), origin=node.origin, **values)
 
 
 def judged_inertia(inertial: Inertial, link: str, *, rigid: bool, ctx: UrdfContext) -> Inertial:

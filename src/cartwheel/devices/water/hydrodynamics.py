@@ -36,7 +36,7 @@ class HydrodynamicsConfig:
     current: Vec3
     """Initial velocity of the water in the world, m/s."""
     current_topic: str
-    """Topic of the velocity of the water (Vector3), m/s."""
+    """Topic of the velocity of the water (Vector3), m/s. Empty: it is constant."""
 
 
 class Hydrodynamics(Component):
@@ -67,7 +67,8 @@ class Hydrodynamics(Component):
         x, y, z = description.mass_centre
         self._to_origin = np.array((-x, -y, -z))
         self._clear()
-        self.subscribe(config.current_topic, "geometry_msgs/msg/Vector3", self._on_current)
+        if config.current_topic:
+            self.subscribe(config.current_topic, "geometry_msgs/msg/Vector3", self._on_current)
         part.schedule(0, before=self._apply)
 
     def reset(self) -> None:

@@ -59,61 +59,72 @@ class GzDriveParameters:
     )
 
 
-def _limit_tag(name: str) -> Any:
-    """A limit on linear or angular motion, or on both, as the words of its name state."""
-    bound, *motion, quantity = name.split("_")
+def limit_tag(name: str, *, motion: str = "", path: str = "") -> Any:
+    """A limit on linear or angular motion, or on both, as the words of its name state.
+
+    Args:
+        name: Name of the tag.
+        motion: ``linear`` or ``angular``, if the name does not state the motion.
+        path: Tag that contains the tag, with a slash.
+    """
+    bound, *words, quantity = name.split("_")
     word = {"min": "Minimum", "max": "Maximum"}[bound]
     linear, angular = _UNITS[quantity]
-    unit = angular if motion == ["angular"] else linear
+    unit = angular if "angular" in (*words, motion) else linear
     if quantity == "jerk":
         doc = "No effect: jerk is not limited."
     elif motion:
-        doc = f"{word} {motion[0]} {quantity}. Overrides `<{bound}_{quantity}>`."
+        doc = f"{word} {motion} {quantity}. Default: no limit."
+    elif words:
+        motion = words[0]
+        doc = f"{word} {motion} {quantity}. Overrides `<{bound}_{quantity}>`."
     else:
         doc = (
             f"{word} of the linear {quantity} (in {linear}) and of the angular {quantity} (in "
             f"{angular}). Default: no limit."
         )
         unit = f"{linear} or {angular}"
-    return tag(name, default=None, unit=unit, doc=doc)
+    return tag(f"{path}{name}", default=None, unit=unit, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzCommonLimits(GzDriveParameters):
     """Limits on linear and angular motion."""
 
-    min_velocity: float | None = _limit_tag("min_velocity")
-    max_velocity: float | None = _limit_tag("max_velocity")
-    min_acceleration: float | None = _limit_tag("min_acceleration")
-    max_acceleration: float | None = _limit_tag("max_acceleration")
-    min_jerk: float | None = _limit_tag("min_jerk")
-    max_jerk: float | None = _limit_tag("max_jerk")
+    min_velocity: float | None = limit_tag("min_velocity")
+    max_velocity: float | None = limit_tag("max_velocity")
+    min_acceleration: float | None = limit_tag("min_acceleration")
+    max_acceleration: float | None = limit_tag("max_acceleration")
+    min_jerk: float | None = limit_tag("min_jerk")
+    max_jerk: float | None = limit_tag("max_jerk")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GzLimitedParameters(GzCommonLimits):
     """Separate limits for linear and angular motion, which override the common limits."""
 
-    min_linear_velocity: float | None = _limit_tag("min_linear_velocity")
-    max_linear_velocity: float | None = _limit_tag("max_linear_velocity")
-    min_angular_velocity: float | None = _limit_tag("min_angular_velocity")
-    max_angular_velocity: float | None = _limit_tag("max_angular_velocity")
-    min_linear_acceleration: float | None = _limit_tag("min_linear_acceleration")
-    max_linear_acceleration: float | None = _limit_tag("max_linear_acceleration")
-    min_angular_acceleration: float | None = _limit_tag("min_angular_acceleration")
-    max_angular_acceleration: float | None = _limit_tag("max_angular_acceleration")
-    min_linear_jerk: float | None = _limit_tag("min_linear_jerk")
-    max_linear_jerk: float | None = _limit_tag("max_linear_jerk")
-    min_angular_jerk: float | None = _limit_tag("min_angular_jerk")
-    max_angular_jerk: float | None = _limit_tag("max_angular_jerk")
+    min_linear_velocity: float | None = limit_tag("min_linear_velocity")
+    max_linear_velocity: float | None = limit_tag("max_linear_velocity")
+    min_angular_velocity: float | None = limit_tag("min_angular_velocity")
+    max_angular_velocity: float | None = limit_tag("max_angular_velocity")
+    min_linear_acceleration: float | None = limit_tag("min_linear_acceleration")
+    max_linear_acceleration: float | None = limit_tag("max_linear_acceleration")
+    min_angular_acceleration: float | None = limit_tag("min_angular_acceleration")
+    max_angular_acceleration: float | None = limit_tag("max_angular_acceleration")
+    min_linear_jerk: float | None = limit_tag("min_linear_jerk")
+    max_linear_jerk: float | None = limit_tag("max_linear_jerk")
+    min_angular_jerk: float | None = limit_tag("min_angular_jerk")
+    max_angular_jerk: float | None = limit_tag("max_angular_jerk")
 
 
-def common_limits(limits: GzCommonLimits) -> Limits:
-    """Returns the limits on any motion."""
-    return _limits(
-        (limits.min_velocity, limits.max_velocity),
-        (limits.min_acceleration, limits.max_acceleration),
-    )
+def common_limits(limits: Any, *, prefix: str = "") -> Limits:
+    """Returns the limits on any motion, or those in the fields whose names begin with `prefix`."""
+
+    def pair(what: str) -> _Pair:
+        low, high = (getattr(limits, f"{prefix}{bound}_{what}") for bound in ("min", "max"))
+        return low, high
+
+    return _limits(pair("velocity"), pair("acceleration"))
 
 
 def separate_limits(limits: GzLimitedParameters, kind: str) -> Limits:
@@ -141,7 +152,7 @@ def _bounds(low: float | None, high: float | None) -> Bounds:
     return -math.inf if low is None else low, math.inf if high is None else high
 
 
-def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
+def report_limits(plugin: Plugin[Any], limits: Any) -> None:
     """Warns about jerk limits, which are not supported, and checks the other limits.
 
     Raises:
@@ -150,15 +161,16 @@ def report_limits(plugin: Plugin[Any], limits: GzCommonLimits) -> None:
     for field in dataclasses.fields(limits):
         value = getattr(limits, field.name)
         if value is not None and "jerk" in field.name:
-            plugin.warn_ignored(field.name, "jerk is not limited")
-        if value is not None and field.name.startswith("min_"):
+            plugin.warn_ignored(field.metadata["tags"][0], "jerk is not limited")
+        if value is not None and "min_" in field.name:
             most = getattr(limits, field.name.replace("min_", "max_"))
             if most is not None and value > most:
+                name = field.metadata["tags"][0]
                 raise PluginError(
-                    f"<{field.name}> must not exceed its maximum {most:g} (got {value:g})",
+                    f"<{name}> must not exceed its maximum {most:g} (got {value:g})",
                     code=devices.PLUGIN_RANGE_REVERSED,
-                    origin=plugin.place_of(field.name),
-                    values={"parameter": field.name, "value": value, "most": most},
+                    origin=plugin.place_of(name),
+                    values={"parameter": name, "value": value, "most": most},
                 )
 
 

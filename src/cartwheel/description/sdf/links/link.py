@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any, TypeVar
 
+import numpy as np
+
 from cartwheel.codes import robot, tags
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.losses import loss
@@ -141,6 +143,10 @@ def named_apart(kind: str, parts: Iterable[P], ctx: Context) -> list[P]:
 
 
 Place = Callable[[Node], Pose]
+_ADDED_MASS = tuple("".join(pair) for pair in itertools.combinations_with_replacement("xyzpqr", 2))
+"""Tags of a matrix's upper triangle, row by row."""
+_ROUNDING = 1e-9
+"""Largest negative eigenvalue relative to the largest one that is a rounding error."""
 
 
 def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision]) -> Inertial:
@@ -149,11 +155,28 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
     if node is None:
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=link.origin)
     if node.boolean_of("auto", False):
-        return _auto_inertial(link, node, ctx, collisions)
+        found = _auto_inertial(link, node, ctx, collisions)
+    else:
+        found = _stated_inertial(link, node, ctx, place)
     water = node.child("fluid_added_mass")
-    if water is not None:
-        water.mark()
-        ctx.report(not_simulated("<fluid_added_mass> is not simulated", water))
+    return found if water is None else replace(found, added_mass=_added_mass(water, ctx))
+
+
+def _added_mass(water: Node, ctx: Context) -> tuple[float, ...]:
+    """The added mass, as in `Inertial`; empty, with a report, if it is not that of any fluid."""
+    values = tuple(water.number_at(name, 0.0) for name in _ADDED_MASS)
+    matrix = np.zeros((6, 6))
+    matrix[np.triu_indices(6)] = values
+    sizes = np.linalg.eigvalsh(matrix, UPLO="U")
+    if sizes[0] < -_ROUNDING * max(sizes[-1], 1.0):
+        text = "<fluid_added_mass> is not simulated because its matrix must not be negative"
+        ctx.report(not_simulated(text, water))
+        return ()
+    return values
+
+
+def _stated_inertial(link: Node, node: Node, ctx: Context, place: Place) -> Inertial:
+    """The mass and the inertia in the tags."""
     tensor = node.child("inertia")
     if tensor is not None and any("nan" in each.text.lower() for each in tensor.children):
         # Written by a model editor for a mesh with unknown volume.

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from cartwheel.description.model import Element
+from cartwheel.component import Scope, Shared
+from cartwheel.description.model import Element, Link
 from cartwheel.devices.water.hydrodynamics import Hydrodynamics, HydrodynamicsConfig
+from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import number_at, tag
 from cartwheel.geometry import Array
+from cartwheel.simulation import Part
 
 T = TypeVar("T")
 _FORCES, _VELOCITIES = "xyzkmn", "UVWPQR"
@@ -30,6 +34,15 @@ _COEFFICIENTS = frozenset(
     )
 )
 """All tags that are coefficients, including the products of different axes."""
+
+
+def _stated_mass(link: Link | None) -> Array:
+    """The added mass in a link's inertial, shape (6, 6)."""
+    matrix = np.zeros((6, 6))
+    if link is not None and link.inertial is not None and link.inertial.added_mass:
+        matrix[np.triu_indices(6)] = link.inertial.added_mass
+        matrix += np.triu(matrix, 1).T
+    return matrix
 
 
 def _tag(axis: int, infix: str, what: str) -> Any:
@@ -101,7 +114,9 @@ class HydrodynamicsSystem(Plugin[HydrodynamicsParameters]):
     ``m``, ``n``), and the velocities (``U``, ``V``, ``W``) or turn rates (``P``, ``Q``, ``R``) that
     cause it. The products of different axes, such as ``<nV>``, ``<yVabsR>``, ``<xRQ>`` and
     ``<yDotR>``, are supported as well. Damping and added mass are computed implicitly, so they are
-    stable at each time step. Original plugin: ``Hydrodynamics`` in gz-sim.
+    stable at each time step. The ``<fluid_added_mass>`` of the link's ``<inertial>`` is added to
+    that of the tags; it also acts without this plugin. Original plugin: ``Hydrodynamics`` in
+    gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-hydrodynamics-system",)
@@ -114,6 +129,9 @@ class HydrodynamicsSystem(Plugin[HydrodynamicsParameters]):
         added = -self._matrix("Dot")
         if config.without_added_mass:
             added = np.zeros((6, 6))
+        link = self.part.description.link(config.link.strip())
+        # Two forces that resist one acceleration would have to be solved together.
+        stated = _stated_mass(link)
         namespace = config.namespace.strip()
         topic = f"/model/{namespace}/ocean_current" if namespace else "/ocean_current"
         self.add(
@@ -124,13 +142,48 @@ class HydrodynamicsSystem(Plugin[HydrodynamicsParameters]):
                     linear=self._matrix(""),
                     quadratic=self._products("abs"),
                     square=self._products(""),
-                    added_mass=(added + added.T) / 2,
-                    coriolis=not config.without_coriolis,
+                    added_mass=(added + added.T) / 2 + stated,
+                    coriolis=not config.without_coriolis or bool(stated.any()),
                     current=config.current,
                     current_topic=gz_name(self, topic, ""),
                 ),
             )
         )
+
+    @classmethod
+    def of_inertials(cls, part: Part, shared: Shared) -> Iterator[Hydrodynamics]:
+        """Creates the forces of each ``<fluid_added_mass>``, unless a plugin of its link does."""
+        names = set(map(short_name, cls.filenames))
+        served = {
+            stated.text.strip()
+            for plugin in part.description.plugins
+            if short_name(plugin.filename) in names
+            and (stated := plugin.element.find("link_name")) is not None
+        }
+        none = np.zeros((6, 6))
+        for link in part.description.links:
+            mass = _stated_mass(link)
+            if part.description.static or link.name in served or not mass.any():
+                continue
+            assert link.inertial is not None
+            scope = Scope(
+                part=part,
+                shared=shared,
+                node=f"{part.name}/{link.name}/fluid_added_mass",
+                title=f'added mass of link "{link.name}"',
+                origin=link.inertial.origin,
+            )
+            config = HydrodynamicsConfig(
+                link=link.name,
+                linear=none,
+                quadratic=np.zeros((6, 6, 6)),
+                square=np.zeros((6, 6, 6)),
+                added_mass=mass,
+                coriolis=True,
+                current=(0.0, 0.0, 0.0),
+                current_topic="",
+            )
+            yield part.made(partial(Hydrodynamics, scope, config))
 
     def _matrix(self, infix: str) -> Array:
         """Coefficients by force and velocity, shape (6, 6)."""

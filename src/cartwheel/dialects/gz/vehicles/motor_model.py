@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
-from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller, max_speed_tag
 from cartwheel.dialects.tags import tag
@@ -29,6 +29,16 @@ class GzMotorParameters(PropellerTags):
     fastest: float = max_speed_tag()
 
 
+def motor_topic(namespace: str, topic: str) -> str:
+    """Returns the topic of a motor's commands.
+
+    Args:
+        namespace: ``<robotNamespace>``, or the model's name.
+        topic: ``<commandSubTopic>``; may be empty.
+    """
+    return gz_topic(f"{namespace}/{topic.strip()}".rstrip("/"))
+
+
 class GzMotorModel(Plugin[GzMotorParameters]):
     """Simulates the thrust, drag and rolling moment of a propeller.
 
@@ -39,6 +49,5 @@ class GzMotorModel(Plugin[GzMotorParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-multicopter-motor-model-system",)
 
     def configure(self) -> None:
-        namespace = self.namespace or self.part.name
-        topic = f"{namespace}/{self.config.topic.strip()}".rstrip("/")
-        add_propeller(self, topic=gz_name(self, topic, ""), message=GZ_ACTUATORS)
+        topic = motor_topic(self.namespace or self.part.name, self.config.topic)
+        add_propeller(self, topic=topic, message=GZ_ACTUATORS)

@@ -1,0 +1,158 @@
+"""A vehicle on tracks, which commands their velocities and estimates its own motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cartwheel.component import Scope
+from cartwheel.devices.drives.drive import Drive, DriveConfig
+from cartwheel.devices.drives.kinematics import axle_motion
+from cartwheel.devices.drives.limiter import Limiter, Limits
+from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
+from cartwheel.geometry import Vec3, rotate
+from cartwheel.messages import message_class
+
+_FLOAT = "std_msgs/msg/Float64"
+_VECTOR = "geometry_msgs/msg/Vector3"
+_STRAIGHT = 1e-6
+"""Velocity in m/s or rad/s below which there is none."""
+_LEAST_EFFICIENCY = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrackTopics:
+    """Topics of a track; see `Track`."""
+
+    velocity: str
+    centre: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrackedVehicleConfig:
+    body: str
+    """Link about whose origin the vehicle turns in place."""
+    left: tuple[TrackTopics, ...]
+    right: tuple[TrackTopics, ...]
+    separation: float
+    """Distance between the left and the right tracks, m."""
+    efficiency: float
+    """Initial steering efficiency; see `track_speeds`."""
+    efficiency_topic: str
+    """Topic of the steering efficiency (Float64)."""
+    linear: Limits
+    """Limits on the forward speed."""
+    angular: Limits
+    """Limits on the yaw rate."""
+    drive: DriveConfig
+    """Topics and rates."""
+
+
+class TrackSpeeds(NamedTuple):
+    """Velocities of the tracks of a vehicle, and the centre of its turn."""
+
+    left: float
+    """m/s."""
+    right: float
+    """m/s."""
+    radius: float
+    """Distance of the centre of the turn to the left of the vehicle, m; infinite straight ahead."""
+
+
+def track_speeds(forward: float, turn: float, separation: float, efficiency: float) -> TrackSpeeds:
+    """Returns what the tracks do for a velocity and a yaw rate. Source: TrackedVehicle of gz-sim.
+
+    Args:
+        forward: Velocity, m/s.
+        turn: Yaw rate, rad/s.
+        separation: Distance between the left and the right tracks, m.
+        efficiency: Yaw rate as a fraction of that of wheels that do not slip.
+    """
+    half = turn * separation / (2 * efficiency)
+    radius = math.inf
+    if abs(turn) >= _STRAIGHT:
+        radius = 0.0 if abs(forward) < _STRAIGHT else forward / turn
+    return TrackSpeeds(forward - half, forward + half, radius)
+
+
+class TrackedVehicle(Drive):
+    """Commands the tracks of a vehicle from Twist commands, and publishes odometry.
+
+    As in gz-sim, the tracks are commanded only if the command changes, with the centre of the turn
+    at that time. The odometry is that of a differential drive whose rims move like the tracks.
+
+    Raises:
+        UnknownNameError: The link does not exist.
+    """
+
+    def __init__(self, scope: Scope, config: TrackedVehicleConfig) -> None:
+        super().__init__(scope)
+        self._config = config
+        self._body = self.part.link(config.body, origin=self.origin)
+        self._linear, self._angular = Limiter(config.linear), Limiter(config.angular)
+        self._reckoning = DeadReckoning()
+        self._velocities, self._centres = (
+            [
+                [self.advertise(getattr(track, name), kind) for track in side]
+                for side in (config.left, config.right)
+            ]
+            for name, kind in (("velocity", _FLOAT), ("centre", _VECTOR))
+        )
+        self.subscribe(config.efficiency_topic, _FLOAT, self._on_efficiency)
+        self.run(config.drive)
+
+    def reset(self) -> None:
+        super().reset()
+        self._command = (0.0, 0.0)
+        self._is_new = False
+        self._efficiency = self._config.efficiency
+        self._linear.reset()
+        self._angular.reset()
+        self._speeds = TrackSpeeds(0.0, 0.0, math.inf)
+        self._reckoning.restart()
+
+    def command(self, forward: float, sideways: float, turn: float) -> None:  # noqa: ARG002
+        self._command = (forward, turn)
+        self._is_new = True
+
+    def _on_efficiency(self, message: Any) -> None:
+        if message.data >= _LEAST_EFFICIENCY:
+            self._efficiency = float(message.data)
+            self._is_new = True
+
+    def update(self, seconds: float) -> None:
+        config, before = self._config, (self._linear.value, self._angular.value)
+        forward = float(self._linear.step(self._command[0], seconds))
+        turn = float(self._angular.step(self._command[1], seconds))
+        if self._is_new or (forward, turn) != before:
+            self._is_new = False
+            self._speeds = track_speeds(forward, turn, config.separation, self._efficiency)
+            self._send()
+        left, right, _ = self._speeds
+        distance, angle = axle_motion(left * seconds, right * seconds, config.separation)
+        self._reckoning.go(float(distance), float(angle), seconds)
+
+    def _send(self) -> None:
+        speeds = self._speeds
+        Float64, Vector3 = message_class(_FLOAT), message_class(_VECTOR)
+        centre = self._centre(speeds.radius)
+        for side, speed in enumerate((speeds.left, speeds.right)):
+            for publisher in self._velocities[side]:
+                publisher.publish(Float64(data=speed))
+            for publisher in self._centres[side]:
+                publisher.publish(Vector3(*centre))
+
+    def _centre(self, radius: float) -> Vec3:
+        """The centre of the turn in the world, m; infinite straight ahead."""
+        if not math.isfinite(radius):
+            return math.inf, math.inf, math.inf
+        self.part.locate()
+        place, turned = self._body.place()
+        x, y, z = (np.array(place) + radius * np.array(rotate(turned, (0.0, 1.0, 0.0)))).tolist()
+        return x, y, z
+
+    def motion(self) -> Motion:
+        return self._reckoning.motion()

@@ -1,0 +1,1 @@
+"""Plugins of gz-sim for vehicles on tracks, boats and multicopters."""
