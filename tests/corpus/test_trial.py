@@ -17,13 +17,14 @@ from cartwheel.codes.robot import (
     INERTIA_GEOMETRY_MISMATCH,
     JOINTS_UNDRIVEN,
     UNBALANCED,
+    WHEEL_AXIS_MISALIGNED,
     WHEEL_DIAMETER_MISMATCH,
     WHEEL_FRICTIONLESS,
     WHEEL_NOT_ROUND,
     WHEEL_SEPARATION_MISMATCH,
     WHEELS_SWAPPED,
 )
-from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE, PLUGIN_LEFT_OUT
 from cartwheel.corpus import trial, try_robot
 from cartwheel.corpus.diagnosis import _of_drive
 from cartwheel.corpus.trial import _listened
@@ -141,6 +142,19 @@ def test_a_size_does_not_explain_an_error_in_the_other_direction():
     shape = WHEEL_NOT_ROUND.diagnostic("not round", severity="warning")
     assert _of_drive([separation, shape], 1.12, turning=True) is shape
     assert _of_drive([separation, shape], 0.98, turning=True) is separation
+
+
+def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
+    publisher = PLUGIN_LEFT_OUT.diagnostic(
+        "no such joint", values={"plugin": "libgazebo_ros_joint_state_publisher.so"}
+    )
+    drive = PLUGIN_LEFT_OUT.diagnostic(
+        "no such joint", values={"plugin": "libgazebo_ros_diff_drive.so"}
+    )
+    axis = WHEEL_AXIS_MISALIGNED.diagnostic("turns backwards", severity="warning")
+    assert _of_drive([publisher, axis], -1.0, turning=False) is axis
+    assert _of_drive([publisher], -1.0, turning=False) is None
+    assert _of_drive([drive, axis], -1.0, turning=False) is drive
 
 
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from cartwheel.codes import devices, files, robot, running, world
 from cartwheel.corpus.faults import Fault
-from cartwheel.corpus.movers import is_known, managers, moving_plugins
+from cartwheel.corpus.movers import is_known, managers, moving_plugins, reports
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import short_name
@@ -236,7 +236,14 @@ def _of_drive(
         if min(expected) < ratio < max(expected):
             return next(iter(factors.values()))[0]
     codes = _TURNING if turning else _DRIVING
-    return _first(each for each in found if each.code in codes)
+    return _first(each for each in found if each.code in codes and not _only_measures(each))
+
+
+def _only_measures(each: Diagnostic) -> bool:
+    """Whether it is about a plugin that moves nothing, such as one that publishes joint states."""
+    return each.code is running.PLUGIN_LEFT_OUT and reports(
+        short_name(str(each.values.get("plugin", "")))
+    )
 
 
 def _follows(ratio: float, expected: float) -> bool:

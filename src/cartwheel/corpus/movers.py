@@ -51,7 +51,7 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
         and not _RECORDS.search(name)
         and (
             _MOVES.search(name)
-            or (not is_known(tag) and not _REPORTS.search(name) and _acts(tag.element, joints))
+            or (not is_known(tag) and not reports(name) and _acts(tag.element, joints))
         )
     ]
 
@@ -66,6 +66,11 @@ def managers(robot: RobotDescription) -> list[PluginTag]:
 def is_known(tag: PluginTag) -> bool:
     """Whether Cartwheel supports a plugin."""
     return bool(plugin_named(tag.filename)) or short_name(tag.filename) in BUILT_IN
+
+
+def reports(name: str) -> bool:
+    """Whether a plugin of this short name only measures or publishes."""
+    return bool(_REPORTS.search(name))
 
 
 def _acts(element: Element, joints: set[str]) -> bool:
