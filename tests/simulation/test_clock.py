@@ -6,13 +6,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from cartwheel.simulation.clock import NANOSECONDS, Schedule, Task, always, to_ns
+from cartwheel.simulation.clock import NANOSECONDS, Schedule, Task, Ticks, always, to_ns
 
 STEP = 5_000_000
 
 
-def task(rate, *, order=0, active=lambda: True, topics=None):
-    return Task(rate=rate, before=None, after=None, active=active, topics=topics, order=order)
+def task(rate, *, order=0, active=lambda: True, topics=None, idle=None):
+    return Task(
+        rate=rate, before=None, after=None, active=active, topics=topics, idle=idle, order=order
+    )
 
 
 def due_steps(rate, steps, *, step_ns=STEP):
@@ -109,3 +111,26 @@ def test_after_a_change_of_the_step_due_times_are_the_same(rate, origin_ns):
 @pytest.mark.parametrize(("seconds", "ns"), [(0.005, 5_000_000), (0.1, 100_000_000), (1e-9, 1)])
 def test_to_ns_rounds(seconds, ns):
     assert to_ns(seconds) == ns
+
+
+@pytest.mark.parametrize("period", ["1", "2", "20/3", "7/2", "1000/2997"])
+@pytest.mark.parametrize("offset", ["0", "5/2"])
+def test_the_last_due_step_is_the_one_before(period, offset):
+    ticks = Ticks(max(Fraction(period), Fraction(1)), Fraction(offset))
+    due = [step for step in range(60) if ticks.due(step) == step]
+    assert [ticks.last(step) for step in range(due[0] + 1, 60)] == [
+        max(each for each in due if each < step) for step in range(due[0] + 1, 60)
+    ]
+
+
+def test_steps_at_which_all_due_tasks_are_idle_are_skipped():
+    idle = [True]
+    schedule = Schedule([task(50, idle=lambda: idle[0]), task(20)], step_ns=STEP)
+    assert schedule.may_skip
+    assert [schedule.skip(step, 100) for step in (4, 10, 12)] == [10, 10, 20]
+    assert schedule.skip(4, 7) == 8
+    idle[0] = False
+    assert schedule.skip(4, 100) == 4
+    reads = Schedule([task(50, idle=lambda: True), task(25, active=always)], step_ns=STEP)
+    assert reads.skip(4, 100) == 8
+    assert not Schedule([task(50)], step_ns=STEP).may_skip

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import inspect
+import importlib
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
-from typing import Self
+from typing import Any, Self
 
 from cartwheel.assembly.turns import Turns
 from cartwheel.simulation import RunState, Simulation
@@ -156,8 +157,9 @@ def uninterrupted() -> Iterator[None]:
 
 
 _INTERRUPT = int(signal.SIGINT)
+_IS_CPYTHON = sys.implementation.name == "cpython"
 _usual = signal.default_int_handler
 # The functions of the module `signal` convert handlers to enumerations, which takes most of their
 # time.
-_handler = inspect.unwrap(signal.getsignal)
-_set_handler = inspect.unwrap(signal.signal)
+_functions: Any = importlib.import_module("_signal" if _IS_CPYTHON else "signal")
+_handler, _set_handler = _functions.getsignal, _functions.signal

@@ -204,7 +204,9 @@ class Graph:
     def publish(self, name: str, type_name: str, message: Any) -> None:
         """Publishes one message from any thread, by passing it to the owner's thread."""
         with self._lock:
-            topic = self._topic(name, type_name)
+            topic = self._topics.get(name)
+            if topic is None or topic.type != type_name:
+                topic = self._topic(name, type_name)
         arrive(topic, message, self.post, self.cdr)
 
     def serve(

@@ -92,17 +92,18 @@ class Advancing(Models):
                     # A task changed a task, the step length or the time.
                     left = engine.steps_until(target_ns)
                     due = population.schedule.at(engine.step)[2]
-            if change is not None and change < due:
-                due = change
-            if alarm is not None and alarm < due:
-                due = alarm
+            end = engine.step + left
+            if change is not None and change < end:
+                end = change
+            if alarm is not None and alarm < end:
+                end = alarm
             # Without tasks, commands still do not wait longer than until the next check.
             # Comparisons take a quarter of the time of `min`.
-            if watch.due < due:  # noqa: PLR1730
-                due = watch.due
-            count = due - engine.step
-            if left < count:  # noqa: PLR1730
-                count = left
+            if watch.due < end:  # noqa: PLR1730
+                end = watch.due
+            if due < end and population.schedule.may_skip and empty():
+                due = population.schedule.skip(due, end)
+            count = (due if due < end else end) - engine.step
             if separation.roots or faults.pending is not None:
                 count = 1
             if self.steps_allowed is not None:
@@ -113,6 +114,8 @@ class Advancing(Models):
             if separation.roots:
                 separation.limit(engine.model, engine.data)
             if engine.step >= watch.due:
+                if watch.is_regular:
+                    population.rotors.hold()
                 watch.check(population.origin_of)
             if faults.pending is not None:
                 faults.raise_pending()

@@ -47,14 +47,18 @@ class Task:
         after: Reads the state at the due time and publishes; or None.
         active: Whether the task has anything to do; called when the task is due.
         topics: While none of them has subscribers, the task is not due. None: always due.
+        idle: Returns whether the task would change nothing, also later, unless another task or a
+            command changes something before. The simulation then need not stop for it. None: never.
         order: Tasks due at the same time run in this order.
     """
 
     __slots__ = (
+        "_ticks",
         "active",
         "after",
         "asleep",
         "before",
+        "idle",
         "order",
         "owner",
         "period_ns",
@@ -70,6 +74,7 @@ class Task:
         after: Callable[[], None] | None,
         active: Callable[[], bool],
         topics: Collection[Topic] | None = None,
+        idle: Callable[[], bool] | None = None,
         order: int,
     ) -> None:
         self.rate = rate
@@ -77,9 +82,12 @@ class Task:
         self.after = after
         self.active = active
         self.topics = topics
+        self.idle = idle
         self.asleep = False
         """Whether the task is not due until its owner wakes it."""
         self.order = order
+        self._ticks: tuple[int, int, Ticks] | None = None
+        """For a length of a step and the time of step zero."""
         self.owner: object = None
         """The plugin that owns the task; None for the simulation's own tasks."""
         self.period_ns = Fraction(0)
@@ -93,7 +101,7 @@ class Task:
         """Deactivates the task and clears its references."""
         self.before = self.after = None
         self.active = always
-        self.topics = None
+        self.topics = self.idle = None
 
     @property
     def awake(self) -> bool:
@@ -105,6 +113,19 @@ class Task:
     def period(self, step_ns: int) -> Fraction:
         """Period in steps; at least 1."""
         return max(self.period_ns / step_ns, Fraction(1))
+
+    def ticks(self, step_ns: int, origin_ns: int) -> Ticks:
+        """The steps at which the task is due.
+
+        Args:
+            step_ns: Length of a step.
+            origin_ns: The time of step zero.
+        """
+        known = self._ticks
+        if known is None or known[:2] != (step_ns, origin_ns):
+            made = Ticks(self.period(step_ns), Fraction(origin_ns, step_ns))
+            known = self._ticks = step_ns, origin_ns, made
+        return known[2]
 
 
 class Ticks:
@@ -132,6 +153,11 @@ class Ticks:
         count = ((step - 1) * self._denominator + self._offset) // self._numerator + 1
         return -((self._offset - count * self._numerator) // self._denominator)
 
+    def last(self, step: int) -> int:
+        """The last due step before `step`."""
+        count = ((step - 1) * self._denominator + self._offset) // self._numerator
+        return -((self._offset - count * self._numerator) // self._denominator)
+
 
 Due = tuple[tuple[Task, ...], tuple[Task, ...], int]
 """Due tasks that write controls or have to be asked whether they are active; due tasks that only
@@ -157,6 +183,8 @@ class Schedule:
             Ticks(period, offset) for period in {period: None for _, period in self._tasks}
         ]
         self._cycle = math.lcm(*(ticks.cycle for ticks in self._ticks))
+        self.may_skip = any(task.idle is not None for task in ordered)
+        """Whether `skip` may have an effect."""
         self._met: dict[int, Due] = {}
         """Cache by step in the cycle; the step of the next due tasks is relative."""
         self._together: dict[int, tuple[tuple[Task, ...], tuple[Task, ...]]] = {}
@@ -173,6 +201,23 @@ class Schedule:
             met = self._met[place] = self._look(step)
         first, last, gap = met
         return first, last, step + gap
+
+    def skip(self, step: int, limit: int) -> int:
+        """The first step from `step` on at which a due task is not idle, or one from `limit` on.
+
+        Args:
+            step: A step with due tasks.
+            limit: Where to stop looking.
+        """
+        while step < limit:
+            first, last, upcoming = self.at(step)
+            if last:
+                return step
+            for task in first:
+                if task.idle is None or not task.idle():
+                    return step
+            step = upcoming
+        return step
 
     def _look(self, step: int) -> Due:
         due, bit, upcoming = 0, 1, step + NEVER

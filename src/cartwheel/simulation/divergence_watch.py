@@ -10,8 +10,9 @@ from cartwheel.errors import DivergedError, Origin
 from cartwheel.simulation.dynamics.divergence import Guard
 from cartwheel.simulation.engine import Engine
 
-_INTERVAL_NS = 50_000_000
-"""Simulation time between two checks."""
+_INTERVAL_NS = 100_000_000
+"""Simulation time between two checks. At its multiples, tasks with usual rates are due, too, so the
+checks do not interrupt the physics again."""
 _FIRST_NS = 10_000_000
 """Simulation time until the first check of a new state."""
 _RECOVERIES = 20
@@ -32,12 +33,12 @@ class Watch:
 
     def bind(self, model: Any, data: Any) -> None:
         """Continues with a newly compiled model and its data; the next check is due soon."""
-        self._wait(_FIRST_NS)
+        self._wait_for_first()
         self._guard.bind(model, data)
 
     def forget(self) -> None:
         """Discards the stored states after a reset; the next check is due soon."""
-        self._wait(_FIRST_NS)
+        self._wait_for_first()
         self._guard.forget()
 
     def check(self, origin_of: Callable[[str], Origin | None]) -> None:
@@ -49,13 +50,27 @@ class Watch:
         Raises:
             DivergedError: The state is no longer finite.
         """
-        self._wait(_INTERVAL_NS)
+        self.due = self._next_regular
         for message in self._guard.check(origin_of):
             self._engine.report(world_codes.PHYSICS_WARNING.diagnostic(message))
         self._guard.keep()
 
-    def _wait(self, time_ns: int) -> None:
-        self.due = self._engine.step + max(1, time_ns // self._engine.step_ns)
+    @property
+    def is_regular(self) -> bool:
+        """Whether a check is due at this step, whatever has happened before."""
+        return self._engine.step % self._steps == 0
+
+    @property
+    def _steps(self) -> int:
+        return max(1, _INTERVAL_NS // self._engine.step_ns)
+
+    @property
+    def _next_regular(self) -> int:
+        return (self._engine.step // self._steps + 1) * self._steps
+
+    def _wait_for_first(self) -> None:
+        steps = max(1, _FIRST_NS // self._engine.step_ns)
+        self.due = min(self._engine.step + steps, self._next_regular)
 
     def begin_recovery(self) -> bool:
         """Whether an external action since the last recovery may have caused the divergence.

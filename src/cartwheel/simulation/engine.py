@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.description.model import WorldDescription
+from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
 from cartwheel.simulation.carried_state import STATE_SIZES, carry_over
@@ -86,8 +86,9 @@ class Engine:
         """The state of the last `refresh`; empty after a step."""
         self._places: dict[tuple[str, str], tuple[Array, Array]] = {}
         """Positions and orientations of links in the data, by model and link."""
-        self._inverses: dict[str, tuple[Pose | None, Pose]] = {}
-        """The pose of the canonical link of each model, and its inverse."""
+        self._inverses: dict[str, tuple[RobotDescription, Pose | None]] = {}
+        """The description of each model, and the inverse of the pose of its canonical link; None
+        for the identity, as in a URDF."""
         self.entries: Sequence[ModelEntry] = ()
         """The models in the world."""
 
@@ -115,6 +116,7 @@ class Engine:
         after: Callable[[], None] | None,
         active: Callable[[], bool],
         topics: Collection[Topic] | None,
+        idle: Callable[[], bool] | None = None,
     ) -> Task:
         """Creates a task that runs after all earlier tasks; see `Task`."""
         self.tasks_created += 1
@@ -124,6 +126,7 @@ class Engine:
             after=after,
             active=active,
             topics=topics,
+            idle=idle,
             order=self.tasks_created - 1,
         )
 
@@ -334,12 +337,12 @@ class Engine:
         """A model's frame in the world, fixed to its canonical link (the root link in URDF)."""
         description = entry.description
         link = self.link_pose(entry.name, description.canonical_link)
-        pose, inverse = self._inverses.get(entry.name, (None, Pose()))
-        if pose is not description.canonical_pose:
+        known = self._inverses.get(entry.name)
+        if known is None or known[0] is not description:
             pose = description.canonical_pose
-            inverse = pose.inverse()
-            self._inverses[entry.name] = pose, inverse
-        return link @ inverse
+            known = description, None if pose == Pose() else pose.inverse()
+            self._inverses[entry.name] = known
+        return link if known[1] is None else link @ known[1]
 
     def free_joint(self, model: str, link: str) -> int:
         """The index of the free joint of a link, or -1."""

@@ -114,13 +114,21 @@ class Part(Requests):
     def reschedule(self, task: Task, rate: float) -> Task:
         """Replaces a task with one at a different rate; the given task becomes invalid."""
         made = self._engine.task(
-            rate, before=task.before, after=task.after, active=task.active, topics=task.topics
-        )
+            rate, before=task.before, after=task.after, active=task.active, topics=task.topics,
+            idle=task.idle,
+        )  # fmt: skip
         made.order, made.owner = task.order, task.owner
         self.tasks[self.tasks.index(task)] = made
         for callback in self._engine.on_tasks:
             callback()
         return made
+
+    def last_due_ns(self, task: Task) -> int:
+        """The last time before the current one at which a task was due, or 0."""
+        engine = self._engine
+        step_ns, origin_ns = engine.step_ns, engine.origin_ns
+        last = task.ticks(step_ns, origin_ns).last(engine.step)
+        return max(0, origin_ns + last * step_ns)
 
     def period_ns(self, rate: float) -> int:
         """The mean period of a task with a rate in Hz; 0 is every step."""

@@ -90,9 +90,12 @@ class Requests:
         after: Callable[[], None] | None = None,
         active: Callable[[], bool] = always,
         topics: Collection[Topic] | None = None,
+        idle: Callable[[], bool] | None = None,
     ) -> Task:
         """Schedules callbacks at a rate in Hz; 0 is every step. See `Task`."""
-        task = self._engine.task(rate, before=before, after=after, active=active, topics=topics)
+        task = self._engine.task(
+            rate, before=before, after=after, active=active, topics=topics, idle=idle
+        )
         self.tasks.append(task)
         return task
 

@@ -112,6 +112,7 @@ class DifferentialDrive(Drive):
         self._is_limited = config.drive is None or not (
             config.linear == config.angular == NO_LIMITS
         )
+        self._can_idle = config.odometry == "ground truth" and not self._is_limited
         self.reckoning = DeadReckoning() if reckoning is None else reckoning
         self._rest()
         if config.drive is not None:
@@ -138,6 +139,15 @@ class DifferentialDrive(Drive):
         self.actuate(seconds)
         if self._config.odometry != "ground truth":
             self.measure(seconds)
+
+    def can_idle(self) -> bool:
+        return self._can_idle
+
+    def is_idle(self) -> bool:
+        if self._speeds != self._targets or not super().is_idle():
+            return False
+        # Another plugin may have commanded a wheel.
+        return [wheel.command for wheel in self._wheels] == [speed for _, speed in self._rotating]
 
     def respond(self) -> None:
         if not self._is_limited:

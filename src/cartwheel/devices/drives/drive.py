@@ -62,7 +62,8 @@ class Drive(Component):
         if config.timeout is not None:
             self._timeout = config.timeout
             self.part.schedule(0, before=self._watch)
-        self.part.schedule(config.control_rate, before=self._control)
+        idle = self.is_idle if self.can_idle() else None
+        self._controlling = self.part.schedule(config.control_rate, before=self._control, idle=idle)
         owners = (self, self._odometry, self._joint_states)
         topics = [topic for each in owners if each is not None for topic in each.publishers]
         self.part.schedule(config.odometry.rate, after=self._publish, topics=topics)
@@ -101,6 +102,14 @@ class Drive(Component):
         """Executes the command; `seconds` is the time since the last call, or 0."""
         raise NotImplementedError
 
+    def can_idle(self) -> bool:
+        """Whether `is_idle` may become true."""
+        return False
+
+    def is_idle(self) -> bool:
+        """Whether `update` would change nothing before the next command, after the first update."""
+        return self._updated_ns is not None
+
     def respond(self) -> None:
         """Executes a new command between two updates, if the drive does so without a ramp.
 
@@ -131,8 +140,15 @@ class Drive(Component):
             self.command(0.0, 0.0, 0.0)
 
     def _control(self) -> None:
-        now, before = self.part.time_ns, self._updated_ns
-        self._updated_ns = now
+        part, before = self.part, self._updated_ns
+        idles = self._controlling.idle is not None
+        is_idle = idles and self.is_idle()
+        now = self._updated_ns = part.time_ns
+        if is_idle:
+            return
+        if idles and before is not None:
+            # It may have been idle since.
+            before = max(before, part.last_due_ns(self._controlling))
         self.update(0.0 if before is None else (now - before) * 1e-9)
 
     def _publish(self) -> None:

@@ -21,6 +21,7 @@ from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.in_place import InPlace
 from cartwheel.simulation.models.placement import with_mimics
 from cartwheel.simulation.models.resident import Attach, Resident, world_resident
+from cartwheel.simulation.models.rotors import Rotors
 from cartwheel.simulation.models.unique_names import check_model_name, free_name
 from cartwheel.simulation.observer import Observer
 from cartwheel.simulation.part import Part
@@ -46,6 +47,7 @@ class Population:
         self._forces = forces
         self.attach = attach
         self.watch = Watch(engine)
+        self.rotors = Rotors()
         self.separation = Separation(slow="slow-separation" not in engine.without)
         self.house = world_resident(engine)
         """The world's own plugins."""
@@ -224,6 +226,7 @@ class Population:
         for resident in self.everyone():
             for handle in resident.part.handles:
                 handle.bind(engine.model, engine.data)
+        self.rotors.bind(resident.part for resident in self.everyone())
         self.gather_tasks()
         engine.forward()
         self.separation.resume(engine.model, engine.data)
@@ -289,7 +292,8 @@ class Population:
         self._in_place.drag()
 
     def _refresh_handles(self, resident: Resident) -> None:
-        """Lets handles read the constants of the compiled model again."""
+        """Lets handles read the constants of the compiled model again, as after a compilation."""
+        self.rotors.hold()
         for handle in resident.part.handles:
             if isinstance(handle, JointHandle):
                 handle.bind(self._engine.model, self._engine.data)

@@ -88,13 +88,12 @@ class MujocoCaster:
         self._bundles = None if together else _Bundles(directions)
         self._directions = directions if self._bundles is None else self._bundles.directions
         """The rays in the order in which they are cast."""
-        self._order: Any = slice(None) if self._bundles is None else self._bundles.order
-        """The original index of each of them."""
         self._groups = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
         self._groups[group] = 1
-        count = len(directions)
-        self._geoms = np.full(count, -1, dtype=np.int32)
-        self._distances = np.zeros(count)
+        # What a cast changes in the model, and restores.
+        self._hides: tuple[Any, Any, Any] = (
+            model.geom_group, model.body_bvhadr, model.body_geomnum
+        )  # fmt: skip
 
     def cast(self, start: Array, turn: Array, hidden: frozenset[int]) -> tuple[Array, Any]:
         """Casts the rays.
@@ -108,63 +107,79 @@ class MujocoCaster:
             Distances in m, shape (n,), inf without a hit; and the index of each geom, or -1.
         """
         rays = self._directions @ turn.T
-        model = self._model
-        groups, trees, counts = model.geom_group, model.body_bvhadr, model.body_geomnum
+        groups, trees, counts = self._hides
         saved_groups, saved_trees, saved_counts = groups.copy(), trees.copy(), counts.copy()
-        distances, geoms = self._distances, self._geoms
-        distances[:] = -1.0
-        geoms[:] = -1
+        distances, geoms = np.full(len(rays), -1.0), np.full(len(rays), -1, dtype=np.int32)
         try:
             # The engine's bounding tests for bodies ignore the body's rotation and miss geoms.
             # Without tree addresses, it skips these tests; the bundles replace them.
             trees[:] = -1
-            open_groups = saved_groups.copy()
-            open_groups[list(hidden)] = HIDDEN_GROUP
-            away: Array | None = None
-            for part, visible in self._candidates(start, turn, open_groups):
-                if len(rays[part]) * model.ngeom < _WORTH_SORTING:
-                    groups[:] = np.where(visible, open_groups, HIDDEN_GROUP)
-                    self._cast(start, rays[part], distances[part], geoms[part])
-                    continue
-                if away is None:
-                    away = self._box_distances(start)
-                shapes = np.flatnonzero(visible)
-                shapes = shapes[np.argsort(away[shapes], kind="stable")]
-                self._cast_outwards(
-                    start,
-                    rays[part],
-                    distances[part],
-                    geoms[part],
-                    shapes=shapes,
-                    near=away[shapes],
-                    open_groups=open_groups,
-                    all_counts=saved_counts,
-                )
-                counts[:] = saved_counts
-            groups[:] = open_groups
-            while True:
-                near = np.flatnonzero((distances >= 0) & (distances < self.minimum))
-                near = near[self._own[geoms[near]]]
-                if not near.size:
-                    break
-                groups[np.unique(geoms[near])] = HIDDEN_GROUP
-                again, others = np.empty(near.size), np.empty(near.size, dtype=np.int32)
-                self._cast(start, rays[near], again, others)
-                distances[near], geoms[near] = again, others
+            if hidden:
+                groups[list(hidden)] = HIDDEN_GROUP
+            if self._bundles is None:
+                self._cast(start, rays, distances, geoms)
+            else:
+                self._cast_bundles(start, turn, rays, distances, geoms)
+            if self.minimum > 0:
+                self._cast_through(start, rays, distances, geoms)
         finally:
             groups[:], counts[:] = saved_groups, saved_counts
             trees[:] = saved_trees
+        distances[distances < 0] = np.inf
+        if self._bundles is None:
+            return distances, geoms
         measured, hit = np.empty_like(distances), np.empty_like(geoms)
-        measured[self._order] = np.where(distances < 0, np.inf, distances)
-        hit[self._order] = geoms
+        measured[self._bundles.order], hit[self._bundles.order] = distances, geoms
         return measured, hit
+
+    def _cast_bundles(
+        self, start: Array, turn: Array, rays: Array, distances: Array, geoms: Any
+    ) -> None:
+        """Fills in distances and geoms, bundle by bundle."""
+        groups, _, counts = self._hides
+        open_groups, all_counts = groups.copy(), counts.copy()
+        away: Array | None = None
+        for part, visible in self._candidates(start, turn, open_groups):
+            if len(rays[part]) * self._model.ngeom < _WORTH_SORTING:
+                groups[:] = np.where(visible, open_groups, HIDDEN_GROUP)
+                self._cast(start, rays[part], distances[part], geoms[part])
+                continue
+            if away is None:
+                away = self._box_distances(start)
+            shapes = np.flatnonzero(visible)
+            shapes = shapes[np.argsort(away[shapes], kind="stable")]
+            self._cast_outwards(
+                start,
+                rays[part],
+                distances[part],
+                geoms[part],
+                shapes=shapes,
+                near=away[shapes],
+                open_groups=open_groups,
+                all_counts=all_counts,
+            )
+            counts[:] = all_counts
+        groups[:] = open_groups
+
+    def _cast_through(self, start: Array, rays: Array, distances: Array, geoms: Any) -> None:
+        """Casts rays again that hit the sensor's model too near, without what they hit."""
+        groups = self._hides[0]
+        while True:
+            near = np.flatnonzero((distances >= 0) & (distances < self.minimum))
+            if not near.size:
+                return
+            near = near[self._own[geoms[near]]]
+            if not near.size:
+                return
+            groups[np.unique(geoms[near])] = HIDDEN_GROUP
+            again, others = np.empty(near.size), np.empty(near.size, dtype=np.int32)
+            self._cast(start, rays[near], again, others)
+            distances[near], geoms[near] = again, others
 
     def _candidates(self, start: Array, turn: Array, groups: Any) -> Iterator[tuple[slice, Any]]:
         """The bundles that may hit something, each with the geoms that its cone may touch."""
         model, bundles = self._model, self._bundles
-        if bundles is None:
-            yield slice(None), np.full(model.ngeom, True)
-            return
+        assert bundles is not None
         away = self._data.geom_xpos - start
         distance = np.linalg.norm(away, axis=1)
         radius = model.geom_rbound
