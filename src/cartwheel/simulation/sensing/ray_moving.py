@@ -45,7 +45,7 @@ class MovingShapes:
     def __init__(
         self, model: Any, data: Any, simple: Any, meshes: Sequence[RigidMeshes]
     ) -> None:  # fmt: skip
-        self._data = data
+        self._body_positions, self._body_turns = data.xpos, data.xmat.reshape(-1, 3, 3)
         self._positions, self._turns = data.geom_xpos, data.geom_xmat.reshape(-1, 3, 3)
         self._sizes, self._kinds = model.geom_size, model.geom_type
         self._simple, self._meshes = simple, meshes
@@ -83,8 +83,9 @@ class MovingShapes:
         """The centres of all spheres, m."""
         places: Array = self._positions.take(self._simple, axis=0)
         if self._meshes:
-            turns = self._data.xmat[self._roots].reshape(-1, 3, 3)
-            centres = np.einsum("gij,gj->gi", turns, self._centres) + self._data.xpos[self._roots]
+            turns = self._body_turns.take(self._roots, axis=0)
+            centres = np.einsum("gij,gj->gi", turns, self._centres)
+            centres += self._body_positions.take(self._roots, axis=0)
             places = np.concatenate([places, centres])
         return places
 
@@ -128,8 +129,8 @@ class MovingShapes:
         along = np.einsum("ij,j->i", query.rays, away)
         (which,) = np.nonzero(along >= least)
         if which.size:
-            turn = self._data.xmat[meshes.root].reshape(3, 3)
-            start = (query.start - self._data.xpos[meshes.root]) @ turn
+            turn = self._body_turns[meshes.root]
+            start = (query.start - self._body_positions[meshes.root]) @ turn
             there = Query(start, query.rays[which] @ turn, query.own, query.minimum,
                           hidden=query.hidden)  # fmt: skip
             found = meshes.shapes.cast(there)

@@ -33,6 +33,8 @@ _GAP = 5e-5
 """Wanted distance between a curved surface and its triangles, m."""
 _LEVEL = 1e-15
 """Rays that go down less than this miss planes."""
+_ALONG = 1 - 1e-9
+"""Cosine of the angle between an axis and rays that are almost along it."""
 _MOST_SIDES = 96
 _MOST_SPHERE_SIDES = 48
 _BOX_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
@@ -212,8 +214,13 @@ def to_cylinder(start: Array, ray: Array, size: Array) -> Array:
     entered = valid & (near >= 0) & (np.abs(start[:, 2] + near * ray[:, 2]) <= size[:, 1])
     if entered.all():
         return near
-    (other,) = np.nonzero(~entered)
-    near[other] = _to_cap(start[other], ray[other], size[other], far[other], valid[other])
+    near[~entered] = np.inf
+    # Other rays that cross the endless cylinder, or are along it, may enter through an end.
+    other = valid & ~entered
+    other |= np.abs(ray[:, 2]) > _ALONG
+    (which,) = np.nonzero(other)
+    if which.size:
+        near[which] = _to_cap(start[which], ray[which], size[which], far[which], valid[which])
     return near
 
 

@@ -76,6 +76,14 @@ class TriangleScene:
         curved = np.isin(model.geom_type, shapes.CURVED)
         self._curved = np.append(curved, False)[self._owners] if curved[geoms].any() else None
         self._kinds = np.asarray(model.geom_type).copy()
+        self._touches = np.full(len(self._kinds), True)
+        """Whether each geom's triangles may meet those of another geom."""
+        if self._curved is not None:
+            boxes = np.array([(each.min(axis=0), each.max(axis=0)) for each in corners])
+            for index in np.flatnonzero(curved[geoms]).tolist():
+                low, high = boxes[index]
+                meets = ((boxes[:, 0] <= high) & (low <= boxes[:, 1])).all(axis=1)
+                self._touches[geoms[index]] = np.count_nonzero(meets) > 1
         self._curved_kinds = np.unique(self._kinds[geoms[curved[geoms]]]).tolist()
         # Position, rotation matrix and size of each geom, which are read together.
         self._geoms = np.hstack([places[0], places[1].reshape(-1, 9), model.geom_size])
@@ -131,10 +139,13 @@ class TriangleScene:
         ray, geoms, surface = rays[which], hits.geoms[which], hits.distances[which]
         exact = self._exact(start, ray, geoms, surface)
         hits.distances[which] = exact
+        missed = np.isinf(exact)
+        # Between its triangles and a shape, a ray hits only what meets these triangles.
         going = surface < exact - _CLOSE
+        going &= missed | self._touches[geoms]
         if not going.any():
             return
-        hits.geoms[which[np.isinf(exact)]] = -1
+        hits.geoms[which[missed]] = -1
         step = np.full(which.size, _STEP)
         for _ in range(_MOST_STEPS):
             which, ray, triangles, step = which[going], ray[going], triangles[going], step[going]
