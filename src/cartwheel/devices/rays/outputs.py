@@ -151,20 +151,27 @@ class PointCloud2Output:
             Shape (n,) if missing points are omitted; otherwise (rows, columns), or (columns, rows)
             if ordered by columns.
         """
-        points = directions * np.where(hit, ranges, 1.0)[..., None]
         if self.intensity_floor > -math.inf:
             intensities = np.maximum(intensities, self.intensity_floor)
-        if self.missing == "nan":
-            points[~hit] = np.nan
-            intensities = np.where(hit, intensities, np.nan)
-        elif self.missing == "inf":
-            points[~hit] = np.inf
+        rings = np.broadcast_to(np.arange(len(ranges))[:, None], ranges.shape)
+        if self.by_column:
+            directions = directions.swapaxes(0, 1)
+            ranges, intensities, rings, hit = ranges.T, intensities.T, rings.T, hit.T
+        if self.missing == "omit":
+            which = np.flatnonzero(hit)
+            directions = directions.reshape(-1, 3).take(which, axis=0)
+            ranges, intensities = ranges.take(which), intensities.take(which)
+        else:
+            ranges = np.where(hit, ranges, 1.0)
         cloud = np.zeros(ranges.shape, dtype=self.layout)
         for index, name in enumerate("xyz"):
-            cloud[name] = points[..., index]
+            np.multiply(directions[..., index], ranges, out=cloud[name], casting="same_kind")
         cloud["intensity"] = intensities
         if "ring" in (self.layout.names or ()):
-            cloud["ring"] = np.arange(len(cloud))[:, None]
-        if self.by_column:
-            cloud, hit = cloud.T, hit.T
-        return cloud[hit] if self.missing == "omit" else cloud
+            cloud["ring"] = rings.take(which) if self.missing == "omit" else rings
+        if self.missing != "omit":
+            for name in "xyz":
+                cloud[name][~hit] = float(self.missing)
+            if self.missing == "nan":
+                cloud["intensity"][~hit] = np.nan
+        return cloud
