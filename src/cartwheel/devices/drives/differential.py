@@ -144,10 +144,13 @@ class DifferentialDrive(Drive):
         return self._can_idle
 
     def is_idle(self) -> bool:
-        if self._speeds != self._targets or not super().is_idle():
+        if self._updated_ns is None or self._speeds != self._targets:
             return False
-        # Another plugin may have commanded a wheel.
-        return [wheel.command for wheel in self._wheels] == [speed for _, speed in self._rotating]
+        # Another plugin may have commanded a wheel. A loop takes a third of the time of `all`.
+        for wheel, speed in self._rotating:  # noqa: SIM110
+            if wheel.command != speed:
+                return False
+        return True
 
     def respond(self) -> None:
         if not self._is_limited:

@@ -140,15 +140,15 @@ class Drive(Component):
             self.command(0.0, 0.0, 0.0)
 
     def _control(self) -> None:
-        part, before = self.part, self._updated_ns
         idles = self._controlling.idle is not None
-        is_idle = idles and self.is_idle()
-        now = self._updated_ns = part.time_ns
-        if is_idle:
+        if idles and self.is_idle():
+            self._updated_ns = self.part.time_ns
             return
+        now, before = self.part.time_ns, self._updated_ns
+        self._updated_ns = now
         if idles and before is not None:
             # It may have been idle since.
-            before = max(before, part.last_due_ns(self._controlling))
+            before = max(before, self.part.last_due_ns(self._controlling))
         self.update(0.0 if before is None else (now - before) * 1e-9)
 
     def _publish(self) -> None:
