@@ -252,13 +252,8 @@ class Population:
             entry.description = before
             raise
         if self._in_place.recompiles_visuals():
-            self._engine.visuals.replace(
-                self._compiler.visuals(
-                    self._engine.world,
-                    [each.entry for each in self.everyone()],
-                    self._engine.without,
-                )
-            )
+            engine, entries = self._engine, [each.entry for each in self.everyone()]
+            engine.visuals.replace(self._compiler.visuals(engine.world, entries, engine.without))
         self._refresh_handles(resident)
         self.observe()
         new = [each for each in added if (each.addition, each.element) not in known]
