@@ -1,13 +1,25 @@
 """The errors that a user sees."""
 
+import ast
 import difflib
+import importlib
+import pickle
+from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+import cartwheel
 from cartwheel.codes.wires import PEER_LIMIT
 from cartwheel.codes.wires import SLOW_SUBSCRIBER as SLOW
-from cartwheel.errors import DescriptionError, Diagnostic, Origin, UnknownNameError
+from cartwheel.errors import (
+    DescriptionError,
+    Diagnostic,
+    Origin,
+    TimedOutError,
+    UnknownNameError,
+)
 from cartwheel.reporting import Once, Reporter
 from cartwheel.similar_names import meant_one
 
@@ -148,3 +160,39 @@ def test_a_topic_is_suggested_by_its_last_parts():
     assert UnknownNameError("topic", "b/odom", known).values["meant"] == "/a/b/odom"
     assert UnknownNameError("topic", "/clack", known).values["meant"] == "/clock"
     assert UnknownNameError("topic", "/", known).values["meant"] == ""
+
+
+def exception_classes() -> Iterator[tuple[str, str]]:
+    """Module and name of each exception class of Cartwheel."""
+    root = Path(cartwheel.__file__).parent
+    for file in sorted(root.rglob("*.py")):
+        for node in ast.parse(file.read_text()).body:
+            if isinstance(node, ast.ClassDef) and any(
+                ast.unparse(base).endswith(("Error", "Exception", "Pickled")) for base in node.bases
+            ):
+                yield ".".join(file.relative_to(root.parent).with_suffix("").parts), node.name
+
+
+@pytest.mark.parametrize(("module", "name"), [*exception_classes()])
+def test_an_exception_reaches_another_process_with_all_attributes(module, name):
+    kind = getattr(importlib.import_module(module), name)
+    # Their constructors differ, and none may be needed.
+    error = kind.__new__(kind, "words")
+    error.args = ("words",)
+    error.__dict__.update(message="words", origin=PLACE, hint=None, values={"name": 3}, mark="")
+    error.__dict__.update(code=PEER_LIMIT, more=(1.0, "two"))
+    error.add_note("a note")
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is kind and copy.args == error.args
+    # A constructor may have been called, and may have set more.
+    assert {**vars(copy), **vars(error)} == vars(copy)
+
+
+def test_an_error_reaches_another_process_as_it_was_raised():
+    for error in (
+        DescriptionError("m", code=PEER_LIMIT, origin=PLACE, hint="h", values={"a": 1}, mark="x"),
+        UnknownNameError("model", "robott", ["robot"]),
+        TimedOutError("m", values={"timeout": 3.0}),
+    ):
+        copy = pickle.loads(pickle.dumps(error))
+        assert (type(copy), str(copy), vars(copy)) == (type(error), str(error), vars(error))

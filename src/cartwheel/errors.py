@@ -220,7 +220,27 @@ class Diagnostic:
         return f"{place}{self.severity}: {self.message}{code}"
 
 
-class CartwheelError(Exception):
+class Pickled(BaseException):
+    """An exception that `pickle` restores with all attributes, without its constructor.
+
+    Without it, `pickle` would call the constructor with the message as the only argument, and a
+    process that receives the error, such as one with a `multiprocessing.Pool`, would hang.
+    """
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(
+    kind: type[BaseException], args: tuple[Any, ...], state: dict[str, Any]
+) -> BaseException:
+    error = kind.__new__(kind, *args)
+    error.args = args
+    error.__dict__.update(state)
+    return error
+
+
+class CartwheelError(Pickled, Exception):
     """Base class of errors that the user can correct; the command line exits with 2.
 
     Args:
@@ -253,17 +273,6 @@ class CartwheelError(Exception):
         self.mark = mark
         super().__init__(message)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Supports pickling: subclasses have different constructor arguments."""
-        state = {
-            "code": self.code,
-            "origin": self.origin,
-            "hint": self.hint,
-            "values": self.values,
-            "mark": self.mark,
-        }
-        return _restored, (type(self), self.message, state)
-
     def __str__(self) -> str:
         text = f"{self.origin}: {self.message}" if self.origin else self.message
         if self.hint:
@@ -289,12 +298,6 @@ class CartwheelError(Exception):
         return cls(
             error.message, code=error.code, origin=origin, hint=error.hint, values=error.values
         )
-
-
-def _restored(kind: type[CartwheelError], message: str, state: Mapping[str, Any]) -> CartwheelError:
-    error = kind.__new__(kind, message)
-    CartwheelError.__init__(error, message, **state)
-    return error
 
 
 class DescriptionError(CartwheelError):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from cartwheel.codes.command import SCENARIO_INVALID
-from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_UNKNOWN
+from cartwheel.codes.command import OPTION_INVALID, SCENARIO_INVALID
+from cartwheel.codes.graph import SERVICE_UNKNOWN, TOPIC_TYPE_MISMATCH, TOPIC_UNKNOWN
 
 from .conftest import CART, DRIVE
 
+CAMERA = "/cart/camera1/image_raw"
 GO = f"steps: [{{publish: {DRIVE}, message: {{linear: {{x: 0.5}}}}}}]\n"
 POST = (
     "world: post\nrobots: [{robot: rosbots.xacro, name: cart}]\n"
@@ -235,3 +236,19 @@ def test_a_file_that_cannot_be_used_is_an_error_of_the_case(run):
 
     with pytest.raises(CartwheelError):
         run("robots: [{robot: missing.urdf}]\nexpect: [{moves: a}]")
+
+
+@pytest.mark.parametrize(
+    ("condition", "code"),
+    [
+        ("stays_within: cart, x: [1, -1]", OPTION_INVALID),
+        ("sees: /imu/data, color: [1, 0, 0]", TOPIC_TYPE_MISMATCH),
+        (f"sees: {CAMERA}, model: nobody", TOPIC_TYPE_MISMATCH),
+        (f"sees: {CAMERA}, range: 2", TOPIC_TYPE_MISMATCH),
+        (f"sees: {CAMERA}, share: 0.5", OPTION_INVALID),
+    ],
+)
+def test_a_condition_that_cannot_be_tested_is_an_error(run, condition, code):
+    outcome = run(f"{CART}expect:\n  - {{{condition}}}")
+    assert outcome.status == "error"
+    assert (outcome.findings[0].code, outcome.findings[0].line) == (code.number, 3)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
+import pickle
 
 import pytest
 from tests.coded import raises
 
 import cartwheel as cw
+from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.codes.world import VALUE_INVALID
+from cartwheel.errors import GraphError
+from cartwheel.msgs.sensor_msgs import Image, LaserScan
 from cartwheel.testing import (
     UnmetError,
     joint_reaches,
@@ -183,3 +188,88 @@ def test_a_position_of_almost_zero_has_no_sign(cart):
     with pytest.raises(UnmetError) as raised:
         reaches(cart, (5.0, 0.0), timeout=0.1)
     assert "x = 0.000, y = 0.000" in raised.value.actual
+
+
+CAMERA = "/rosbots/camera1/image_raw"
+
+
+@pytest.mark.parametrize(
+    ("topic", "asked", "name"),
+    [
+        ("/scan", {"color": (1, 0, 0)}, "color"),
+        ("/scan", {"model": "nobody"}, "model"),
+        ("/scan", {"range": 2.0, "model": "nobody"}, "model"),
+        (CAMERA, {"model": "nobody"}, "model"),
+        (CAMERA, {"range": 2.0}, "range"),
+        (CAMERA, {"range": 2.0, "color": (1, 0, 0)}, "range"),
+        ("/rosbots/camera1/depth", {"color": (1, 0, 0)}, "color"),
+    ],
+)
+def test_what_a_sensor_cannot_see_is_refused(topic, asked, name):
+    with cw.World("post") as world:
+        world.spawn("rosbots.xacro")
+        scan = {"range_max": 10.0, "ranges": [2.0]}
+        world.topic("/scan", LaserScan).hold(scan, rate=20)
+        # 2.0 as a float32.
+        depth = {"encoding": "32FC1", "width": 1, "height": 1, "step": 4, "data": [0, 0, 0, 64]}
+        world.topic("/rosbots/camera1/depth", Image).hold(depth, rate=20)
+        sees(world, "/scan", range=2.0)
+        sees(world, "/rosbots/camera1/depth", range=2.0)
+        with raises(TOPIC_TYPE_MISMATCH, GraphError, topic=topic, name=name):
+            sees(world, topic, **asked)
+
+
+def test_an_image_without_colours_and_depths_is_refused():
+    with cw.World("empty") as world:
+        grey = {"encoding": "mono8", "width": 1, "height": 1, "step": 1, "data": [3]}
+        world.topic("/grey", Image).hold(grey, rate=20)
+        with raises(TOPIC_TYPE_MISMATCH, GraphError, topic="/grey", encoding="mono8"):
+            sees(world, "/grey")
+
+
+@pytest.mark.parametrize(
+    ("check", "name"),
+    [
+        (stays_within, "limits"),
+        (lambda cart: stays_within(cart, x=(1, -1)), "x"),
+        (lambda cart: stays_within(cart, y=1.0), "y"),
+        (lambda cart: reaches(cart, (None, None)), "target"),
+        (lambda cart: reaches(cart, 1.0), "target"),
+        (lambda cart: reaches(cart, (1.0,)), "target"),
+        (lambda cart: reaches(cart, (1.0, "far")), "target"),
+        (lambda cart: sees(cart, CAMERA, share=0.5), "share"),
+        (lambda cart: sees(cart, CAMERA, within=0.5), "within"),
+    ],
+)
+def test_a_condition_that_says_nothing_is_refused(cart, check, name):
+    with raises(OPTION_INVALID, name=name):
+        check(cart)
+    assert cart._world.time == 0.0
+
+
+@pytest.mark.parametrize(
+    "check",
+    [
+        lambda model: reaches(model, (1, 0)),
+        lambda model: stays_within(model, x=(0, 1)),
+        moves,
+        touches,
+        touches_nothing,
+        lambda model: joint_reaches(model, "elbow", 1.0),
+        lambda model: publishes(model, "/odom"),
+        lambda model: sees(model, "/scan"),
+    ],
+)
+@pytest.mark.parametrize("model", ["cart", None])
+def test_what_is_not_a_model_is_refused(check, model):
+    with raises(VALUE_INVALID):
+        check(model)
+
+
+def test_the_error_reaches_another_process(cart):
+    with pytest.raises(UnmetError) as raised:
+        moves(cart, timeout=0.1)
+    error = raised.value
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is UnmetError and copy.args == error.args
+    assert vars(copy) == vars(error) and copy.values["moved"] == error.values["moved"]

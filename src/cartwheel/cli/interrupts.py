@@ -28,7 +28,10 @@ class Interrupted(BaseException):
 
     def __init__(self, number: int) -> None:
         self.number = number
-        super().__init__(f"signal {number}")
+        super().__init__(number)
+
+    def __str__(self) -> str:
+        return f"signal {self.number}"
 
 
 class _State:

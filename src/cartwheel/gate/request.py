@@ -9,6 +9,7 @@ from http import HTTPStatus
 
 import h11
 
+from cartwheel.errors import Pickled
 from cartwheel.gate.access import Asked, without_secrets
 
 HEAD_SIZE = 16_384
@@ -25,7 +26,7 @@ _PASSED = (
 """Headers that are forwarded to the server behind. All others are removed."""
 
 
-class RequestError(Exception):
+class RequestError(Pickled, Exception):
     """A request that legitimate clients do not send.
 
     Args:

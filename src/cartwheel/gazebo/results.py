@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.errors import UnknownNameError, one_line
+from cartwheel.errors import Pickled, UnknownNameError, one_line
 from cartwheel.messages import zero
 
 PACKAGE = "simulation_interfaces"
@@ -16,7 +16,7 @@ Handler = Callable[[Any, Any], None]
 """Handles a request by setting the response's fields."""
 
 
-class Refusal(Exception):  # noqa: N818 - it is an answer
+class Refusal(Pickled, Exception):  # noqa: N818 - it is an answer
     """A result code that is not a success."""
 
     def __init__(self, result: int, text: str) -> None:

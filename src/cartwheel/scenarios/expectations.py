@@ -13,11 +13,11 @@ from cartwheel.testing.conditions import (
     Condition,
     JointAt,
     Moves,
-    Publishes,
     Reaches,
     StaysWithin,
     tilt_of,
 )
+from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.seeing import Sees
 from cartwheel.testing.touching import Touches
 from cartwheel.testing.watching import Watch, default_when

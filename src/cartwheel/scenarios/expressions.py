@@ -13,7 +13,7 @@ from typing import Any
 from cartwheel.codes.command import SCENARIO_EXPRESSION
 from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator, Function
 from cartwheel.description.expressions.syntax import compiled
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Pickled
 from cartwheel.scenarios.document import Document, Key
 from cartwheel.similar_names import suggestion
 
@@ -27,7 +27,7 @@ class _NoTable:
     """xacro's tables of names do not exist here."""
 
 
-class ExpressionFaultError(Exception):
+class ExpressionFaultError(Pickled, Exception):
     """An expression that cannot be evaluated.
 
     Args:

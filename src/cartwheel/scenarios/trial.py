@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Pickled
 from cartwheel.scenarios.document import Document, Key
 from cartwheel.scenarios.expectations import watch_of
 from cartwheel.scenarios.outcome import Finding, Kind, Outcome
@@ -26,7 +26,7 @@ _LOW = 0.02
 """Height in m of shapes that are no obstacles."""
 
 
-class StepFailedError(Exception):
+class StepFailedError(Pickled, Exception):
     """A step that did not succeed.
 
     Args:
@@ -84,6 +84,7 @@ class Trial:
             for index, each in enumerate(self.value["expect"]):
                 key = ("expect", index)
                 watch = watch_of(each)
+                watch.origin = self._document.origin(key)
                 watch.patient = any("spawn" in step for step in self.value.get("steps", ()))
                 self._watches.append(watch)
                 watch.begin(self.world)

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
+
+from cartwheel.api.arguments import refused
+from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.errors import CartwheelError
 
 if TYPE_CHECKING:
     from cartwheel.api import World
@@ -71,6 +75,9 @@ class Reaches(Condition):
         within: Maximum distance from the target, m.
         yaw: Target of the yaw, rad; None is not compared.
         yaw_within: Maximum difference of the yaw, rad.
+
+    Raises:
+        CartwheelError: The target is not two or three numbers or None, or nothing is compared.
     """
 
     def __init__(
@@ -84,8 +91,10 @@ class Reaches(Condition):
     ) -> None:
         super().__init__()
         self.model, self.within = model, within
-        self.target = tuple(target) + (None,) * (3 - len(target))
+        self.target = _target(target)
         self.yaw, self.yaw_within = yaw, yaw_within
+        if yaw is None and all(each is None for each in self.target):
+            raise refused("target", "at least one number if there is no yaw", target)
         self.closest, self.closest_time = math.inf, 0.0
         self._closest_yaw: float | None = None
         self._last: Pose | None = None
@@ -155,6 +164,9 @@ class StaysWithin(Condition):
         limits: Minimum and maximum of ``x``, ``y`` and ``z``, m.
         tilt: Maximum angle between the model's z axis and the vertical, rad.
         speed: Maximum speed, m/s.
+
+    Raises:
+        CartwheelError: There is no limit, or a minimum is above its maximum.
     """
 
     def __init__(
@@ -166,7 +178,15 @@ class StaysWithin(Condition):
         speed: float | None = None,
     ) -> None:
         super().__init__()
-        self.model, self.limits, self.tilt, self.speed = model, dict(limits), tilt, speed
+        self.model, self.tilt, self.speed = model, tilt, speed
+        self.limits = {name: _limits(name, each) for name, each in limits.items()}
+        if not limits and tilt is None and speed is None:
+            raise CartwheelError(
+                "a model needs limits to stay within",
+                code=OPTION_INVALID,
+                hint="Give at least one of x, y, z, tilt and speed.",
+                values={"name": "limits"},
+            )
         self._seen: dict[str, Range] = {}
         self._broken: tuple[str, float, float] | None = None
         self._before: tuple[float, Pose] | None = None
@@ -261,76 +281,6 @@ class Moves(Condition):
         return {"moved": self.moved}
 
 
-class Publishes(Condition):
-    """Messages are published on a topic, at a rate if one is given.
-
-    Args:
-        topic: The topic.
-        rate: Messages per second of simulation time; None if one message is sufficient.
-        tolerance: Relative tolerance of the rate.
-    """
-
-    def __init__(self, topic: str, rate: float | None = None, *, tolerance: float = 0.1) -> None:
-        super().__init__()
-        self.topic, self.rate, self.tolerance = topic, rate, tolerance
-        self.count = 0
-        self.passed = 0.0
-        """Time since `begin`, s."""
-        self._since = self._last = 0.0
-        self.longest_gap = 0.0
-        self._end: Callable[[], None] = lambda: None
-
-    def begin(self, world: World) -> None:
-        super().begin(world)
-        self._since = self._last = world.time
-        self.count, self.longest_gap = 0, 0.0
-        world.graph.topic(self.topic)
-        self._end = world.graph.subscribe(self.topic, self._take).close
-
-    def _take(self, _: object) -> None:
-        now = self.world.time
-        if self.count:
-            self.longest_gap = max(self.longest_gap, now - self._last)
-        self.count += 1
-        self._last = now
-
-    def close(self) -> None:
-        self._end()
-        self._end = lambda: None
-        super().close()
-
-    @property
-    def measured(self) -> float:
-        """Messages per second of simulation time."""
-        return self.count / self.passed if self.passed > 0 else 0.0
-
-    def holds(self) -> bool:
-        self.passed = self.world.time - self._since
-        if self.rate is None:
-            return self.count > 0
-        # The first and last message may be just outside of the time.
-        slack = self.rate * self.passed * self.tolerance + 1.0
-        return self.count > 0 and abs(self.count - self.rate * self.passed) <= slack
-
-    @property
-    def expected(self) -> str:
-        rate = "" if self.rate is None else f" at {self.rate:g} Hz ± {100 * self.tolerance:g} %"
-        return f"messages on {self.topic}{rate}"
-
-    @property
-    def actual(self) -> str:
-        if not self.count:
-            return f"no message in {self.passed:.3f} s"
-        return (
-            f"{self.count} messages in {self.passed:.3f} s, which is {self.measured:.4g} Hz; "
-            f"the longest gap was {self.longest_gap:.3g} s"
-        )
-
-    @property
-    def values(self) -> Mapping[str, float | str | None]:
-        return {"count": self.count, "rate": self.measured, "longest_gap": self.longest_gap}
-
-
 class JointAt(Condition):
     """A joint has a position.
 
@@ -371,6 +321,30 @@ class JointAt(Condition):
     @property
     def values(self) -> Mapping[str, float | str | None]:
         return {"position": self.last, "closest": self.closest, "closest_time": self.closest_time}
+
+
+def _target(target: Sequence[float | None]) -> tuple[float | None, ...]:
+    """x, y and z, each a number or None."""
+    try:
+        found = tuple(None if each is None else float(each) for each in target)
+    except (TypeError, ValueError):
+        found = ()
+    if len(found) not in (2, 3):
+        raise refused("target", "x and y, or x, y and z, in m", target)
+    return found + (None,) * (3 - len(found))
+
+
+def _limits(name: str, limits: Sequence[float]) -> Range:
+    """Minimum and maximum."""
+    try:
+        low, high = map(float, limits)
+    except (TypeError, ValueError):
+        raise refused(name, "a minimum and a maximum in m", limits) from None
+    if low > high:
+        error = refused(name, "a minimum and a maximum, in this order", limits)
+        error.hint = f"The limits are swapped. Write ({high:g}, {low:g})."
+        raise error
+    return low, high
 
 
 def angle_between(a: float, b: float) -> float:

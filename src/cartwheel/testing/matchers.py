@@ -9,14 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from cartwheel.api.values import instance
+from cartwheel.errors import Pickled
 from cartwheel.testing.conditions import (
     Condition,
     JointAt,
     Moves,
-    Publishes,
     Reaches,
     StaysWithin,
 )
+from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.seeing import Sees
 from cartwheel.testing.touching import Touches
 from cartwheel.testing.watching import Watch, When, run
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 Limits = tuple[float, float]
 
 
-class UnmetError(AssertionError):
+class UnmetError(Pickled, AssertionError):
     """A condition that was not met.
 
     Attributes:
@@ -74,6 +76,8 @@ def reaches(
     Raises:
         UnmetError: The model did not reach the position. `values` contains the closest approach and
             its time.
+        CartwheelError: `robot` is not a model, the target is not one of the above, or nothing is
+            compared.
     """
     from cartwheel.geometry import Pose
 
@@ -81,7 +85,7 @@ def reaches(
         yaw = target.yaw if yaw is None else yaw
         target = target.position
     __tracebackhide__ = True
-    condition = Reaches(robot.name, target, within=within, yaw=yaw, yaw_within=yaw_within)
+    condition = Reaches(_robot(robot), target, within=within, yaw=yaw, yaw_within=yaw_within)
     return _until(_world(robot), condition, timeout)
 
 
@@ -109,10 +113,11 @@ def stays_within(
     Raises:
         UnmetError: The model left the limits. `values` contains the coordinate, its value and the
             time.
+        CartwheelError: There is no limit, or a minimum is above its maximum.
     """
     __tracebackhide__ = True
     limits = {name: each for name, each in (("x", x), ("y", y), ("z", z)) if each is not None}
-    condition = StaysWithin(robot.name, limits, tilt=tilt, speed=speed)
+    condition = StaysWithin(_robot(robot), limits, tilt=tilt, speed=speed)
     _always(_world(robot), condition, seconds)
 
 
@@ -131,7 +136,7 @@ def moves(robot: Model, *, distance: float = 0.1, timeout: float = 5.0) -> float
         UnmetError: The model did not move far enough. `values` contains the distance.
     """
     __tracebackhide__ = True
-    return _until(_world(robot), Moves(robot.name, distance), timeout)
+    return _until(_world(robot), Moves(_robot(robot), distance), timeout)
 
 
 def publishes(
@@ -171,9 +176,9 @@ def sees(
     topic: str,
     *,
     range: float | None = None,
-    within: float = 0.05,
+    within: float | None = None,
     color: Sequence[float] | None = None,
-    share: float = 0.01,
+    share: float | None = None,
     model: str | None = None,
     timeout: float = 2.0,
 ) -> float:
@@ -183,9 +188,9 @@ def sees(
         world: The world, or one of its models.
         topic: A topic with images, depth images, laser scans, ranges or images of logical cameras.
         range: Shortest distance that the sensor measures, m.
-        within: Tolerance of the range, m.
+        within: Tolerance of the range, m; None is 0.05.
         color: Red, green and blue from 0 to 1, for images.
-        share: Minimum share of the image's pixels that have the colour.
+        share: Minimum share of the image's pixels that have the colour; None is 0.01.
         model: Name of the detected model, for logical cameras.
         timeout: Maximum simulation time, s.
 
@@ -195,7 +200,10 @@ def sees(
     Raises:
         UnmetError: The sensor did not see it. `values` contains the most similar range or share.
         UnknownNameError: The topic does not exist.
-        GraphError: Messages of the topic's type contain no view.
+        GraphError: Messages of the topic's type contain no view, or cannot be tested for what is
+            given: a laser scan has no colour.
+        CartwheelError: The colour is invalid, or `within` or `share` is given without the range or
+            colour to which it belongs.
     """
     __tracebackhide__ = True
     condition = Sees(topic, range=range, within=within, color=color, share=share, model=model)
@@ -219,7 +227,7 @@ def touches(robot: Model, other: Model | str | None = None, *, timeout: float = 
         UnknownNameError: No model has this name.
     """
     __tracebackhide__ = True
-    return _until(_world(robot), Touches(robot.name, _name(other)), timeout)
+    return _until(_world(robot), Touches(_robot(robot), _name(other)), timeout)
 
 
 def touches_nothing(
@@ -237,7 +245,7 @@ def touches_nothing(
         UnknownNameError: No model has this name.
     """
     __tracebackhide__ = True
-    _always(_world(robot), Touches(robot.name, _name(other), inverted=True), seconds)
+    _always(_world(robot), Touches(_robot(robot), _name(other), inverted=True), seconds)
 
 
 def joint_reaches(
@@ -260,7 +268,7 @@ def joint_reaches(
         UnknownNameError: The joint does not exist.
     """
     __tracebackhide__ = True
-    return _until(_world(robot), JointAt(robot.name, joint, position, within=within), timeout)
+    return _until(_world(robot), JointAt(_robot(robot), joint, position, within=within), timeout)
 
 
 def _until(world: World, condition: Condition, timeout: float) -> float:
@@ -288,10 +296,19 @@ def _check(world: World, condition: Condition, when: When, seconds: float) -> No
 
 
 def _name(other: Model | str | None) -> str | None:
-    return other if other is None or isinstance(other, str) else other.name
+    return other if other is None or isinstance(other, str) else _robot(other, "other")
+
+
+def _robot(model: Model, name: str = "robot") -> str:
+    """The name of a model."""
+    from cartwheel.api import Model
+
+    return instance(model, Model, name, 'world.model("cart")').name
 
 
 def _world(model: World | Model) -> World:
-    from cartwheel.api import World
+    from cartwheel.api import Model, World
 
-    return model if isinstance(model, World) else model._world
+    if isinstance(model, World):
+        return model
+    return instance(model, Model, "world", "the world or one of its models")._world

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cartwheel.api.arguments import refused
 from cartwheel.api.values import array, invalid
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.errors import GraphError
@@ -24,12 +25,16 @@ grey, it is 1, because other greys are other colours."""
 _CHANNELS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0), "rgba8": (0, 1, 2), "bgra8": (2, 1, 0)}
 _DEPTHS = {"32FC1": (np.float32, 1.0), "16UC1": (np.uint16, 1e-3)}
 """Type and unit in m of the values of depth images."""
-_KINDS = (
-    "sensor_msgs/msg/Image",
-    "sensor_msgs/msg/LaserScan",
-    "sensor_msgs/msg/Range",
-    "ros_gz_interfaces/msg/LogicalCameraImage",
-)
+_KINDS: dict[str, tuple[str, ...]] = {
+    "sensor_msgs/msg/Image": ("color", "range"),
+    "sensor_msgs/msg/LaserScan": ("range",),
+    "sensor_msgs/msg/Range": ("range",),
+    "ros_gz_interfaces/msg/LogicalCameraImage": ("model",),
+}
+"""What the messages of each type can be tested for. The encoding of an image decides further."""
+_WITHIN, _SHARE = 0.05, 0.01
+_NEEDS = {"within": "range", "share": "color"}
+"""Arguments that only have a meaning with another one."""
 
 
 class Sees(Condition):
@@ -38,10 +43,14 @@ class Sees(Condition):
     Args:
         topic: A topic with images, depth images, laser scans, ranges or images of logical cameras.
         range: Shortest measured distance, m; None if any distance is sufficient.
-        within: Tolerance of the range, m.
+        within: Tolerance of the range, m; None is 0.05.
         color: Red, green and blue from 0 to 1, for images.
-        share: Minimum share of the image's pixels that have the colour.
+        share: Minimum share of the image's pixels that have the colour; None is 0.01.
         model: Name of the detected model, for logical cameras.
+
+    Raises:
+        CartwheelError: The colour is invalid, or a tolerance or share is given without the range or
+            colour to which it belongs.
     """
 
     def __init__(
@@ -49,15 +58,21 @@ class Sees(Condition):
         topic: str,
         *,
         range: float | None = None,
-        within: float = 0.05,
+        within: float | None = None,
         color: Sequence[float] | None = None,
-        share: float = 0.01,
+        share: float | None = None,
         model: str | None = None,
     ) -> None:
         super().__init__()
-        self.topic, self.range, self.within = topic, range, within
+        given = {"range": range, "within": within, "color": color, "share": share, "model": model}
+        self._asked = tuple(name for name, each in given.items() if each is not None)
+        for name in self._asked:
+            if _NEEDS.get(name, name) not in self._asked:
+                raise refused(name, f"used with {_NEEDS[name]}", given[name])
+        self.topic, self.range, self.model = topic, range, model
+        self.within = _WITHIN if within is None else within
         self.color = None if color is None else _checked(color)
-        self.share, self.model = share, model
+        self.share = _SHARE if share is None else share
         self.nearest: float | None = None
         self.seen_share: float | None = None
         self._pixels: Any = None
@@ -78,8 +93,31 @@ class Sees(Condition):
                 hint=f"Use a topic of one of these types: {', '.join(_KINDS)}.",
                 values={"topic": self.topic, "type": kind},
             )
+        self._require(_KINDS[kind], f"has the type {kind}", type=kind)
         self.count = 0
         self._end = world.graph.subscribe(self.topic, self._take).close
+
+    def _require(self, testable: Sequence[str], found: str, **values: str) -> None:
+        """Refuses what cannot be tested.
+
+        Args:
+            testable: What the messages can be tested for.
+            found: The reason, as a phrase about the topic.
+            values: The same, for programs.
+
+        Raises:
+            GraphError: The messages cannot be tested for what the condition asks.
+        """
+        unable = [name for name in self._asked if _NEEDS.get(name, name) not in testable]
+        if testable and not unable:
+            return
+        raise GraphError(
+            f'the topic "{self.topic}" {found}, which cannot be tested'
+            + "".join(f' for "{name}"' for name in unable[:1]),
+            code=TOPIC_TYPE_MISMATCH,
+            hint=f"It can be tested for {' and '.join(testable)}." if testable else None,
+            values={"topic": self.topic, "name": "".join(unable[:1]), **values},
+        )
 
     def _take(self, message: Any) -> None:
         self._latest = message
@@ -102,8 +140,13 @@ class Sees(Condition):
         if kind == "LogicalCameraImage":
             self.seen_models = tuple(each.name for each in message.model)
             return self.model in self.seen_models if self.model else bool(self.seen_models)
-        if kind == "Image" and message.encoding in _CHANNELS:
-            return self._evaluate_color(message)
+        if kind == "Image":
+            coloured = message.encoding in _CHANNELS
+            testable = ("color",) if coloured else ("range",) * (message.encoding in _DEPTHS)
+            found = f"has images with the encoding {message.encoding}"
+            self._require(testable, found, encoding=message.encoding)
+            if coloured:
+                return self._evaluate_color(message)
         distance = _nearest(message, kind)
         if distance is None:
             return False

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from cartwheel.errors import UnknownNameError
-from cartwheel.testing.conditions import Condition, Publishes, StaysWithin
+from cartwheel.errors import CartwheelError, Origin, UnknownNameError
+from cartwheel.testing.conditions import Condition, StaysWithin
+from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.touching import Touches
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ class Watch:
         timeout: Simulation time from the start, s; None is the end.
         after: Simulation time from the start at which the condition begins, s.
         patient: Whether models, joints and topics of the condition may be added later.
+        origin: Where the condition is stated, for its errors.
     """
 
     condition: Condition
@@ -36,6 +38,7 @@ class Watch:
     timeout: float | None = None
     after: float = 0.0
     patient: bool = False
+    origin: Origin | None = None
     met: bool | None = field(default=None, init=False)
     """None while it is undecided."""
     time: float | None = field(default=None, init=False)
@@ -63,7 +66,15 @@ class Watch:
 
         Raises:
             UnknownNameError: A model, joint or topic does not exist, or not by the timeout.
+            CartwheelError: The condition cannot be evaluated.
         """
+        try:
+            self._look(world)
+        except CartwheelError as error:
+            error.origin = error.origin or self.origin
+            raise
+
+    def _look(self, world: World) -> None:
         now = world.time - self._start
         if self.met is not None or now < self.after - _TIME_ERROR:
             return

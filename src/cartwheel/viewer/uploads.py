@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from cartwheel.errors import Pickled
 from cartwheel.viewer.viser_internals import discard_upload, end_upload
 
 PART_BYTES = 512 * 1024
@@ -17,7 +18,7 @@ SILENCE = 60.0
 """Timeout after which an incomplete upload is discarded, s."""
 
 
-class UploadError(Exception):
+class UploadError(Pickled, Exception):
     """A rejected file, or a rejected part of a file.
 
     Args:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from cartwheel.codes.wires import CLIENT_REQUEST_IGNORED
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import Diagnostic, Pickled
 
 _MOST, _MOST_BYTES = 1000, 1 << 20
 """Maximum number of entries of one kind per client, and of their characters."""
@@ -98,7 +98,7 @@ class JoinedClient:
             self._parameters.remove(map(repr, _items(asked, "parameterNames")))
 
 
-class _FullError(Exception):
+class _FullError(Pickled, Exception):
     """The limit on entries is reached."""
 
     def __init__(self, limit: str, text: str) -> None:

@@ -30,18 +30,18 @@ their number, and with the square of their length.
 """
 
 
-class _InvalidError(DescriptionError):
-    """A malformed or out-of-range value; `label` names the value."""
-
-    code = VALUE_INVALID
-
-    def __init__(
-        self, label: str, rest: str, stated: str | float, origin: Origin, hint: str | None = None
-    ) -> None:
-        shown = stated if isinstance(stated, float) else stated[:_LONGEST_NAME]
-        super().__init__(
-            f"{label} {rest}", origin=origin, hint=hint, values={"name": label, "stated": shown}
-        )
+def _invalid(
+    label: str, rest: str, stated: str | float, origin: Origin, hint: str | None = None
+) -> DescriptionError:
+    """The error for a malformed or out-of-range value; `label` names the value."""
+    shown = stated if isinstance(stated, float) else stated[:_LONGEST_NAME]
+    return DescriptionError(
+        f"{label} {rest}",
+        code=VALUE_INVALID,
+        origin=origin,
+        hint=hint,
+        values={"name": label, "stated": shown},
+    )
 
 
 _TRUE = frozenset({"true", "1", "yes", "on"})
@@ -62,18 +62,16 @@ def number(text: str, label: str, origin: Origin, *, infinite: bool = False) -> 
         result = float(value)
         if math.isfinite(result) or infinite:
             return result
-        raise _InvalidError(label, f"{_quoted(value)} is too large", value, origin)
+        raise _invalid(label, f"{_quoted(value)} is too large", value, origin)
     if _INFINITE.match(value):
         if infinite:
             return float(value)
-        raise _InvalidError(label, f"{_quoted(value)} is not a finite number", value, origin)
+        raise _invalid(label, f"{_quoted(value)} is not a finite number", value, origin)
     if value.lower().lstrip("+-") == "nan":
-        raise _InvalidError(label, f"{_quoted(value)} is not a finite number", value, origin)
+        raise _invalid(label, f"{_quoted(value)} is not a finite number", value, origin)
     if not value:
-        raise _InvalidError(label, "is empty, but must be a number", value, origin)
-    raise _InvalidError(
-        label, f"{_quoted(value)} is not a number", value, origin, _number_hint(value)
-    )
+        raise _invalid(label, "is empty, but must be a number", value, origin)
+    raise _invalid(label, f"{_quoted(value)} is not a number", value, origin, _number_hint(value))
 
 
 def leading(text: str, size: int = 1) -> tuple[str, str] | None:
@@ -112,7 +110,7 @@ def text_after(tag: str, stated: str, used: str, origin: Origin) -> Diagnostic:
 def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...]:
     """`size` finite numbers separated by white space."""
     if "," in text:
-        raise _InvalidError(
+        raise _invalid(
             label,
             f"{_quoted(text.strip())} is not a list of numbers",
             text,
@@ -122,14 +120,14 @@ def vector(text: str, size: int, label: str, origin: Origin) -> tuple[float, ...
     parts = text.split()
     values = tuple(number(part, label, origin) for part in parts)
     if len(values) != size:
-        raise _InvalidError(
+        raise _invalid(
             label,
             f"{_quoted(text.strip())} must have {size} numbers (got {len(values)})",
             text,
             origin,
         )
     if max(map(abs, values), default=0.0) > LARGEST:
-        raise _InvalidError(
+        raise _invalid(
             label, f"{_quoted(text.strip())} contains a number above {LARGEST:g}", text, origin
         )
     return values
@@ -143,7 +141,7 @@ def position(values: Sequence[float], label: str, origin: Origin) -> Vec3:
     """
     x, y, z = values
     if max(abs(x), abs(y), abs(z)) > FARTHEST:
-        raise _InvalidError(
+        raise _invalid(
             label,
             f"must be at most {FARTHEST:g} m away along each axis (got {x:g} {y:g} {z:g})",
             max(values, key=abs),
@@ -159,7 +157,7 @@ def within(value: float, most: float, label: str, origin: Origin) -> float:
         DescriptionError: The number is too large.
     """
     if abs(value) > most:
-        raise _InvalidError(
+        raise _invalid(
             label, f"must be between {-most:g} and {most:g} (got {value:g})", value, origin
         )
     return value
@@ -172,7 +170,7 @@ def boolean(text: str, label: str, origin: Origin) -> bool:
         return True
     if value in _FALSE:
         return False
-    raise _InvalidError(
+    raise _invalid(
         label,
         f"{_quoted(text.strip())} is neither true nor false",
         text,

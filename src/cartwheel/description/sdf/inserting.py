@@ -22,14 +22,14 @@ from cartwheel.description.sdf.parts import (
     judge,
     left_out,
 )
-from cartwheel.errors import DescriptionError, Diagnostic
+from cartwheel.errors import DescriptionError, Diagnostic, Pickled
 
 INSERTED = ("link", "joint", "frame")
 _VERSION: Version = (1, 7)
 """The SDF version to which Gazebo 11 converts a URDF."""
 
 
-class _RefusedError(Exception):
+class _RefusedError(Pickled, Exception):
     """An invalid element."""
 
     def __init__(self, node: Node, error: DescriptionError) -> None:

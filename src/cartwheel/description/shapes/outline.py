@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.description.model import Polyline
+from cartwheel.errors import Pickled
 
 Point = tuple[float, float]
 Loop = tuple[Point, ...]
@@ -23,7 +24,7 @@ _SAME = 1e-9
 """m; two y values that differ by less are equal."""
 
 
-class OutlineError(ValueError):
+class OutlineError(Pickled, ValueError):
     """Outlines that would take too long to fill.
 
     Args:
