@@ -20,7 +20,12 @@ from tests.dialects.ros_control.arms import (
 from tests.dialects.ros_control.controllers.test_gripper import BODY
 
 import cartwheel as cw
-from cartwheel.codes.graph import ACTION_UNKNOWN, FIELD_UNKNOWN, SERVICE_UNKNOWN
+from cartwheel.codes.graph import (
+    ACTION_UNKNOWN,
+    FIELD_UNKNOWN,
+    FIELD_VALUE_INVALID,
+    SERVICE_UNKNOWN,
+)
 from cartwheel.codes.world import (
     NUMBER_OUT_OF_RANGE,
     RUN_NESTED,
@@ -28,6 +33,7 @@ from cartwheel.codes.world import (
     WAIT_TIMED_OUT,
 )
 from cartwheel.errors import CartwheelError, UnknownNameError
+from cartwheel.msgs.trajectory_msgs import JointTrajectory, JointTrajectoryPoint
 
 JOINTS = ("a_joint", "b_joint")
 FOLLOW = "/arm/follow_joint_trajectory"
@@ -92,6 +98,22 @@ def test_an_arm_follows_a_trajectory(tmp_path: Path, ros: int) -> None:
         assert list(goal.feedback.joint_names) == list(JOINTS)
         goal.cancel()
         assert goal.status == "succeeded"
+
+
+def test_a_trajectory_of_classes_has_its_times_in_seconds(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        model = arm(world, tmp_path, 2)
+        world.run(0.5)
+        point = JointTrajectoryPoint(positions=[0.5, -0.3], time_from_start=1.0)
+        wanted = JointTrajectory(joint_names=list(JOINTS), points=[point])
+        goal = world.send_goal(FOLLOW, trajectory=wanted)
+        assert goal.result().error_code == 0
+        assert world.time == pytest.approx(1.5, abs=0.1)
+        assert model.joint(JOINTS[0]) == pytest.approx(0.5, abs=0.02)
+        point = JointTrajectoryPoint(positions=[0.5, -0.3], time_from_start="soon")
+        wanted = JointTrajectory(joint_names=list(JOINTS), points=[point])
+        with raises(FIELD_VALUE_INVALID, field="trajectory.points[0].time_from_start"):
+            world.send_goal(FOLLOW, trajectory=wanted)
 
 
 @pytest.mark.parametrize("ros", [1, 2])

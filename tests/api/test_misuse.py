@@ -5,6 +5,7 @@ import subprocess
 import sys
 import traceback
 
+import numpy as np
 import pytest
 from tests.coded import raises
 
@@ -21,6 +22,7 @@ from cartwheel.codes.world import (
 )
 from cartwheel.errors import CartwheelError, GraphError, SimulationError
 from cartwheel.messages import from_dict
+from cartwheel.msgs.geometry_msgs import Twist, Vector3
 
 
 def test_a_callback_cannot_run_its_world(make):
@@ -68,6 +70,69 @@ def test_a_publisher_refuses_what_is_no_message_of_its_type(value, make):
     assert (level.drain(), publisher.sent) == ([], 0)
     publisher.publish(from_dict("std_msgs/msg/Float32", {"data": 2.0}))
     assert [message.data for message in level.drain()] == [2.0]
+
+
+def twist(x):
+    return Twist(linear=Vector3(x=x))
+
+
+def of_values(x):
+    return {"linear": {"x": x}}
+
+
+def of_parts(x):
+    return {"linear": Vector3(x=x)}
+
+
+@pytest.mark.parametrize("value", [np.array([0.2]), None, "0.2", True, [0.2], 10**400])
+@pytest.mark.parametrize("made", [twist, of_values, of_parts])
+def test_a_wrong_value_in_a_message_is_refused_at_once(made, value, make, rosbots):
+    world = make.world()
+    cart = world.spawn(rosbots, z=0.1)
+    topic = world.topic("/part2_cmr/cmd_vel")
+    publisher = world.advertise("/part2_cmr/cmd_vel", Twist)
+    with raises(FIELD_VALUE_INVALID, GraphError, field="linear.x"):
+        cart.publish("/part2_cmr/cmd_vel", made(value))
+    with raises(FIELD_VALUE_INVALID, GraphError, field="linear.x"):
+        topic.hold(made(value))
+    if made is twist:
+        with raises(FIELD_VALUE_INVALID, GraphError, field="linear.x"):
+            publisher.publish(made(value))
+    if made is of_values:
+        with raises(FIELD_VALUE_INVALID, GraphError, field="linear.x"):
+            cart.publish("/part2_cmr/cmd_vel", linear_x=value)
+    assert topic.count == 0
+    # The drive works as before.
+    cart.publish("/part2_cmr/cmd_vel", made(0.4))
+    world.run(2)
+    assert cart.pose.x > 0.3
+
+
+@pytest.mark.parametrize("value", [np.array(0.5), np.float32(0.5), np.float64(0.5)])
+def test_numbers_of_numpy_are_numbers(value, make):
+    world = make.world()
+    topic = world.topic("/command", Twist)
+    publisher = world.advertise("/command", Twist)
+    publisher.publish(twist(value))
+    world.publish("/command", twist(value))
+    world.publish("/command", of_values(value))
+    world.publish("/command", linear_x=value)
+    world.run(0.1)
+    assert [message.linear.x for message in topic.history()] == [0.5] * 4
+    assert all(isinstance(message.linear.x, float) for message in topic.history())
+
+
+def test_a_message_with_the_types_of_its_fields_is_published_itself(make):
+    world = make.world()
+    topic = world.topic("/command", Twist)
+    message = twist(0.5)
+    world.publish("/command", message)
+    world.run(0.1)
+    assert topic.latest is message
+    given = twist(1)
+    world.publish("/command", given)
+    world.run(0.1)
+    assert topic.latest == given and topic.latest is not given
 
 
 @pytest.mark.parametrize("type", ["nonsense", "std_msgs/msg/Nothing", "a/b/c/d", "", 3])

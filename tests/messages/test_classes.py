@@ -7,13 +7,14 @@ import random
 import threading
 from typing import Any
 
+import numpy as np
 import pytest
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 from tests.messages.cdr.test_cdr import grown
 
 from cartwheel.errors import Origin
-from cartwheel.messages import encode_cdr, from_dict, message_class, zero
+from cartwheel.messages import decode_cdr, encode_cdr, from_dict, message_class, zero
 from cartwheel.messages.classes import Classes
 from cartwheel.messages.defaults import STATED
 from cartwheel.messages.library.parsing import parse_definition
@@ -39,6 +40,33 @@ def test_copies_and_pickles() -> None:
         assert encode_cdr(again) == encode_cdr(made)
         assert again.header is not made.header
     assert copy.copy(made).header is made.header
+
+
+def test_messages_are_equal_if_their_fields_are() -> None:
+    kind = message_class("sensor_msgs/msg/JointState")
+    assert kind() == kind()
+    assert (kind() != kind()) is False
+    assert kind(name=["a"]) != kind() and kind() != zero(ODOMETRY) and kind() != 3
+    one = kind(position=np.array([1.0, 2.0]))
+    assert one == kind(position=np.array([1.0, 2.0])) == kind(position=[1.0, 2.0])
+    assert one != kind(position=np.array([1.0, 3.0]))
+    assert one != kind(position=np.array([1.0]))
+    assert one != kind(position=np.array([[1.0, 2.0]]))
+    joints = message_class("sensor_msgs/msg/MultiDOFJointState")
+    with_lists = joints(joint_names=["a"], wrench=[zero("geometry_msgs/msg/Wrench")])
+    assert with_lists == copy.deepcopy(with_lists)
+    changed = copy.deepcopy(with_lists)
+    changed.wrench[0].force.x = 1.0
+    assert with_lists != changed and changed in [with_lists, copy.deepcopy(changed)]
+    with pytest.raises(TypeError):
+        hash(one)
+
+
+@pytest.mark.parametrize("name", sorted(loaded().types))
+def test_a_message_of_each_type_equals_its_copy(name: str) -> None:
+    made = grown(name, random.Random(3))
+    again = decode_cdr(encode_cdr(made), name)
+    assert again == decode_cdr(encode_cdr(again), name)
 
 
 def test_constants_and_names_are_those_of_rosbags() -> None:

@@ -15,6 +15,7 @@ from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID, MESSAGE_NO
 from cartwheel.errors import Code, GraphError, UnknownNameError
 from cartwheel.messages import (
     CdrCache,
+    checked,
     decode_cdr,
     encode_cdr,
     from_dict,
@@ -27,6 +28,12 @@ from cartwheel.messages import (
 )
 from cartwheel.messages.field import Field
 from cartwheel.messages.fields import fields
+from cartwheel.messages.fitting import fits
+from cartwheel.msgs.geometry_msgs import PoseWithCovariance, TransformStamped, Vector3
+from cartwheel.msgs.sensor_msgs import Image, JointState
+from cartwheel.msgs.std_msgs import Bool, Header, String
+from cartwheel.msgs.tf2_msgs import TFMessage
+from cartwheel.msgs.trajectory_msgs import JointTrajectory, JointTrajectoryPoint
 
 TYPES = [
     "builtin_interfaces/msg/Duration",
@@ -71,7 +78,7 @@ def values(field: Field) -> st.SearchStrategy[Any]:
     if field.kind in ("message", "string"):
         length = field.length
         return st.lists(scalars(field), min_size=length or 0, max_size=length or 2)
-    shape = st.just(field.length) if field.length else st.integers(0, 5)
+    shape = st.just(field.length) if field.length else st.integers(0, field.most or 5)
     elements = {"allow_nan": False} if field.kind == "float" else None
     return npst.arrays(np.dtype(field.type), shape, elements=elements).map(lambda a: a.tolist())
 
@@ -207,6 +214,87 @@ def test_what_does_not_fit_is_named_in_other_types(
 ) -> None:
     with raises(code, GraphError, field=field):
         from_dict(name, mapping)
+
+
+@pytest.mark.parametrize(
+    ("mapping", "field"),
+    [
+        ({"linear": {"x": "1e-3"}}, "linear.x"),
+        ({"linear": {"x": None}}, "linear.x"),
+        ({"linear": None}, "linear"),
+        ({"linear": ["1", 0, 0]}, "linear.x"),
+    ],
+)
+def test_a_program_gives_numbers_as_numbers(mapping: Any, field: str) -> None:
+    with raises(FIELD_VALUE_INVALID, GraphError, field=field):
+        from_dict("geometry_msgs/Twist", mapping, strict=True)
+    assert from_dict("geometry_msgs/Twist", mapping).linear.x in (0.0, 1e-3, 1.0)
+
+
+@pytest.mark.parametrize("value", [np.float32(0.5), np.array(0.5), np.array(0.5, np.float32)])
+def test_a_number_of_numpy_needs_no_dimensions(value: Any) -> None:
+    twist = from_dict("geometry_msgs/Twist", {"linear": {"x": value}})
+    assert twist.linear.x == 0.5 and type(twist.linear.x) is float
+    header = from_dict("std_msgs/Header", {"stamp": value})
+    assert (header.stamp.sec, header.stamp.nanosec) == (0, 500_000_000)
+    with raises(FIELD_VALUE_INVALID, GraphError, field="position"):
+        from_dict("sensor_msgs/JointState", {"position": value})
+
+
+@pytest.mark.parametrize("name", sorted(TYPES))
+@SETTINGS
+@given(data=st.data())
+def test_a_message_that_fits_is_returned_itself(data: Any, name: str) -> None:
+    made = from_dict(name, data.draw(mappings(name)))
+    assert fits(made) and checked(made) is made
+
+
+@pytest.mark.parametrize(
+    ("wrong", "field"),
+    [
+        (JointState(position="a"), "position"),
+        (JointState(position=None), "position"),
+        (JointState(position=[0.0, "1"]), "position[1]"),
+        (JointState(position=np.array(["1"])), "position[0]"),
+        (JointState(position=np.zeros((1, 2))), "position[0]"),
+        (JointState(name="a"), "name"),
+        (JointState(name=["a", 1]), "name[1]"),
+        (JointState(header=Header(stamp="now")), "header.stamp"),
+        (JointState(header=Header(frame_id=3)), "header.frame_id"),
+        (JointState(header=Vector3()), "header"),
+        (Image(height=-1), "height"),
+        (Image(height=2**32), "height"),
+        (Image(height=1.5), "height"),
+        (Image(is_bigendian=256), "is_bigendian"),
+        (PoseWithCovariance(covariance=np.zeros(35)), "covariance"),
+        (TFMessage(transforms=[TransformStamped(), None]), "transforms[1]"),
+        (
+            TFMessage(transforms=[TransformStamped(child_frame_id=1)]),
+            "transforms[0].child_frame_id",
+        ),
+        (Bool(data="yes"), "data"),
+        (String(data=None), "data"),
+    ],
+)
+def test_what_does_not_fit_is_named_in_messages(wrong: Any, field: str) -> None:
+    with raises(FIELD_VALUE_INVALID, GraphError, field=field):
+        checked(wrong)
+
+
+def test_values_of_messages_get_the_types_of_their_fields() -> None:
+    point = JointTrajectoryPoint(positions=[1, 2.5], time_from_start=1.5)
+    given = JointTrajectory(joint_names=("a", "b"), points=[point])
+    made = checked(given)
+    assert made.joint_names == ["a", "b"]
+    (each,) = made.points
+    assert each.positions.dtype == np.float64 and each.positions.tolist() == [1.0, 2.5]
+    assert (each.time_from_start.sec, each.time_from_start.nanosec) == (1, 500_000_000)
+    # The message of the program stays as it is.
+    assert given.points == [point] and point.time_from_start == 1.5
+    assert checked(Image(data=b"ab")).data.tolist() == [97, 98]
+    assert checked(Image(height=np.uint32(3))).height == 3
+    assert checked(Image(height=True)).height == 1
+    assert checked(Bool(data=1)).data is True
 
 
 def test_unknown_types_and_bytes_are_refused() -> None:

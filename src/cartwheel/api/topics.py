@@ -15,7 +15,7 @@ from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import GraphError, Value
 from cartwheel.geometry import Array
-from cartwheel.graph import check_message
+from cartwheel.graph import checked_message
 from cartwheel.messages import from_dict, from_flat
 from cartwheel.messages.typed import M
 from cartwheel.similar_names import meant, suggestion
@@ -321,8 +321,7 @@ class Hold:
 def made_message(topic: str, kind: str, message: Any, fields: Mapping[str, Any]) -> Any:
     """The message that a program gives as a message, a mapping or keyword arguments."""
     if fields:
-        return from_flat(kind, fields)
+        return from_flat(kind, fields, strict=True)
     if message is None or isinstance(message, Mapping):
-        return from_dict(kind, message or {})
-    check_message(topic, kind, message)
-    return message
+        return from_dict(kind, message or {}, strict=True)
+    return checked_message(topic, kind, message)

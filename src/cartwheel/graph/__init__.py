@@ -19,7 +19,7 @@ from cartwheel.graph.topic import (
     Subscription,
     TakeValues,
     TopicInfo,
-    check_message,
+    checked_message,
 )
 from cartwheel.graph.transforms import StaticTransforms
 
@@ -48,8 +48,8 @@ __all__ = [
     "TakeValues",
     "TopicInfo",
     "TopicRenaming",
-    "check_message",
     "check_prefix",
+    "checked_message",
     "choices",
     "resolve_frame",
     "resolve_name",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal
 from cartwheel.calls import Post
 from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
-from cartwheel.messages import CdrCache, Form, type_name
+from cartwheel.messages import CdrCache, Form, checked, type_name
 from cartwheel.messages.typed import M
 
 if TYPE_CHECKING:
@@ -219,19 +219,21 @@ class CheckedPublisher(Publisher[M]):
         """See `Publisher.publish`.
 
         Raises:
-            GraphError: The value is not a message of the topic's type.
+            GraphError: The value is not a message of the topic's type, or a value in it does not
+                fit its field.
         """
-        check_message(self.topic, self.type, message)
+        message = checked_message(self.topic, self.type, message)
         # The user may have changed the fields of a message that was published before.
         self._graph.cdr.forget()
         super().publish(message)
 
 
-def check_message(topic: str, kind: str, message: Any) -> None:
-    """Refuses a value that is not a message of a topic's type.
+def checked_message(topic: str, kind: str, message: Any) -> Any:
+    """The message of a program, with the types of its fields; see `cartwheel.messages.checked`.
 
     Raises:
-        GraphError: See above.
+        GraphError: It is not a message of the topic's type, or a value in it does not fit its
+            field.
     """
     given = getattr(type(message), "__msgtype__", type(message).__name__)
     if given not in (kind, type_name(kind)):
@@ -241,6 +243,7 @@ def check_message(topic: str, kind: str, message: Any) -> None:
             values={"topic": topic, "type": kind, "given": given},
             hint="Pass a message, or use World.publish with the values of its fields.",
         )
+    return checked(message)
 
 
 class Subscription:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from cartwheel.messages.defaults import STATED
 from cartwheel.messages.field import Field, empty, field_of
@@ -89,6 +90,7 @@ def _convert(
     }
     # rosbags appends "_" to the names of keywords.
     if any(keyword.iskeyword(name.removesuffix("_")) for name in fields):
+        given.__eq__ = _equal
         return given
     kept = {
         name: value
@@ -100,10 +102,40 @@ def _convert(
         given.__name__,
         [(name, Any, value) for name, value in zip(fields, values, strict=True)],
         # The functions of the module `dataclasses`, such as `replace`, support the class.
-        namespace={**kept, "__dataclass_fields__": fields},
+        namespace={
+            **kept,
+            "__dataclass_fields__": fields,
+            "__eq__": _equal,
+            "__ne__": _different,
+        },
         module=module,
+        eq=False,
         gc=False,
     )
+
+
+def _equal(self: Any, other: Any) -> Any:
+    """Whether two messages have equal fields. Arrays are equal if their shapes and values are."""
+    if type(self) is not type(other):
+        return NotImplemented
+    names = self.__dataclass_fields__
+    return all(_alike(getattr(self, name), getattr(other, name)) for name in names)
+
+
+def _different(self: Any, other: Any) -> Any:
+    """Python derives it only for classes without a comparison of their own in C."""
+    if type(self) is not type(other):
+        return NotImplemented
+    return not _equal(self, other)
+
+
+def _alike(one: Any, other: Any) -> bool:
+    # As in Python's lists, a value equals itself, even if it is not a number.
+    if one is other:
+        return True
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return bool(np.array_equal(one, other))
+    return bool(one == other)
 
 
 def _default(field: Field, make: Callable[[str], Any]) -> Any:

@@ -13,6 +13,7 @@ from cartwheel.errors import GraphError
 from cartwheel.messages.classes import FILLER
 from cartwheel.messages.field import Field, empty
 from cartwheel.messages.fields import fields
+from cartwheel.messages.fitting import fits
 from cartwheel.messages.store import message_class
 from cartwheel.similar_names import meant, suggestion
 
@@ -36,7 +37,9 @@ def to_dict(message: Any) -> dict[str, Any]:
     return {field.name: _plain(field, getattr(message, field.name)) for field in _of(message)}
 
 
-def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any:
+def from_dict(
+    type_name: str, mapping: Mapping[str, Any] | Sequence[Any], *, strict: bool = False
+) -> Any:
     """Creates a message from YAML or JSON values.
 
     Omitted fields have their default values: those that the definition states in ROS 2, such as 1
@@ -48,20 +51,23 @@ def from_dict(type_name: str, mapping: Mapping[str, Any] | Sequence[Any]) -> Any
     Args:
         type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
         mapping: Values by field, which may contain numpy arrays and messages.
+        strict: Whether the values come from a Python program instead of YAML. Then None is not a
+            value, a text such as ``1e-3`` is not a number, and messages are checked.
 
     Raises:
         UnknownNameError: The type does not exist.
         GraphError: A field does not exist, or a value does not fit. The error names the field.
     """
-    return _message(message_class(type_name), mapping, "")
+    return _message(message_class(type_name), mapping, "", strict)
 
 
-def from_flat(type_name: str, values: Mapping[str, Any]) -> Any:
+def from_flat(type_name: str, values: Mapping[str, Any], *, strict: bool = False) -> Any:
     """Creates a message from nested fields, whose names are joined by ``_``.
 
     Args:
         type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
         values: Values as keyword arguments provide them: ``{"linear_x": 0.5}``.
+        strict: See `from_dict`.
 
     Raises:
         UnknownNameError: The type does not exist.
@@ -75,7 +81,29 @@ def from_flat(type_name: str, values: Mapping[str, Any]) -> Any:
         for part in outer:
             inner = inner.setdefault(part, {})
         inner[last] = value
-    return from_dict(full, mapping)
+    return from_dict(full, mapping, strict=strict)
+
+
+def checked(message: Any) -> Any:
+    """The message of a Python program, with the types of its fields.
+
+    Values are converted as those of `from_dict`: a list of numbers becomes an array, and a number
+    of seconds a duration. A message that needs no conversion is returned itself.
+
+    Raises:
+        GraphError: A value does not fit. The error names the field.
+    """
+    return message if fits(message) else _fitted(message, "")
+
+
+def _fitted(message: Any, path: str) -> Any:
+    """A copy of a message, with the types of its fields."""
+    cls = message_class(message.__msgtype__)
+    values = {
+        field.name: _value(field, getattr(message, field.name), f"{path}{field.name}", True)
+        for field in fields(cls.__msgtype__)
+    }
+    return cls(**values) if values else message
 
 
 def _split(type_name: str, name: str, outer: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -109,7 +137,7 @@ def zero(type_name: str) -> Any:
     Raises:
         UnknownNameError: The type does not exist.
     """
-    return _message(message_class(type_name), {}, "")
+    return _message(message_class(type_name), {}, "", False)
 
 
 def recast(message: Any, type_name: str) -> Any:
@@ -150,17 +178,18 @@ def _plain(field: Field, value: Any) -> Any:
 def _plain_one(field: Field, value: Any) -> Any:
     if field.kind == "message":
         return to_dict(value)
-    return value.item() if isinstance(value, np.generic) else value
+    return _plain_number(value)
 
 
-def _message(cls: Any, given: Any, path: str) -> Any:
+def _message(cls: Any, given: Any, path: str, strict: bool) -> Any:
     if isinstance(given, cls):
-        return given
+        return _fitted(given, path) if strict and not fits(given) else given
+    given = _plain_number(given)
     wanted = fields(cls.__msgtype__)
     values = dict.fromkeys(field.name for field in wanted)
-    for name, value in _by_name(cls.__msgtype__, given, path).items():
+    for name, value in _by_name(cls.__msgtype__, given, path, strict).items():
         field = next(field for field in wanted if field.name == name)
-        values[name] = _value(field, value, f"{path}{name}")
+        values[name] = _value(field, value, f"{path}{name}", strict)
     for field in wanted:
         if values[field.name] is None:
             values[field.name] = empty(field, zero)
@@ -169,7 +198,7 @@ def _message(cls: Any, given: Any, path: str) -> Any:
     return cls(**values)
 
 
-def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
+def _by_name(type_name: str, given: Any, path: str, strict: bool) -> dict[str, Any]:
     """The given values, by the field names of the message classes."""
     names = [field.name for field in fields(type_name)]
     if type_name in _TIMES and isinstance(given, int | float) and not isinstance(given, bool):
@@ -204,7 +233,7 @@ def _by_name(type_name: str, given: Any, path: str) -> dict[str, Any]:
                 values={"type": type_name, "field": path.rstrip("."), "count": len(given)},
             )
         return dict(zip(names, given, strict=True))
-    if given is None:
+    if given is None and not strict:
         return {}
     raise GraphError(
         f"{_where(path)} {_shown(given)} is not a valid {type_name}",
@@ -222,13 +251,14 @@ def _parts(seconds: float) -> dict[str, Any]:
     return {"sec": whole, "nanosec": rest}
 
 
-def _value(field: Field, value: Any, path: str) -> Any:
-    if value is None:
+def _value(field: Field, value: Any, path: str, strict: bool) -> Any:
+    if value is None and not strict:
         return None
     if not field.array:
-        return _one(field, value, path)
+        return _one(field, value, path, strict)
     if isinstance(value, bytes | bytearray | memoryview) and field.type == "uint8":
         value = np.frombuffer(value, dtype=np.uint8)
+    value = _plain_number(value)
     if isinstance(value, str | Mapping) or not isinstance(value, Sequence | np.ndarray):
         raise GraphError(
             f"{path}: expected a list for {field.described}, got {_shown(value)}",
@@ -249,11 +279,11 @@ def _value(field: Field, value: Any, path: str) -> Any:
             values={"field": path, "count": len(value)},
         )
     if field.kind in ("message", "string"):
-        return [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
-    return _numbers(field, value, path)
+        return [_one(field, item, f"{path}[{index}]", strict) for index, item in enumerate(value)]
+    return _numbers(field, value, path, strict)
 
 
-def _numbers(field: Field, value: Any, path: str) -> Any:
+def _numbers(field: Field, value: Any, path: str, strict: bool) -> Any:
     dtype = np.dtype(field.type)
     try:
         array = np.asarray(value)
@@ -264,15 +294,21 @@ def _numbers(field: Field, value: Any, path: str) -> Any:
     if array.ndim == 1 and alike:
         return array.astype(dtype, copy=False)
     # Values that are checked one by one have their index in the error.
-    items = [_one(field, item, f"{path}[{index}]") for index, item in enumerate(value)]
+    items = [_one(field, item, f"{path}[{index}]", strict) for index, item in enumerate(value)]
     return np.array(items, dtype=dtype)
 
 
-def _one(field: Field, value: Any, path: str) -> Any:
+def _plain_number(value: Any) -> Any:
+    """A number of numpy, also an array without dimensions, as one of Python."""
+    if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0):
+        return value.item()
+    return value
+
+
+def _one(field: Field, value: Any, path: str, strict: bool) -> Any:
     if field.kind == "message":
-        return _message(message_class(field.type), value, f"{path}.")
-    if isinstance(value, np.generic):
-        value = value.item()
+        return _message(message_class(field.type), value, f"{path}.", strict)
+    value = _plain_number(value)
     if field.kind == "string":
         if isinstance(value, str) and field.longest and len(value) > field.longest:
             raise GraphError(
@@ -297,11 +333,11 @@ def _one(field: Field, value: Any, path: str) -> Any:
             values={"field": path.rstrip("."), "value": _shown(value)},
         )
     if field.kind == "float":
-        return _float(value, path)
+        return _float(value, path, strict)
     return _int(field, value, path)
 
 
-def _float(value: Any, path: str) -> float:
+def _float(value: Any, path: str, strict: bool) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool):
         try:
             return float(value)
@@ -311,7 +347,7 @@ def _float(value: Any, path: str) -> float:
                 code=FIELD_VALUE_INVALID,
                 values={"field": path.rstrip("."), "value": _shown(value)},
             ) from None
-    if isinstance(value, str):
+    if isinstance(value, str) and not strict:
         # YAML 1.1 reads 1e-3 and nan as strings.
         try:
             return float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
