@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from cartwheel.batch.plan import Plan
 
 Method = Literal["spawn", "fork", "forkserver"]
-_END = 5.0
-"""Wall time in which a process must end, s."""
+_END = 30.0
+"""Wall time in which a process must end, also on a busy computer, s."""
 
 
 class Lanes:
