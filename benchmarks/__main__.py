@@ -25,6 +25,7 @@ from benchmarks import (
     scenario,
     sensors,
     unread,
+    warp,
     wires,
 )
 from benchmarks.figure import FULL, QUICK
@@ -38,6 +39,7 @@ _PARTS = {
     "rays": rays,
     "process": process,
     "batch": batch,
+    "warp": warp,
     "crowd": crowd,
     "making": making,
     "recording": recording,

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what is missing: a virtual environment with Cartwheel, and the Debian packages
-# that pip cannot install. Usage: tools/setup.sh run|test|lint|docs|ros1
+# that pip cannot install. Usage: tools/setup.sh run|test|lint|docs|ros1|warp
 set -eu
 cd "$(dirname "$0")/.."
 purpose=${1:-run}
@@ -146,6 +146,9 @@ stamp="$venv/.ready-tools"
 if [ "$purpose" = docs ]; then
     extras="[docs]"
     stamp="$venv/.ready-docs"
+elif [ "$purpose" = warp ]; then
+    extras="[test,warp]"
+    stamp="$venv/.ready-warp"
 elif [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
     extras=""
     stamp="$venv/.ready"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Protocol
 
 from cartwheel.api.running import RunningWorld
 from cartwheel.assembly.driver import Interruption
@@ -10,8 +11,20 @@ from cartwheel.assembly.turn import Turn
 from cartwheel.messages.store import find_with, finding_with
 from cartwheel.simulation.limits import duration_ns
 
+if TYPE_CHECKING:
+    from cartwheel.simulation import Simulation
 
-def run_abreast(worlds: Sequence[RunningWorld], seconds: float) -> None:
+
+class Physics(Protocol):
+    """Computes the steps of worlds."""
+
+    def advance(self, lanes: Sequence[Run]) -> None:
+        """Makes the next steps of some worlds. An error of a world ends its run."""
+
+
+def run_abreast(
+    worlds: Sequence[RunningWorld], seconds: float, physics: Physics | None = None
+) -> None:
     """Runs several worlds, with the same results as `World.run` of each.
 
     The worlds take turns: the Python code between two steps runs for all of them, and then the
@@ -21,6 +34,7 @@ def run_abreast(worlds: Sequence[RunningWorld], seconds: float) -> None:
     Args:
         worlds: The worlds. Those with connections or a `pace` run one after another.
         seconds: Simulation time, at least 0.
+        physics: Computes the steps of the worlds that take turns; None is MuJoCo.
 
     Raises:
         KeyboardInterrupt: Ctrl-C was pressed.
@@ -37,13 +51,13 @@ def run_abreast(worlds: Sequence[RunningWorld], seconds: float) -> None:
                     world.run(seconds)
             except Exception as error:  # noqa: BLE001 - raised below
                 errors.append(error)
-        lanes: list[_Lane] = []
+        lanes: list[Run] = []
         try:
             if not interruption.pressed:
-                lanes += (_Lane(each, duration, errors) for each in worlds if not each.is_paced)
+                lanes += (Run(each, duration, errors) for each in worlds if not each.is_paced)
             if lanes:
                 with finding_with(lanes[0].types):
-                    _run(lanes)
+                    _run(lanes, _Mujoco() if physics is None else physics)
         finally:
             for lane in lanes:
                 lane.end()
@@ -57,17 +71,25 @@ def _stop(worlds: Sequence[RunningWorld]) -> None:
         world.stop()
 
 
-def _run(lanes: Sequence[_Lane]) -> None:
+class _Mujoco:
+    """Computes the steps of one world after the other by MuJoCo."""
+
+    def advance(self, lanes: Sequence[Run]) -> None:
+        for lane in lanes:
+            lane.step()
+
+
+def _run(lanes: Sequence[Run], physics: Physics) -> None:
     going = list(lanes)
     while going:
         going = [lane for lane in going if lane.prepare()]
-        for lane in going:
-            lane.step()
+        if going:
+            physics.advance(going)
     for lane in lanes:
         lane.complete()
 
 
-class _Lane:
+class Run:
     """A run of one world.
 
     Args:
@@ -77,7 +99,7 @@ class _Lane:
     """
 
     __slots__ = (
-        "_advancing", "_errors", "_failed", "_open", "_piece", "_simulation", "_target", "_turn",
+        "_advancing", "_errors", "_failed", "_open", "_target", "_turn", "piece", "simulation",
         "types",
     )  # fmt: skip
 
@@ -86,17 +108,24 @@ class _Lane:
         self.types = world.session.types
         """Finds message types for the plugins of the world."""
         self._failed = self._open = False
-        self._piece = (0, False)
+        self.piece = (0, False)
+        """The next steps: the arguments of `Engine.advance`."""
         self._turn = Turn(world)
         self._advancing: Iterator[tuple[int, bool]] = iter(())
         try:
-            self._simulation = self._turn.begin()
+            self.simulation: Simulation = self._turn.begin()
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
-            self._fail(error)
+            self.fail(error)
             return
         self._open = True
-        self._target = self._simulation.time_ns + duration_ns
-        self._advancing = self._simulation.advancing(self._target)
+        self._target = self.simulation.time_ns + duration_ns
+        self._advancing = self.simulation.advancing(self._target)
+
+    @property
+    def ends(self) -> bool:
+        """Whether the run ends with the next steps."""
+        engine = self.simulation.engine
+        return engine.time_ns + self.piece[0] * engine.step_ns >= self._target
 
     def prepare(self) -> bool:
         """Does what is due before the next steps. Returns whether there are any."""
@@ -104,30 +133,30 @@ class _Lane:
             return False
         try:
             find_with(self.types)
-            self._piece = next(self._advancing)
+            self.piece = next(self._advancing)
         except StopIteration:
             return False
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
-            self._fail(error)
+            self.fail(error)
             return False
         return True
 
     def step(self) -> None:
         """Makes the next steps."""
         try:
-            self._simulation.engine.advance(*self._piece)
+            self.simulation.engine.advance(*self.piece)
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
-            self._fail(error)
+            self.fail(error)
 
     def complete(self) -> None:
         """Does what is due at the end."""
-        if self._failed or self._simulation.time_ns < self._target:
+        if self._failed or self.simulation.time_ns < self._target:
             return
         try:
             find_with(self.types)
-            self._simulation.complete()
+            self.simulation.complete()
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
-            self._fail(error)
+            self.fail(error)
 
     def end(self) -> None:
         """Ends the run."""
@@ -137,8 +166,9 @@ class _Lane:
         try:
             self._turn.end(failed=self._failed)
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
-            self._fail(error)
+            self.fail(error)
 
-    def _fail(self, error: Exception) -> None:
+    def fail(self, error: Exception) -> None:
+        """Ends the run with an error, which `run_abreast` raises."""
         self._failed = True
         self._errors.append(error)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from cartwheel.batch.lane import Values, different_shapes
-from cartwheel.batch.plan import Actions, Observations, Plan, Vary, invalid
+from cartwheel.batch.plan import BACKENDS, Actions, Backend, Observations, Plan, Vary, invalid
 from cartwheel.batch.processes import Lanes, Method, Process
 from cartwheel.codes.world import BATCH_CLOSED
 from cartwheel.errors import CartwheelError
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 class Batch:
     """Worlds that receive actions and return observations as arrays.
 
-    World i is the world that ``built.world(seed=seed + i)`` makes, with the same bits, whatever the
-    number of worlds and processes. Each has all sensors, plugins and controllers of its robots.
+    World i is the world that ``built.world(seed=seed + i)`` makes, whatever the number of worlds
+    and processes: with MuJoCo with the same bits, with MuJoCo Warp within tolerances. Each has all
+    sensors, plugins and controllers of its robots.
 
     Args:
         built: What `cartwheel.build` returned.
@@ -42,9 +43,14 @@ class Batch:
         start_method: How processes are started, as in `multiprocessing`. With ``spawn``, a script
             must make the batch below ``if __name__ == "__main__":``, and functions must be those of
             a module.
+        backend: What computes the physics: ``mujoco``, or ``warp`` for MuJoCo Warp, which
+            simulates many worlds on a GPU in single precision. Plugins and sensors run on the
+            processor in both cases. With ``warp``, all worlds are in this process by default.
+        device: With ``warp``, Warp's name of the device. The device ``cpu`` is only a test.
 
     Raises:
-        CartwheelError: An argument is invalid, or a world cannot be made.
+        CartwheelError: An argument is invalid, a world cannot be made, or MuJoCo Warp cannot
+            simulate it.
         UnknownNameError: A topic does not exist.
     """
 
@@ -60,9 +66,18 @@ class Batch:
         vary: Vary | None = None,
         workers: int | None = None,
         start_method: Method = "spawn",
+        backend: Backend = "mujoco",
+        device: str = "cuda:0",
     ) -> None:
         if isinstance(n, bool) or not isinstance(n, int) or n < 1:
             raise invalid(f"a batch must have at least one world (got {n})", "n")
+        if backend not in BACKENDS:
+            raise invalid(f"the backend must be one of {', '.join(BACKENDS)}", "backend")
+        on_device = device if backend == "warp" else None
+        if on_device is not None:
+            workers = workers or 0
+            if workers and start_method == "fork":
+                raise invalid("processes with a GPU cannot be forked", "start_method")
         self._plan = Plan.of(act, obs, period=period, vary=vary)
         self.n = n
         self.seed = seed
@@ -75,12 +90,13 @@ class Batch:
         self._processes: list[Process] = []
         self._edges: list[int] = [0, n]
         if count == 0 or (workers is None and n == 1):
-            self._here = Lanes(built, self._plan, seeds)
+            self._here = Lanes(built, self._plan, seeds, on_device)
             return
         self._edges = np.linspace(0, n, count + 1).astype(int).tolist()
         try:
             for first, last in zip(self._edges, self._edges[1:], strict=False):
-                self._processes.append(Process(built, self._plan, seeds[first:last], start_method))
+                own = seeds[first:last]
+                self._processes.append(Process(built, self._plan, own, start_method, on_device))
         except BaseException:
             self.close()
             raise

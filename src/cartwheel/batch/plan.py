@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -23,6 +23,8 @@ Observation = Fields | tuple[str, Fields] | Callable[["World"], Any]
 """Fields of the topic that is the name of the observation; or a topic and its fields; or a function
 that returns numbers of a world."""
 Observations = Mapping[str, Observation]
+Backend = Literal["mujoco", "warp"]
+BACKENDS: tuple[Backend, ...] = get_args(Backend)
 Vary = Callable[["World", np.random.Generator], None]
 """Changes a world after a reset, with random numbers that depend on the seed of the world."""
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from cartwheel.batch.abreast import run_abreast
 from cartwheel.batch.lane import Lane, Values, stacked
+from cartwheel.batch.warp import WarpPhysics, unsupported
 from cartwheel.codes.world import BATCH_PROCESS_ENDED
 from cartwheel.errors import CartwheelError, fault
 from cartwheel.geometry import Array
@@ -25,13 +26,26 @@ _END = 30.0
 
 
 class Lanes:
-    """Several worlds in this process."""
+    """Several worlds in this process.
 
-    def __init__(self, built: Built, plan: Plan, seeds: Sequence[int]) -> None:
+    Args:
+        built: Makes the worlds.
+        plan: What they receive and return.
+        seeds: The seed of each world.
+        device: Warp's name of the device that computes the physics; None is MuJoCo.
+    """
+
+    def __init__(
+        self, built: Built, plan: Plan, seeds: Sequence[int], device: str | None = None
+    ) -> None:
         self.lanes: list[Lane] = []
         self._period = plan.period
+        self._physics: WarpPhysics | None = None
         try:
             self.lanes += [Lane(built, plan, seed) for seed in seeds]
+            if device is not None:
+                simulations = [lane.world.session.simulation for lane in self.lanes]
+                self._physics = WarpPhysics(simulations, device)
         except BaseException:
             self.close()
             raise
@@ -51,7 +65,10 @@ class Lanes:
         return self._run(lanes)
 
     def _run(self, lanes: Sequence[Lane]) -> Values:
-        run_abreast([lane.world for lane in lanes], self._period)
+        worlds = [lane.world for lane in lanes]
+        if self._physics is not None and any(world.is_paced for world in worlds):
+            raise unsupported("worlds with connections or a pace")
+        run_abreast(worlds, self._period, self._physics)
         return stacked([lane.observe() for lane in lanes])
 
     def close(self) -> None:
@@ -68,14 +85,23 @@ class Process:
         plan: What they receive and return.
         seeds: The seed of each world.
         method: How the process is started.
+        device: As for `Lanes`.
     """
 
-    def __init__(self, built: Built, plan: Plan, seeds: Sequence[int], method: Method) -> None:
+    def __init__(
+        self,
+        built: Built,
+        plan: Plan,
+        seeds: Sequence[int],
+        method: Method,
+        device: str | None = None,
+    ) -> None:
         context: Any = multiprocessing.get_context(method)
         self._link, theirs = context.Pipe()
         self._process: Any = context.Process(
-            target=_work, args=(theirs, built, plan, seeds), name="cartwheel-batch", daemon=True
-        )
+            target=_work, args=(theirs, built, plan, seeds, device), name="cartwheel-batch",
+            daemon=True,
+        )  # fmt: skip
         self._process.start()
         theirs.close()
 
@@ -115,12 +141,14 @@ class Process:
             self._process.join()
 
 
-def _work(link: Connection, built: Built, plan: Plan, seeds: Sequence[int]) -> None:
+def _work(
+    link: Connection, built: Built, plan: Plan, seeds: Sequence[int], device: str | None
+) -> None:
     """Runs in the process: answers calls until the link is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one
     with contextlib.suppress(EOFError, OSError):
         try:
-            lanes = Lanes(built, plan, seeds)
+            lanes = Lanes(built, plan, seeds, device)
         except Exception as error:  # noqa: BLE001 - the first answer reports it
             link.recv()
             link.send((_picklable(error), None))

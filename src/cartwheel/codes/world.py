@@ -140,3 +140,10 @@ CLUSTER_UNUSABLE = Code(
     "CW642", "cluster-unusable", "error", "a Ray cluster cannot run the cases of a sweep"
 )
 DATASET_INVALID = Code("CW643", "dataset-invalid", "error", "an argument of a dataset is invalid")
+WARP_MISSING = Code("CW644", "warp-missing", "error", "MuJoCo Warp is not installed")
+WARP_DEVICE_UNUSABLE = Code(
+    "CW645", "warp-device-unusable", "error", "the device of a Warp batch does not exist"
+)
+WARP_UNSUPPORTED = Code(
+    "CW646", "warp-unsupported", "error", "a Warp batch cannot simulate a world"
+)

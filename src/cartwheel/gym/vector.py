@@ -12,6 +12,7 @@ from gymnasium.vector.utils import batch_space
 
 from cartwheel.batch import Batch
 from cartwheel.batch.lane import Values
+from cartwheel.batch.plan import Backend
 from cartwheel.batch.processes import Method
 from cartwheel.gym.task import Task
 
@@ -32,6 +33,8 @@ class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
             `reset` is called with the option ``reset_mask``.
         workers: As for `cartwheel.batch.Batch`.
         start_method: As for `cartwheel.batch.Batch`.
+        backend: As for `cartwheel.batch.Batch`.
+        device: As for `cartwheel.batch.Batch`.
 
     Raises:
         CartwheelError: The task is invalid.
@@ -45,13 +48,15 @@ class VectorEnv(gymnasium.vector.VectorEnv[dict[str, Any], Any, Any]):
         autoreset: AutoresetMode = AutoresetMode.NEXT_STEP,
         workers: int | None = None,
         start_method: Method = "spawn",
+        backend: Backend = "mujoco",
+        device: str = "cuda:0",
     ) -> None:
         self.task, self.num_envs = task, n
         self.metadata = {"render_modes": [], "autoreset_mode": autoreset}
         self._autoreset = autoreset
         self._batch = Batch(
             task.built, n, act=task.fields(), obs=task.obs, period=task.period, vary=task.vary,
-            workers=workers, start_method=start_method,
+            workers=workers, start_method=start_method, backend=backend, device=device,
         )  # fmt: skip
         self._randoms = [np.random.default_rng() for _ in range(n)]
         self._values: Values = task.limited(self._batch.reset())

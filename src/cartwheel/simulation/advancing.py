@@ -120,6 +120,27 @@ class Advancing(Models):
             if faults.pending is not None:
                 faults.raise_pending()
 
+    def looks_back(self, count: int) -> bool:
+        """Whether anything that runs after the next steps may read what the last of them computed.
+
+        These are poses, contacts and forces of the state before this step. A forward pass of the
+        current state, which precedes tasks that only read, does not depend on them.
+
+        Args:
+            count: Number of steps.
+        """
+        population = self._population
+        return (
+            not self.commands.empty()
+            or self.alarms.active
+            or bool(population.separation.roots)
+            or population.subscribers_changed
+            or any(
+                task.before is not None and not task.reads_state
+                for task in population.schedule.at(self.engine.step + count)[0]
+            )
+        )
+
     def complete(self) -> None:
         """Runs the commands and tasks that are due at the current time, unless they have run.
 

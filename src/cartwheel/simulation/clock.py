@@ -63,6 +63,7 @@ class Task:
         "owner",
         "period_ns",
         "rate",
+        "reads_state",
         "topics",
     )
 
@@ -85,6 +86,9 @@ class Task:
         self.idle = idle
         self.asleep = False
         """Whether the task is not due until its owner wakes it."""
+        self.reads_state = False
+        """Whether `before` reads only positions and velocities of joints, and nothing that the last
+        step computed from them. Physics that MuJoCo does not compute then takes less time."""
         self.order = order
         self._ticks: tuple[int, int, Ticks] | None = None
         """For a length of a step and the time of step zero."""

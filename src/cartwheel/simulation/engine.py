@@ -78,8 +78,9 @@ class Engine:
         """Called after an addition to a model that is already compiled."""
         self.serving = False
         """Whether tasks run that read a forward pass, which the next step uses."""
-        self._changes = 0
-        """Number of changes of the model and of forces that are not part of the state."""
+        self.directions: Directions | None = None
+        self.changes = self.revisions = 0
+        """Changes of the model and of forces outside of the state, and of the model alone."""
         self._located = b""
         """The state of the last `locate`."""
         self.refreshed = b""
@@ -163,7 +164,7 @@ class Engine:
             carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
         self.align(alignments)
-        self._bounces = Bounces(model, bounces) if len(bounces) > 1 else None
+        self.bounces = Bounces(model, bounces) if len(bounces) > 1 else None
         self.visuals.bind(model, data, compile_visuals)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._located = self.refreshed = b""
@@ -181,8 +182,8 @@ class Engine:
     def restore(self, saved: dict[str, Any]) -> None:
         """Sets the saved numbers, after the model and the data were restored."""
         # Signatures of before must not return for other states.
-        changes, before = self._changes + 1, saved["_changes"].to_bytes(8)
-        vars(self).update(saved, _changes=changes)
+        changes, before = self.changes + 1, saved["changes"].to_bytes(8)
+        vars(self).update(saved, changes=changes, revisions=self.revisions + 1)
         now = self.signature()
         for name in ("_located", "refreshed"):
             if saved[name] == now.removesuffix(changes.to_bytes(8)) + before:
@@ -191,7 +192,7 @@ class Engine:
     def align(self, alignments: Sequence[Alignment]) -> None:
         """Sets the friction directions of the model."""
         try:
-            self._directions = Directions(self.model, alignments)
+            self.directions = Directions(self.model, alignments)
         except SimulationError as error:
             self.report(error.diagnostic("warning"))
 
@@ -200,7 +201,7 @@ class Engine:
 
         While tasks read the forward pass of a step, it is computed at once.
         """
-        self._changes += 1
+        self.changes += 1
         if self.serving:
             self.forward()
 
@@ -222,7 +223,7 @@ class Engine:
     def signature(self) -> bytes:
         """Differs for any two states with different poses, contacts or forces."""
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        return self._state.tobytes() + self._changes.to_bytes(8)
+        return self._state.tobytes() + self.changes.to_bytes(8)
 
     def forward(self, data: Any = None) -> None:
         """Computes poses, contacts and forces for the current state, which does not change.
@@ -274,11 +275,11 @@ class Engine:
         self.step += count
         self.time_ns += count * self.step_ns
         self.refreshed = b""
-        if self._bounces is not None:
+        if self.bounces is not None:
             for each in range(count):
                 if each or not forwarded:
                     self.forward()
-                if self._bounces.apply(self.model, self.data):
+                if self.bounces.apply(self.model, self.data):
                     self.forward()
                 self._integrate()
             return
@@ -304,7 +305,7 @@ class Engine:
             prepare: If time is reset, called before the forces of the initial state are computed.
         """
         time = self.data.time
-        self._changes += 1
+        self.changes += 1
         mujoco.mj_resetData(self.model, self.data)
         if keep_time:
             self.data.time = time

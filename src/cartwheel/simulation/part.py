@@ -117,7 +117,7 @@ class Part(Requests):
             rate, before=task.before, after=task.after, active=task.active, topics=task.topics,
             idle=task.idle,
         )  # fmt: skip
-        made.order, made.owner = task.order, task.owner
+        made.order, made.owner, made.reads_state = task.order, task.owner, task.reads_state
         self.tasks[self.tasks.index(task)] = made
         for callback in self._engine.on_tasks:
             callback()

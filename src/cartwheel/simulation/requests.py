@@ -216,7 +216,7 @@ class Requests:
         if len(servos) == 2:
             self._warn_of_two(joint, "the last command is used", origin)
         task = self.schedule(0, before=handle.follow)
-        task.asleep = True
+        task.asleep = task.reads_state = True
         handle.wake = partial(self._engine.wake, task)
         return handle
 
@@ -304,7 +304,7 @@ class Requests:
         self._entry.drives.append(drive)
         handle = BodyDriveHandle(self.name, drive)
         self.handles.append(handle)
-        self.schedule(0, before=handle.hold)
+        self.schedule(0, before=handle.hold).reads_state = True
         return handle
 
     def wrench(self, link: str, *, origin: Origin | None = None) -> WrenchHandle:

@@ -21,6 +21,7 @@ def adjust(engine: Engine, world: WorldDescription) -> bool:
     if [_kept(light) for light in world.lights] != [_kept(light) for light in before.lights]:
         return False
     engine.world = world
+    engine.revisions += 1
     engine.note_change()
     model = engine.model
     if world.gravity != before.gravity:

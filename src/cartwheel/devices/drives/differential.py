@@ -116,7 +116,7 @@ class DifferentialDrive(Drive):
         self.reckoning = DeadReckoning() if reckoning is None else reckoning
         self._rest()
         if config.drive is not None:
-            self.run(config.drive)
+            self.run(config.drive, reads_state=yaw_rate is None)
 
     def reset(self) -> None:
         """Stops the wheels and forgets commands and odometry."""

@@ -52,8 +52,14 @@ class Drive(Component):
     enabled: bool = True
     """Whether commands move the robot. Requires a `timeout`."""
 
-    def run(self, config: DriveConfig) -> None:
-        """Advertises topics, subscribes to commands and schedules the control loop."""
+    def run(self, config: DriveConfig, *, reads_state: bool = False) -> None:
+        """Advertises topics, subscribes to commands and schedules the control loop.
+
+        Args:
+            config: Topics and rates.
+            reads_state: Whether `command` and `update` read only positions and velocities of
+                joints; see `Task.reads_state`.
+        """
         self._odometry = self.add(Odometry(self.scope, config.odometry))
         if config.joint_states is not None:
             self._joint_states = self.add(JointStates(self.scope, config.joint_states))
@@ -61,9 +67,10 @@ class Drive(Component):
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout is not None:
             self._timeout = config.timeout
-            self.part.schedule(0, before=self._watch)
+            self.part.schedule(0, before=self._watch).reads_state = reads_state
         idle = self.is_idle if self.can_idle() else None
         self._controlling = self.part.schedule(config.control_rate, before=self._control, idle=idle)
+        self._controlling.reads_state = reads_state
         owners = (self, self._odometry, self._joint_states)
         topics = [topic for each in owners if each is not None for topic in each.publishers]
         self.part.schedule(config.odometry.rate, after=self._publish, topics=topics)

@@ -235,7 +235,7 @@ class MecanumDrive(Drive):
         dimensions = replace(config.wheels, heading=heading)
         self._wheels = MecanumWheels(dimensions, wheels, servo, self._reckoning)
         self._period = 1 / config.drive.control_rate
-        self.run(config.drive)
+        self.run(config.drive, reads_state=True)
 
     def reset(self) -> None:
         super().reset()

@@ -48,7 +48,7 @@ class Finger(Component):
             low, high = (joint.axis.lower, joint.axis.upper) if joint is not None else (None, None)
             low, high = -math.inf if low is None else low, math.inf if high is None else high
             self._joints.append((servo, each.scale, low, high))
-        part.schedule(0, before=self._bend)
+        part.schedule(0, before=self._bend).reads_state = True
 
     def _bend(self) -> None:
         angle = self._motor.position

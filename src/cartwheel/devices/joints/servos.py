@@ -57,7 +57,7 @@ class JointServos(Component):
         self.subscribe(config.topic, _FLOAT, self._on_command)
         self.reset()
         moves = config.quantity == "position"
-        part.schedule(0, before=self._move if moves else self._turn)
+        part.schedule(0, before=self._move if moves else self._turn).reads_state = True
         if moves:
             # Joints with the same target share one input.
             self.take_positions(config.joints[:1], self._publish_command)

@@ -67,7 +67,7 @@ class SteppedTrajectory(Component):
         self._Float = message_class("std_msgs/msg/Float32")
         self._progress = self.advertise(f"{config.topic}_progress", "std_msgs/msg/Float32")
         self.reset()
-        part.schedule(0, before=self._follow)
+        part.schedule(0, before=self._follow).reads_state = True
 
     def reset(self) -> None:
         self._controllers = {

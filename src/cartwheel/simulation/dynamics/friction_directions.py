@@ -62,6 +62,7 @@ class Directions:
     """
 
     def __init__(self, model: Any, alignments: Sequence[Alignment]) -> None:
+        self.active = bool(alignments)
         if not alignments:
             return
         self._rules: dict[tuple[int, int], tuple[int, float, float, float, bool]] = {}

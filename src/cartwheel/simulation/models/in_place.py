@@ -337,6 +337,7 @@ class InPlace:
         """Wakes all bodies, because what keeps them at rest may have changed."""
         # The engine wakes trees that are marked as both awake and asleep.
         self._engine.data.tree_awake[:] = 1
+        self._engine.revisions += 1
         self._engine.note_change()
 
 
