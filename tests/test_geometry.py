@@ -8,8 +8,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.coded import raises
 
+import cartwheel as cw
 from cartwheel import geometry as g
 from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.world import VALUE_INVALID
 
 ANGLE = st.floats(-math.pi, math.pi)
 PITCH = st.floats(-1.5, 1.5)
@@ -164,3 +166,26 @@ def test_a_pose_transforms_arrays_of_points():
     for index in np.ndindex(4, 5):
         assert placed[index] == pytest.approx(pose.apply(points[index].tolist()), abs=1e-12)
     assert pose.inverse().apply(placed) == pytest.approx(points, abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", [tuple, list, np.array])
+def test_poses_and_velocities_are_equal_if_their_numbers_are(kind):
+    pose = g.Pose(kind([1.0, 0.0, 0.0]), kind([0.0, 0.0, 0.0, 1.0]))
+    assert pose == g.Pose((1.0, 0.0, 0.0)) != g.Pose((1.0, 0.0, 2.0))
+    assert hash(pose) == hash(g.Pose((1.0, 0.0, 0.0)))
+    assert type(pose.position) is type(pose.orientation) is tuple
+    twist = cw.Twist(linear=kind([1.0, 0.0, 0.0]))
+    assert twist == cw.Twist((1.0, 0.0, 0.0)) != cw.Twist((1.0, 0.0, 2.0))
+    assert cw.Acceleration(kind([0.0] * 3)) == cw.Acceleration()
+
+
+@pytest.mark.parametrize(
+    "wrong", [(0, 0), (0, 0, 0, 0, 0), "abc", 3, np.zeros((3, 2)), None, [None] * 3]
+)
+def test_a_pose_has_as_many_numbers_as_it_needs(wrong):
+    with raises(OPTION_INVALID, name="position"):
+        g.Pose(wrong)
+    with raises(OPTION_INVALID, name="orientation"):
+        g.Pose((0.0, 0.0, 0.0), wrong)
+    with raises(VALUE_INVALID, name="angular"):
+        cw.Twist(angular=wrong)

@@ -8,9 +8,9 @@ Ry(pitch) Rx(roll)``. Units are metres and radians.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, overload
+from collections.abc import Callable, Sequence
+from dataclasses import FrozenInstanceError, dataclass
+from typing import Any, Never, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 """``(x, y, z, w)``."""
 Array = NDArray[np.float64]
+
+T = TypeVar("T")
 
 IDENTITY: Quat = (0.0, 0.0, 0.0, 1.0)
 
@@ -161,30 +163,74 @@ def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
     return quat_normalize((float(x), float(y), float(z), w))
 
 
-def _three(values: Sequence[float], name: str) -> Vec3:
-    """Three numbers of an argument.
+_COUNTS = {3: "three", 4: "four"}
+
+
+def _floats(values: Sequence[float], count: int, name: str) -> tuple[float, ...]:
+    """The numbers of an argument.
 
     Raises:
         CartwheelError: There is another number of them, or one is not a number.
     """
     try:
-        x, y, z = values
-        return float(x), float(y), float(z)
+        found = tuple(float(each) for each in values)
     except (TypeError, ValueError):
+        found = ()
+    if len(found) != count:
         shown = f"{values!r:.60}"
         raise CartwheelError(
-            f"{name} must be three numbers (got {shown})",
+            f"{name} must be {_COUNTS[count]} numbers (got {shown})",
             code=OPTION_INVALID,
             values={"name": name, "value": shown},
-        ) from None
+        )
+    return found
 
 
+def _three(values: Sequence[float], name: str) -> Vec3:
+    x, y, z = _floats(values, 3, name)
+    return x, y, z
+
+
+def immutable(instead: str) -> Callable[[type[T]], type[T]]:
+    """A decorator for frozen dataclasses with slots, which states what to do instead.
+
+    Without it, Python's own error is not understandable if the class has properties.
+
+    Args:
+        instead: What to do instead of setting an attribute, as a sentence.
+    """
+
+    def decorate(cls: type[T]) -> type[T]:
+        def refuse(_: object, name: str, *_value: object) -> Never:
+            raise FrozenInstanceError(
+                f"{cls.__name__} is immutable: {name} cannot be set. {instead}"
+            )
+
+        cls.__setattr__ = refuse  # type: ignore[method-assign]
+        cls.__delattr__ = refuse  # type: ignore[method-assign]
+        return cls
+
+    return decorate
+
+
+@immutable("Assign a new pose: robot.pose = cartwheel.Pose((x, y, z)).")
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """The pose of a frame in another frame: position in metres, orientation ``(x, y, z, w)``."""
+    """The pose of a frame in another frame: position in metres, orientation ``(x, y, z, w)``.
+
+    Raises:
+        CartwheelError: The position is not three numbers, or the orientation not four.
+    """
 
     position: Vec3 = (0.0, 0.0, 0.0)
     orientation: Quat = IDENTITY
+
+    def __post_init__(self) -> None:
+        # Almost all poses are created by Cartwheel, and with tuples.
+        if type(self.position) is not tuple or len(self.position) != 3:
+            object.__setattr__(self, "position", _floats(self.position, 3, "position"))
+        if type(self.orientation) is not tuple or len(self.orientation) != 4:
+            object.__setattr__(self, "orientation", _floats(self.orientation, 4, "orientation"))
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float] = (0, 0, 0)) -> Pose:

@@ -14,6 +14,7 @@ from tests.coded import raises
 from tests.devices.cameras.sensors import pixels_of, sensor, take
 
 import cartwheel as cw
+from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.codes.world import MODEL_NAME_TAKEN
 from cartwheel.simulation.models import compilations
 
@@ -165,8 +166,9 @@ def test_options_of_the_world_and_of_the_build(built, tmp_path):
     with built.world(record=tmp_path / "drive.mcap") as world:
         world.run(0.2)
     assert (tmp_path / "drive.mcap").stat().st_size > 0
-    with pytest.raises(TypeError):
-        built.world(strict=True)
+    for options in ({"strict": True}, {"world": "walls"}, {"without": "all"}):
+        with raises(OPTIONS_CONFLICT, name=next(iter(options))):
+            built.world(**options)
     with pytest.raises(TypeError):
         built.world(colour="red")
 

@@ -161,6 +161,11 @@ def test_mistakes_are_errors(built, options, code, workers):
         made.step(np.zeros((2, len(made.action_names))))
 
 
+def test_a_world_is_not_what_a_batch_is_made_of():
+    with cw.World() as world, raises(BATCH_INVALID, argument="built"):
+        Batch(world, 2, act={}, obs={"time": duties.words})
+
+
 @pytest.mark.parametrize(
     "actions", [np.zeros((N, 1)), np.zeros(2), np.full((N, 2), np.nan), np.zeros((N - 1, 2))]
 )

@@ -9,9 +9,10 @@ from typing import Any
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import paths, refused, source
 from cartwheel.api.world import World
+from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import Diagnostic
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.simulation.models.compilations import SharedCompiler
 
 Robot = str | Path | RobotDescription | Mapping[str, Any]
@@ -58,9 +59,18 @@ class Built:
             options: Options of `World` for connections and recordings, such as ``viewer=True``.
 
         Raises:
-            CartwheelError: A connection cannot be opened. Nothing remains open.
-            TypeError: An option is one of those of `build`, or `World` does not have it.
+            CartwheelError: An option is one of those of `build`, or a connection cannot be opened.
+                Nothing remains open.
+            TypeError: `World` does not have an option.
         """
+        for name in ("world", *self._options):
+            if name in options:
+                raise CartwheelError(
+                    f'"{name}" is an option of build, and applies to all of its worlds',
+                    code=OPTIONS_CONFLICT,
+                    hint=f"Pass it to build: cartwheel.build(…, {name}=…).",
+                    values={"name": name},
+                )
         made = World(
             self._description,
             seed=seed,

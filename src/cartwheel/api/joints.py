@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cartwheel.api.inertials import missing
+from cartwheel.api.handles import Handle, Sealed
+from cartwheel.api.properties.inertials import missing
 from cartwheel.api.values import array, invalid, scalar
 from cartwheel.description.model import Joint as Description
 from cartwheel.description.model import RobotDescription
@@ -35,12 +36,14 @@ class Gains:
     """Derivative gain, the same times seconds."""
 
 
-class JointValues(MutableMapping[str, float]):
+class JointValues(Sealed, MutableMapping[str, float]):
     """One quantity of all joints of a model: a mapping by name, and an array.
 
     Each access reads or sets the current state. ``numpy.asarray(values)`` is a new array in the
     order of `Joints.names`.
     """
+
+    __slots__ = ("_joints", "_name", "_read", "_write")
 
     def __init__(
         self,
@@ -101,17 +104,23 @@ class JointValues(MutableMapping[str, float]):
             self._write(simulation, given)
 
 
-class Joints:
+class Joints(Handle):
     """The joints of a model with one degree of freedom. `Model.joints` returns it.
 
     Fixed joints, ball joints and the joints of static models are not included.
     """
+
+    __slots__ = ("model", "world")
 
     def __init__(self, world: World, model: str) -> None:
         self.world = world
         """The world."""
         self.model = model
         """Name of the model."""
+
+    @property
+    def _identity(self) -> tuple[World, str]:
+        return self.world, self.model
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -224,8 +233,13 @@ class Joints:
         self.efforts.set(values)
 
 
-class Joint:
-    """A handle to a joint with one degree of freedom. ``Model.joints[name]`` returns it."""
+class Joint(Handle):
+    """A handle to a joint with one degree of freedom. ``Model.joints[name]`` returns it.
+
+    Two handles are equal if they belong to the same world and have the same names.
+    """
+
+    __slots__ = ("_joints", "name")
 
     def __init__(self, joints: Joints, name: str) -> None:
         self._joints = joints
@@ -234,6 +248,10 @@ class Joint:
 
     def __repr__(self) -> str:
         return f"Joint({self._joints.model!r}, {self.name!r})"
+
+    @property
+    def _identity(self) -> tuple[Joints, str]:
+        return self._joints, self.name
 
     @property
     def position(self) -> float:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from cartwheel.api.appearance import Colour, rgba
+from cartwheel.api.handles import Handle
+from cartwheel.api.properties.appearance import Colour, rgba
 from cartwheel.api.values import Vector, invalid, scalar, vector
 from cartwheel.codes.graph import ENTITY_UNKNOWN
 from cartwheel.description.model import Light as LightDescription
@@ -17,11 +18,14 @@ if TYPE_CHECKING:
     from cartwheel.simulation import Simulation
 
 
-class Light:
+class Light(Handle):
     """A handle to a light in a world. `World.light` returns it.
 
-    Changes affect the images of cameras from then on. `World.reset` keeps them.
+    Changes affect the images of cameras from then on. `World.reset` keeps them. Two handles are
+    equal if they belong to the same world and have the same name.
     """
+
+    __slots__ = ("_world", "name")
 
     def __init__(self, world: SurroundingWorld, name: str) -> None:
         self._world = world
@@ -30,6 +34,10 @@ class Light:
 
     def __repr__(self) -> str:
         return f"Light({self.name!r})"
+
+    @property
+    def _identity(self) -> tuple[SurroundingWorld, str]:
+        return self._world, self.name
 
     @property
     def type(self) -> str:

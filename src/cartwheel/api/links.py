@@ -7,7 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from cartwheel.api.appearance import (
+from cartwheel.api.handles import Handle
+from cartwheel.api.motion import Acceleration, Twist
+from cartwheel.api.properties.appearance import (
     Colour,
     Texture,
     colour_of,
@@ -17,7 +19,7 @@ from cartwheel.api.appearance import (
     texture_of,
     textured,
 )
-from cartwheel.api.inertials import (
+from cartwheel.api.properties.inertials import (
     inertia_of,
     inertial_of,
     naming,
@@ -25,8 +27,7 @@ from cartwheel.api.inertials import (
     with_inertia,
     with_mass,
 )
-from cartwheel.api.motion import Acceleration, Twist
-from cartwheel.api.surfaces import friction_of, with_friction
+from cartwheel.api.properties.surfaces import friction_of, with_friction
 from cartwheel.api.values import Vector, instance, invalid, vector
 from cartwheel.description.model import Link as Description
 from cartwheel.description.model import Rgba, RobotDescription
@@ -42,11 +43,14 @@ _NONE: Vector = (0.0, 0.0, 0.0)
 T = TypeVar("T")
 
 
-class Link:
+class Link(Handle):
     """A handle to a link of a model in a world. `Model.link` returns it.
 
-    Reading a value does not advance the simulation and changes nothing.
+    Reading a value does not advance the simulation and changes nothing. Two handles are equal if
+    they belong to the same world and have the same names.
     """
+
+    __slots__ = ("_world", "model", "name")
 
     def __init__(self, world: World, model: str, name: str) -> None:
         self._world = world
@@ -57,6 +61,10 @@ class Link:
 
     def __repr__(self) -> str:
         return f"Link({self.scoped_name!r})"
+
+    @property
+    def _identity(self) -> tuple[World, str, str]:
+        return self._world, self.model, self.name
 
     @property
     def scoped_name(self) -> str:

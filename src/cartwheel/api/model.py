@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.api.arguments import text
+from cartwheel.api.handles import Handle
 from cartwheel.api.joints import Joints
 from cartwheel.api.links import Link
 from cartwheel.api.motion import Twist
@@ -17,8 +18,13 @@ if TYPE_CHECKING:
 _NONE: Vector = (0.0, 0.0, 0.0)
 
 
-class Model:
-    """A handle to a model in a world."""
+class Model(Handle):
+    """A handle to a model in a world.
+
+    Two handles are equal if they belong to the same world and have the same name.
+    """
+
+    __slots__ = ("_world", "name")
 
     def __init__(self, world: World, name: str) -> None:
         self._world = world
@@ -26,6 +32,10 @@ class Model:
 
     def __repr__(self) -> str:
         return f"Model({self.name!r})"
+
+    @property
+    def _identity(self) -> tuple[World, str]:
+        return self._world, self.name
 
     @property
     def scoped_name(self) -> str:

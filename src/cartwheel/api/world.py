@@ -5,17 +5,18 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal, SupportsFloat
+from typing import Literal, Never, SupportsFloat
 
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import paths, refused, several, source, text
 from cartwheel.api.calling import CallingWorld
+from cartwheel.api.handles import unknown_attribute
 from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings import SurroundingWorld
 from cartwheel.api.values import instance, invalid
-from cartwheel.codes.command import OPTIONS_CONFLICT
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic
@@ -65,6 +66,9 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         CartwheelError: A name in `without` is unknown, or a connection cannot be opened. Nothing
             remains open.
     """
+
+    _made = False
+    """Whether the constructor has set all attributes."""
 
     def __init__(
         self,
@@ -152,6 +156,28 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             if session is not None:
                 session.close()
             raise
+        self._made = True
+
+    def __setattr__(self, name: str, value: object) -> None:
+        # Subclasses of programs may have attributes of their own.
+        if (
+            self._made
+            and type(self) is World
+            and not name.startswith("_")
+            and name not in self.__dict__
+            and not hasattr(World, name)
+        ):
+            raise unknown_attribute(self, name)
+        super().__setattr__(name, value)
+
+    def __reduce__(self) -> Never:
+        raise CartwheelError(
+            "a world cannot be pickled or copied",
+            code=OPTION_INVALID,
+            hint="Pickle its state, which World.save returns, or the result of cartwheel.build, "
+            "which makes worlds.",
+            values={"name": "world"},
+        )
 
     @property
     def time(self) -> float:

@@ -69,6 +69,12 @@ class Batch:
         backend: Backend = "mujoco",
         device: str = "cuda:0",
     ) -> None:
+        from cartwheel.api import Built
+
+        if not isinstance(built, Built):
+            raise invalid(
+                f"built must be the result of cartwheel.build (got {built!r:.60})", "built"
+            )
         if isinstance(n, bool) or not isinstance(n, int) or n < 1:
             raise invalid(f"a batch must have at least one world (got {n})", "n")
         if backend not in BACKENDS:

@@ -32,9 +32,12 @@ def number(value: float, name: str, *, most: float = FARTHEST) -> float:
     """Checks that a number is finite and within the limit, and returns it.
 
     Raises:
-        CartwheelError: The number is not finite, or exceeds the limit.
+        CartwheelError: The value is not a number, is not finite, or exceeds the limit.
     """
-    value = float(value)
+    try:
+        value = float(value)
+    except (TypeError, ValueError):
+        raise _out_of_range(name, "a number", value) from None
     if not math.isfinite(value):
         raise _out_of_range(name, "a finite number", value)
     if abs(value) > most:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cartwheel.api.inertials import missing
+from cartwheel.api.properties.inertials import missing
 from cartwheel.api.values import array, invalid
 from cartwheel.description.model import Link
 

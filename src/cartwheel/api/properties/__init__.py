@@ -1,0 +1,1 @@
+"""The properties of links and lights: masses, surfaces and colours."""
