@@ -103,6 +103,14 @@ expect:
     assert outcome.status == "passed", outcome.findings[0].text
 
 
+@pytest.mark.parametrize("step", ["publish", "hold"])
+def test_messages_of_steps_have_the_values_of_yaml(run, step):
+    # YAML 1.1 reads 4e-1 as a text, and a value that is not given as null.
+    steps = f"steps: [{{{step}: {DRIVE}, message: {{linear: {{x: 4e-1, y: }}, angular: }}}}]\n"
+    outcome = run(f"{CART}{steps}duration: 2\nexpect: [{{moves: cart, distance: 0.5}}]")
+    assert outcome.status == "passed", outcome.findings[0].text
+
+
 def test_steps_change_properties(run):
     outcome = run(
         CART

@@ -52,12 +52,16 @@ class Steps:
         trial.until(step["until"], step.get("timeout", UNTIL))
 
     def _publish(self, trial: Trial, step: Mapping[str, Any]) -> None:
-        trial.world.publish(step["publish"], step.get("message"))
+        name = step["publish"]
+        kind = trial.world.graph.topic(name).type
+        trial.world.publish(name, from_dict(kind, step.get("message") or {}))
 
     def _hold(self, trial: Trial, step: Mapping[str, Any]) -> None:
-        topic, message = step["hold"], step.get("message") or {}
+        topic = step["hold"]
         self._end_hold(topic)
-        hold = trial.world.topic(topic).hold(message, rate=step.get("rate", HOLD_RATE))
+        held = trial.world.topic(topic)
+        message = from_dict(held.type, step.get("message") or {})
+        hold = held.hold(message, rate=step.get("rate", HOLD_RATE))
         self._held[topic] = hold.stop
         trial.ends.append(lambda: self._end_hold(topic))
 
