@@ -14,6 +14,7 @@ from tests.batch import duties
 from tests.batch.standin import without_warp  # noqa: F401 - a fixture
 from tests.batch.test_batch import ACTIONS, batch, journey
 from tests.coded import raises
+from tests.dialects.gz.test_tracks import vehicle
 from tests.golden.adapter import World, controller_files, load_robot
 from tests.golden.commanding import PERIOD, Commands
 from tests.golden.subjects import ROBOTS
@@ -157,6 +158,13 @@ def test_plugins_that_change_the_model_are_refused(without_warp, name, feature):
         WarpPhysics([world.session.simulation], "cpu")
     assert caught.value.code is WARP_UNSUPPORTED
     assert feature in caught.value.values["feature"]
+
+
+def test_tracks_are_refused(tmp_path, without_warp):  # noqa: F811
+    (tmp_path / "crawler.sdf").write_text(vehicle())
+    built = cw.build("empty", [tmp_path / "crawler.sdf"])
+    with raises(WARP_UNSUPPORTED, feature="moving surfaces, such as tracks"):
+        batch(built, n=1, act={}, obs={"time": lambda world: world.time}, backend="warp")
 
 
 def test_callbacks_of_mujoco_are_refused(built, without_warp):  # noqa: F811

@@ -32,6 +32,8 @@ def physics_of_cartwheel(engine: Engine) -> Iterator[str]:
         yield "restitution"
     if engine.directions is not None and engine.directions.active:
         yield "friction that depends on the direction"
+    if engine.model.flg_surfacevel:
+        yield "moving surfaces, such as tracks"
     for entry in engine.entries:
         if entry.attachments:
             yield f'links of the model "{entry.name}" that plugins attach to others'
