@@ -13,7 +13,7 @@ from cartwheel.codes.world import NUMBER_OUT_OF_RANGE
 
 HANDLES = [
     ("world", "gravitiy", "gravity"),
-    ("world", "pases", ""),
+    ("world", "paces", "pace"),
     ("model", "positon", "pose"),
     ("link", "colour", "color"),
     ("joints", "position", "positions"),

@@ -29,16 +29,22 @@ def box(name, x, y):
 </box></geometry></visual></link></model></sdf>"""
 
 
+class Yard(cw.World):
+    """An empty world in which boxes are added."""
+
+    def __init__(self, folder):
+        super().__init__()
+        self.folder = folder
+
+    def add(self, name, x, y):
+        file = self.folder / f"{name}.sdf"
+        file.write_text(box(name, x, y))
+        self.spawn(file)
+
+
 @pytest.fixture
 def world(tmp_path):
-    with cw.World("empty") as made:
-
-        def add(name, x, y):
-            file = tmp_path / f"{name}.sdf"
-            file.write_text(box(name, x, y))
-            made.spawn(file)
-
-        made.add = add
+    with Yard(tmp_path) as made:
         yield made
 
 

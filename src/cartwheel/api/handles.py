@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Any
 
 from cartwheel.similar_names import suggestion
@@ -47,12 +48,21 @@ class Handle(Sealed, ABC):
         return hash((type(self), *self._identity))
 
 
-def unknown_attribute(owner: object, name: str) -> AttributeError:
-    """The error for an attribute that is set, but does not exist."""
+def unknown_attribute(owner: object, name: str, also: Sequence[str] = ()) -> AttributeError:
+    """The error for an attribute that is set, but does not exist.
+
+    Args:
+        owner: The object.
+        name: The attribute.
+        also: Attributes that can be set, but are not properties.
+    """
     settable = [
-        each
-        for each in dir(type(owner))
-        if not each.startswith("_") and getattr(getattr(type(owner), each), "fset", None)
+        *also,
+        *(
+            each
+            for each in dir(type(owner))
+            if not each.startswith("_") and getattr(getattr(type(owner), each), "fset", None)
+        ),
     ]
     text = f'{type(owner).__name__} has no attribute "{name}" to set'
     if settable:

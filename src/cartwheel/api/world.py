@@ -167,7 +167,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             and name not in self.__dict__
             and not hasattr(World, name)
         ):
-            raise unknown_attribute(self, name)
+            raise unknown_attribute(self, name, also=("pace",))
         super().__setattr__(name, value)
 
     def __reduce__(self) -> Never:
