@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import pickle
 import signal
 import time
 from collections import deque
@@ -26,6 +27,8 @@ _LOOK = 0.25
 """Wall time between two checks of the time limit, s."""
 _HURRY = 0.5
 """Wall time to wait for processes after `Workers.stop`, s."""
+AT_TOP_LEVEL = "Define functions at the top level of a module, not as a lambda or in a function"
+"""The remedy for most values that are `unpicklable`."""
 _END = 5.0
 """Wall time in which a process must end, s."""
 
@@ -35,6 +38,15 @@ def cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def unpicklable(value: object) -> str:
+    """Why a value cannot be passed to other processes; empty if it can."""
+    try:
+        pickle.dumps(value)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        return str(error)
+    return ""
 
 
 @dataclass

@@ -22,7 +22,7 @@ from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection_near
 from cartwheel.dialects.ros_control.suggestion import lacks_controllers, suggested
 from cartwheel.dialects.world_plugins import attach_world
-from cartwheel.errors import CartwheelError, Diagnostic, PluginError
+from cartwheel.errors import CartwheelError, Code, Diagnostic, PluginError
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, check_prefix
 from cartwheel.graph.topic import Subscription
@@ -68,7 +68,7 @@ class Session:
     Args:
         world: The world at startup.
         seed: Seed for all noise.
-        strict: Treat every warning about a file as an error.
+        strict: Treat every warning about a file as an error, unless its code is in `ignore`.
         lenient: Skip plugins that cannot be created, for example because a parameter is invalid,
             and report an error, as in `cartwheel run`. Otherwise the model is rejected.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
@@ -97,6 +97,7 @@ class Session:
         without: Sequence[str] = (),
         compiler: Compiler | None = None,
         readings: Readings | None = None,
+        ignore: frozenset[Code] = frozenset(),
     ) -> None:
         self.allow_path = tuple(allow_path)
         self._packages = SimulationPackages(package_path)
@@ -148,7 +149,7 @@ class Session:
             self.simulation.report(diagnostic)
         self.graph.on_demand = self.simulation.note_subscribers
         self.graph.on_error = self._subscriber_failed
-        self.simulation.faults.strict = strict
+        self.simulation.faults.strict, self.simulation.faults.ignore = strict, ignore
         self._clock = self.graph.advertise(
             "/clock", "rosgraph_msgs/msg/Clock", node="cartwheel", rate=CLOCK_RATE
         )
@@ -355,7 +356,10 @@ class Session:
         if not self.strict:
             return
         for diagnostic in self.simulation.diagnostics[start:]:
-            if diagnostic.severity != "info":
+            if (
+                diagnostic.severity != "info"
+                and diagnostic.code not in self.simulation.faults.ignore
+            ):
                 hint = f"{diagnostic.hint} " if diagnostic.hint else ""
                 raise CartwheelError(
                     diagnostic.message,

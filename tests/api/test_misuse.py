@@ -10,7 +10,7 @@ import pytest
 from tests.coded import raises
 
 import cartwheel as cw
-from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.codes.graph import FIELD_VALUE_INVALID, GRAPH_NAME_INVALID, MESSAGE_TYPE_UNKNOWN
 from cartwheel.codes.world import (
     MODEL_NAME_INVALID,
@@ -335,3 +335,16 @@ def test_a_wrong_speed(speed, make):
     for run in (world.run, world.spin):
         with raises(REAL_TIME_FACTOR_INVALID):
             run(0.1, speed=speed)
+
+
+def test_a_message_and_fields_are_refused_together(make, rosbots):
+    world = make.world()
+    cart = world.spawn(rosbots, z=0.1)
+    topic = world.topic("/part2_cmr/cmd_vel")
+    for publish in (cart.publish, world.publish):
+        with raises(OPTIONS_CONFLICT) as caught:
+            publish("/part2_cmr/cmd_vel", {"linear": {"y": 1.0}}, linear_x=1.0)
+        assert "linear_x" in str(caught.value)
+    with raises(OPTIONS_CONFLICT):
+        topic.hold(Twist(), linear_x=1.0)
+    assert topic.count == 0

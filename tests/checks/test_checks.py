@@ -12,9 +12,8 @@ from tests.checks.seeded import ROBOT
 import cartwheel
 from cartwheel.checks import check
 from cartwheel.checks.project.baseline import write
-from cartwheel.checks.project.selection import codes_matching
 from cartwheel.checks.project.workspace import descriptions
-from cartwheel.codes import command, devices, robot
+from cartwheel.codes import codes_matching, command, devices, robot
 from cartwheel.description.elements import xml
 from cartwheel.errors import CartwheelError, UnknownNameError
 

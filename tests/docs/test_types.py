@@ -1,6 +1,7 @@
 """The Python that the pages and examples show has types that a strict checker accepts."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -80,3 +81,36 @@ def test_messages_have_the_types_of_their_classes(tmp_path: Path) -> None:
     (tmp_path / "user.py").write_text("\n".join(lines) + "\n")
     found = {int(line.split(":")[1]) for line in checked(tmp_path)}
     assert found == {number for number, wrong in enumerate(lines.values(), start=1) if wrong}
+
+
+STUDY = [
+    "import cartwheel as cw",
+    "def study(world: cw.World, case: dict[str, float]) -> dict[str, float]:",
+    "    world.run_until(lambda w: w.time > 1)",
+    "    world.run_until(lambda: world.time > 1)",
+    "    world.run_until(done)",
+    "    return {'x': world.time * case['a']}",
+    "def done(world: cw.World) -> bool: return world.time > 2",
+    "built = cw.build('empty', ['rosbots.xacro'])",
+    "print(cw.sweep(study, [{'a': 1.0}], built, jobs=0), cw.check('rosbots.xacro'))",
+    "cw.World().run_until(3)",
+    "cw.sweep(study, [{'a': 1.0}], cw.World())",
+]
+"""A program of a user, with errors in the last two lines."""
+
+
+def test_functions_of_a_user_have_types(tmp_path: Path) -> None:
+    (tmp_path / "user.py").write_text("\n".join(STUDY) + "\n")
+    assert {line.split(":")[1] for line in checked(tmp_path)} == {"10", "11"}
+
+
+def test_mypy_accepts_a_program(tmp_path: Path) -> None:
+    (tmp_path / "user.py").write_text("\n".join(STUDY) + "\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent",
+         "--ignore-missing-imports", "user.py"],
+        cwd=tmp_path, env={**os.environ, "MYPYPATH": str(ROOT / "src")},
+        capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    lines = [line.split(":")[1] for line in done.stdout.splitlines() if ": error:" in line]
+    assert lines == ["10", "11"], done.stdout + done.stderr

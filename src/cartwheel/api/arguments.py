@@ -6,6 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError
@@ -47,6 +49,29 @@ def text(value: object, name: str) -> str:
     if not isinstance(value, str):
         raise refused(name, "a text", value)
     return value
+
+
+def xacro_arguments(values: object) -> dict[str, str] | None:
+    """The arguments of a xacro file as texts; None if none are given.
+
+    Raises:
+        CartwheelError: They are not a mapping of texts, numbers and booleans.
+    """
+    if values is None:
+        return None
+    if not isinstance(values, Mapping):
+        raise refused("arguments", "a mapping", values)
+    return {text(name, "the name of an argument"): _written(name, values[name]) for name in values}
+
+
+def _written(name: str, value: object) -> str:
+    if isinstance(value, bool | np.bool_):
+        return str(bool(value)).lower()
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, str | int | float | Path):
+        return str(value)
+    raise refused(f'the argument "{name}"', "a text, a number, True or False", value)
 
 
 def source(value: object, name: str) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import description as descriptions
-from cartwheel.api.arguments import paths, refused, source
+from cartwheel.api.arguments import paths, refused, source, xacro_arguments
 from cartwheel.api.world import World
 from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
@@ -115,6 +115,7 @@ def build(
     *,
     visuals: bool = False,
     strict: bool = False,
+    ignore: str | Sequence[str] = (),
     lenient: bool = False,
     bridge: str | Path | Sequence[str | Path] = (),
     plugins: str | Path | Sequence[str | Path] = (),
@@ -133,6 +134,7 @@ def build(
         visuals: Also compile the visuals. Otherwise, the first image of a camera compiles them, in
             each process.
         strict: As for `World`.
+        ignore: As for `World`.
         lenient: As for `World`.
         bridge: As for `World`.
         plugins: As for `World`.
@@ -143,7 +145,7 @@ def build(
         DescriptionError: A file cannot be used.
         WorldError: A name is used twice, or a model cannot be built.
         PluginError: A plugin cannot be used.
-        CartwheelError: A name in `without` is unknown.
+        CartwheelError: A name in `without` or a code is unknown.
         TypeError: `World.spawn` does not have an argument of a robot.
     """
     source(world, "world")
@@ -154,6 +156,7 @@ def build(
         [_read(robot, package_path) for robot in _listed(robots)],
         {
             "strict": strict,
+            "ignore": ignore,
             "lenient": lenient,
             "bridge": bridge,
             "plugins": plugins,
@@ -183,7 +186,7 @@ def _read(robot: Robot, package_path: str | Path | Sequence[str | Path]) -> dict
     if isinstance(file, str | Path):
         given["robot"] = descriptions.load_robot(
             file,
-            arguments=given.pop("arguments", None),
+            arguments=xacro_arguments(given.pop("arguments", None)),
             package_path=paths(given["package_path"], "package_path"),
         )
     return given

@@ -41,8 +41,8 @@ class MessagingWorld(TimedWorld):
         Raises:
             UnknownNameError: The topic does not exist.
             SimulationError: The world is closed.
-            GraphError: The message type does not have a given field, or `message` is not a message
-                of the topic's type.
+            GraphError: The message type does not have a given field, `message` is not a message of
+                the topic's type, or both a message and fields are given.
         """
         self.check_open()
         kind = self.graph.topic(text(topic, "topic")).type

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Self
 
 from cartwheel.api.conditions import Condition
 from cartwheel.api.running import RunningWorld
@@ -59,7 +59,7 @@ class TimedWorld(RunningWorld):
 
     def run_until(
         self,
-        condition: Callable[..., Any],
+        condition: Callable[[], object] | Callable[[Self], object],
         *,
         timeout: float = TIMEOUT,
         period: float | None = None,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal, Never, SupportsFloat
 
 from cartwheel import description as descriptions
-from cartwheel.api.arguments import paths, refused, several, source, text
+from cartwheel.api.arguments import paths, refused, several, source, text, xacro_arguments
 from cartwheel.api.calling import CallingWorld
 from cartwheel.api.handles import unknown_attribute
 from cartwheel.api.model import Model
@@ -16,10 +16,11 @@ from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings import SurroundingWorld
 from cartwheel.api.values import instance, invalid
+from cartwheel.codes import codes_matching
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Code, Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import resolve_name
 from cartwheel.session import Session
@@ -41,6 +42,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             description.
         seed: Seed for all noise. The same seed and commands give identical results.
         strict: Treat every warning about a file as an error.
+        ignore: Codes that are not in `diagnostics`, and are no errors with `strict`: numbers, names
+            or prefixes such as ``CW2``, as for ``cartwheel check --ignore``.
         lenient: Skip plugins that cannot be created, for example because a parameter is invalid,
             and report an error, as in `cartwheel run`. Otherwise the model is rejected.
         bridge: Configuration files of ros_gz_bridge, which define topic names.
@@ -63,8 +66,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
 
     Raises:
         DescriptionError: The world's file cannot be used.
-        CartwheelError: A name in `without` is unknown, or a connection cannot be opened. Nothing
-            remains open.
+        CartwheelError: A name in `without` or a code is unknown, or a connection cannot be opened.
+            Nothing remains open.
     """
 
     _made = False
@@ -76,6 +79,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         *,
         seed: int = 0,
         strict: bool = False,
+        ignore: str | Sequence[str] = (),
         lenient: bool = False,
         bridge: str | Path | Sequence[str | Path] = (),
         plugins: str | Path | Sequence[str | Path] = (),
@@ -103,6 +107,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         for name, port_given in (("foxglove", foxglove), ("viewer", viewer)):
             if not isinstance(port_given, int):
                 raise refused(name, "True, False or a port", port_given)
+        self._ignored = frozenset[Code]().union(*map(codes_matching, several(ignore, "ignore")))
         connections = plan = None
         files = paths(record, "record")
         # A port may be 0, which selects a free port.
@@ -142,6 +147,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 without=several(without, "without"),
                 compiler=_compiler,
                 readings=_readings,
+                ignore=self._ignored,
             )
             super().__init__(
                 session,
@@ -192,7 +198,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Diagnostics reported so far."""
-        return self.session.diagnostics
+        return tuple(each for each in self.session.diagnostics if each.code not in self._ignored)
 
     def spawn(
         self,
@@ -208,7 +214,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         yaw: float | None = None,
         namespace: str = "/",
         frame_prefix: str = "",
-        arguments: Mapping[str, str] | None = None,
+        arguments: Mapping[str, str | float | Path] | None = None,
         package_path: str | Path | Sequence[str | Path] = (),
         controllers: Literal["auto"] | str | Path | Sequence[str | Path] | None = None,
     ) -> Model:
@@ -228,7 +234,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             namespace: Namespace of the robot's topics, services and actions, such as ``left``.
                 Names that begin with ``/`` in the file, and namespaces in the file, are unchanged.
             frame_prefix: Prefix of the robot's frames, such as ``left``, as ROS 1's tf_prefix.
-            arguments: Arguments of the xacro file.
+            arguments: Arguments of the xacro file. True and False are written as xacro writes them,
+                ``true`` and ``false``.
             package_path: Folders to search for packages first.
             controllers: YAML files for ros_control or ros2_control, whose controllers are started;
                 ``"auto"`` for the controllers that the launch files of the robot's package start.
@@ -247,8 +254,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         if name is not None:
             check_model_name(text(name, "name"))
         text(frame_prefix, "frame_prefix")
-        if arguments is not None and not isinstance(arguments, Mapping):
-            raise refused("arguments", "a mapping", arguments)
+        values = xacro_arguments(arguments)
         place = _place(pose, (x, y, z), (roll, pitch, yaw))
         if text(namespace, "namespace").strip("/"):
             resolve_name(namespace)
@@ -256,7 +262,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         if not isinstance(robot, RobotDescription):
             robot = descriptions.load_robot(
                 robot,
-                arguments=arguments,
+                arguments=values,
                 package_path=folders,
             )
         with self.used(change=True):

@@ -14,7 +14,7 @@ from cartwheel.batch.processes import Lanes, Method, Process
 from cartwheel.codes.world import BATCH_CLOSED
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array
-from cartwheel.jobs import cores
+from cartwheel.jobs import AT_TOP_LEVEL, cores, unpicklable
 
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
@@ -98,6 +98,10 @@ class Batch:
         if count == 0 or (workers is None and n == 1):
             self._here = Lanes(built, self._plan, seeds, on_device)
             return
+        if start_method != "fork" and (reason := unpicklable(self._plan)):
+            error = invalid(f"obs or vary cannot be passed to processes: {reason}", "workers")
+            error.hint = f"{AT_TOP_LEVEL}, or pass workers=0."
+            raise error
         self._edges = np.linspace(0, n, count + 1).astype(int).tolist()
         try:
             for first, last in zip(self._edges, self._edges[1:], strict=False):

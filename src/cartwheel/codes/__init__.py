@@ -60,6 +60,7 @@ FORMER = {
     "unreadable": "value-invalid",
 }
 """Former names of codes, which settings and options still accept."""
+_PREFIX = re.compile(r"CW\d{0,2}", re.IGNORECASE)
 _HEADING = re.compile(r"^## (CW\d{3}) (\S+)\n", re.MULTILINE)
 
 
@@ -113,3 +114,17 @@ def _explanations() -> dict[str, str]:
         for number, body in zip(parts[1::3], parts[3::3], strict=True):
             found[number] = body.strip()
     return found
+
+
+def codes_matching(text: str) -> frozenset[Code]:
+    """The code with a number or name, or all codes with a prefix such as ``CW2``.
+
+    Raises:
+        UnknownNameError: No code matches.
+    """
+    word = text.strip()
+    if _PREFIX.fullmatch(word):
+        matching = frozenset(code for code in all_codes() if code.number.startswith(word.upper()))
+        if matching:
+            return matching
+    return frozenset({code_named(word)})

@@ -9,8 +9,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from cartwheel.codes.world import PROPERTY_ABSENT
-from cartwheel.errors import CartwheelError
+from cartwheel.api.values import array, invalid
+from cartwheel.codes.world import PROPERTY_ABSENT, VALUE_INVALID
+from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.geometry import Pose
 
 if TYPE_CHECKING:
@@ -121,5 +122,25 @@ def vary(
         damping: Factor on the damping of all joints.
         light: Factor on the intensity of all lights.
         pose: Coordinates of the model, m and rad, such as ``{"x": (-1, 1), "yaw": (-3.1, 3.1)}``.
+
+    Raises:
+        CartwheelError: A range is not two finite numbers, the smaller one first, or a coordinate is
+            unknown.
     """
-    return Variation(model, mass, friction, damping, light, dict(pose or {}))
+    factors = {"mass": mass, "friction": friction, "damping": damping, "light": light}
+    places = dict(pose or {})
+    for axis in places:
+        if axis not in _AXES:
+            raise UnknownNameError("coordinate", axis, _AXES, code=VALUE_INVALID)
+    for name, limits in (factors | places).items():
+        if limits is not None:
+            _check_range(name, limits)
+    return Variation(model, mass, friction, damping, light, places)
+
+
+def _check_range(name: str, limits: Any) -> None:
+    low, high = array(limits, (2,), name).tolist()
+    if low > high:
+        error = invalid(name, "must be a range with the smaller number first", limits)
+        error.hint = f"Write ({high:g}, {low:g})."
+        raise error

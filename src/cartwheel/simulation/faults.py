@@ -5,7 +5,7 @@ from __future__ import annotations
 from cartwheel.calls import raise_exit
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
-from cartwheel.errors import Diagnostic, PluginError, SimulationError, fault
+from cartwheel.errors import Code, Diagnostic, PluginError, SimulationError, fault
 from cartwheel.options import STRICT
 from cartwheel.reporting import Once
 from cartwheel.simulation.clock import Task
@@ -32,6 +32,8 @@ class Faults:
         """Whether errors in subscribers and posted functions are reported instead of raised."""
         self.strict = False
         """Whether a failing plugin stops `Simulation.advance`."""
+        self.ignore: frozenset[Code] = frozenset()
+        """Codes with which it does not."""
         self.pending: BaseException | None = None
         """The error that `Simulation.advance` raises after the current step."""
         self._reported = Once(_FAULTS)
@@ -104,7 +106,7 @@ class Faults:
 
     def _report(self, diagnostic: Diagnostic) -> None:
         self._engine.report(diagnostic)
-        if self.strict:
+        if self.strict and diagnostic.code not in self.ignore:
             self.defer(
                 PluginError(
                     diagnostic.message,

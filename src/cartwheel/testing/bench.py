@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 
 _BUILT: pytest.StashKey[dict[str, Built]] = pytest.StashKey()
 _FOLDER = "cartwheel-failures"
-_BUILD_OPTIONS = ("strict", "lenient", "bridge", "plugins", "package_path", "without", "visuals")
+_BUILD_OPTIONS = (
+    "strict", "ignore", "lenient", "bridge", "plugins", "package_path", "without", "visuals",
+)  # fmt: skip
 _MOST_TOPICS = 30
 _MOST_LINES = 12
 _PATIENCE = 30.0

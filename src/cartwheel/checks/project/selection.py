@@ -1,29 +1,12 @@
-"""Selected and ignored codes, by number, name or prefix of a number."""
+"""Selected and ignored codes."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from cartwheel.codes import all_codes, code_named
+from cartwheel.codes import codes_matching
 from cartwheel.errors import Code
-
-_PREFIX = re.compile(r"CW\d{0,2}", re.IGNORECASE)
-
-
-def codes_matching(text: str) -> frozenset[Code]:
-    """The code with a number or name, or all codes with a prefix such as ``CW2``.
-
-    Raises:
-        UnknownNameError: No code matches.
-    """
-    word = text.strip()
-    if _PREFIX.fullmatch(word):
-        matching = frozenset(code for code in all_codes() if code.number.startswith(word.upper()))
-        if matching:
-            return matching
-    return frozenset({code_named(word)})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

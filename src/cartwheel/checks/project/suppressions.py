@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cartwheel.checks.project.selection import codes_matching
-from cartwheel.codes import command
+from cartwheel.codes import codes_matching, command
 from cartwheel.description.elements import xml
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.errors import Code, Diagnostic, Origin, UnknownNameError

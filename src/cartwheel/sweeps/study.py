@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import CartwheelError
-from cartwheel.jobs import Workers, cores
+from cartwheel.jobs import AT_TOP_LEVEL, Workers, cores, unpicklable
 from cartwheel.sweeps.cluster import ClusterWorkers
 from cartwheel.sweeps.results import Results, Row, invalid, plain
 from cartwheel.sweeps.stored import Stored
@@ -19,13 +19,15 @@ from cartwheel.sweeps.stored import Stored
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
 
+_ERROR = "error"
+"""The column of errors in the table."""
 Case = Mapping[str, Any]
 Job = tuple[int, dict[str, Any]]
 Done = tuple[int, Row]
 
 
 def sweep(
-    function: Callable[[World, Case], Any],
+    function: Callable[[World, dict[str, Any]], Any],
     cases: Iterable[Case],
     built: Built,
     *,
@@ -42,7 +44,8 @@ def sweep(
 
     Args:
         function: Receives the world and the case. Returns a number, or a mapping of numbers, texts
-            and lists by name. An exception is the error of the case.
+            and lists by name, other than those of the parameters and ``error``. An exception is
+            the error of the case.
         cases: The parameters of each case by name: numbers, texts, lists and mappings. The
             parameter ``seed`` is the seed of the world, by default 0.
         built: What `cartwheel.build` returned.
@@ -61,8 +64,13 @@ def sweep(
         progress: Whether to show a bar if standard error is a terminal.
 
     Raises:
-        CartwheelError: A case is invalid, or the file or the cluster cannot be used.
+        CartwheelError: A case or an argument is invalid, or the file or the cluster cannot be used.
     """
+    _check(function, built)
+    if cluster is None and jobs != 0 and (reason := unpicklable(function)):
+        error = invalid(f"the function cannot be passed to other processes: {reason}")
+        error.hint = f"{AT_TOP_LEVEL}, or pass jobs=0."
+        raise error
     listed = [_case(each) for each in cases]
     least = 0 if cluster is None else 1
     if jobs is not None and jobs < least:
@@ -83,10 +91,27 @@ def sweep(
     return Results([found[index] for index in range(len(listed))])
 
 
+def _check(function: object, built: object) -> None:
+    """Refuses arguments with which each case would fail."""
+    from cartwheel.api import Built, World
+
+    if not callable(function):
+        raise invalid(
+            f"the function must be a function of a world and a case (got {function!r:.60})"
+        )
+    if not isinstance(built, Built):
+        shown = "a World" if isinstance(built, World) else f"{built!r:.60}"
+        error = invalid(f"a sweep needs what cartwheel.build returned (got {shown})")
+        error.hint = "Write built = cartwheel.build(world, robots)."
+        raise error
+
+
 def _case(case: Case) -> dict[str, Any]:
     if not isinstance(case, Mapping):
         raise invalid(f"a case must be a mapping of parameters (got {case!r:.60})")
     made: dict[str, Any] = plain(case)
+    if _ERROR in made:
+        raise invalid(f'a parameter cannot have the name "{_ERROR}", a column of the table')
     seed = made.get("seed", 0)
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise invalid(f'"seed" must be an integer of at least 0 (got {seed!r:.60})')
@@ -113,14 +138,14 @@ def _run(
 
 
 def _prepare(
-    function: Callable[[World, Case], Any],
+    function: Callable[[World, dict[str, Any]], Any],
     built: Built,
     number: int,  # noqa: ARG001
 ) -> Callable[[Job], Done]:
     return partial(_do, function, built)
 
 
-def _do(function: Callable[[World, Case], Any], built: Built, job: Job) -> Done:
+def _do(function: Callable[[World, dict[str, Any]], Any], built: Built, job: Job) -> Done:
     index, case = job
     start = time.perf_counter()
     values: Any = {}
@@ -128,12 +153,22 @@ def _do(function: Callable[[World, Case], Any], built: Built, job: Job) -> Done:
     try:
         with built.world(seed=case.get("seed", 0)) as world:
             value = plain(function(world, dict(case)))
-        values = value if isinstance(value, dict) else {"result": value}
+        values = _named(value, case)
     except CartwheelError as failure:
         error = f"{failure.message} [{failure.code.number}]"
     except Exception as failure:  # noqa: BLE001 - other cases must still run
         error = f"{type(failure).__name__}: {failure}"
     return index, Row(case=case, values=values, error=error, seconds=time.perf_counter() - start)
+
+
+def _named(value: Any, case: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a case by name, none of which hides a parameter in the table."""
+    values = value if isinstance(value, dict) else {"result": value}
+    for name, each in values.items():
+        if name == _ERROR or (name in case and each != case[name]):
+            what = "the column of errors" if name == _ERROR else "a parameter"
+            raise invalid(f'the result "{name}" has the name of {what}')
+    return values
 
 
 def _lost(job: Job, reason: str) -> Done:
