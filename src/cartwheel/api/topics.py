@@ -46,7 +46,10 @@ class _Received:
 
     def __init__(self, simulation: Simulation, latched: Any) -> None:
         self._simulation = simulation
+        self._rewinds = simulation.engine.rewinds
         self._latched = latched
+        self.is_latched: Callable[[], bool] = bool
+        """Whether the graph has a latched message of the topic."""
         self.messages: deque[tuple[int, Any]] = deque(maxlen=_KEPT)
         self.count = 0
 
@@ -57,7 +60,25 @@ class _Received:
 
     def add(self, message: Any) -> None:
         self.count += 1
+        if self._simulation.engine.rewinds != self._rewinds:
+            self._forget()
         self.messages.append((self._simulation.time_ns, message))
+
+    def rewind(self) -> None:
+        """Forgets messages of the future after time was set, but not a latched one."""
+        if self._simulation.engine.rewinds == self._rewinds:
+            return  # a message was published meanwhile
+        last = list(self.messages)[-1:]
+        self._forget()
+        if last and not self.messages and self.is_latched():
+            self.messages.append((self._simulation.time_ns, last[0][1]))
+
+    def _forget(self) -> None:
+        """Forgets messages that are later than the time, at time 0 all of them."""
+        self._rewinds = self._simulation.engine.rewinds
+        now = self._simulation.time_ns
+        kept = [each for each in self.messages if now > 0 and each[0] <= now]
+        self.messages = deque(kept, self.messages.maxlen)
 
     def keep(self, size: int) -> None:
         self.messages = deque(self.messages, maxlen=size)
@@ -67,7 +88,8 @@ class Topic(Generic[M]):
     """A topic of a world, and its newest messages.
 
     `World.topic` creates it and subscribes to the topic, so that its sensor produces data. It keeps
-    the newest 1000 messages, of images and point clouds the newest 10.
+    the newest 1000 messages, of images and point clouds the newest 10. After `World.restore`, it
+    has only those up to the restored time, and after `World.reset` none, except for a latched one.
 
     For type checkers, ``Topic[Odometry]`` has messages of this class of `cartwheel.msgs`, and a
     `Topic` that was created without a class has messages of any type.
@@ -90,6 +112,9 @@ class Topic(Generic[M]):
         self._received.keep(keep or (_KEPT_LARGE if self.type in _LARGE else _KEPT))
         if latched is not None:
             self._received.add(latched)
+        full, received = self.name, self._received
+        received.is_latched = lambda: graph.latched(full) is not None
+        world.session.simulation.on_reset.append(received.rewind)
 
     def __repr__(self) -> str:
         return f"<Topic {self.name} {self.type}, {self.count} messages>"
@@ -106,7 +131,7 @@ class Topic(Generic[M]):
 
     @property
     def count(self) -> int:
-        """Number of messages received."""
+        """Number of messages received, also of those that a reset has removed."""
         return self._received.count
 
     @property
@@ -209,7 +234,7 @@ class Topic(Generic[M]):
         """
         before = self.count
         self._world._until(lambda: self.count > before, timeout=timeout)
-        if self.count == before:
+        if self.count == before or not self._messages:
             raise self._silent(timeout)
         return self._messages[-1][1]
 
@@ -226,7 +251,9 @@ class Topic(Generic[M]):
         else:
             known = "nothing publishes it"
             hint = suggestion(self.name, sorted(names - {self.name}))
-        last = f"the last message was published at {self.latest_time:.9g} s" if self.count else ""
+        last = (
+            f"the last message was published at {self.latest_time:.9g} s" if self._messages else ""
+        )
         values: dict[str, Value] = {
             "topic": self.name,
             "timeout": timeout,
@@ -286,6 +313,9 @@ class Topic(Generic[M]):
     def close(self) -> None:
         """Ends the subscription. The messages stay readable."""
         self._subscription.close()
+        resets = self._world.session.simulation.on_reset
+        if self._received.rewind in resets:
+            resets.remove(self._received.rewind)
         self._world._forget_topic(self)
 
 
