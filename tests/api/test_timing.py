@@ -13,6 +13,7 @@ import pytest
 from tests.coded import raises
 
 import cartwheel as cw
+from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.world import (
     CONDITION_INVALID,
     NUMBER_OUT_OF_RANGE,
@@ -302,7 +303,7 @@ def test_actions_run_at_their_times_before_the_step() -> None:
         assert later.pending
         with raises(NUMBER_OUT_OF_RANGE):
             world.on(0.39, lambda: None)
-        with raises(NUMBER_OUT_OF_RANGE):
+        with raises(OPTION_INVALID):
             world.on(0.5, None)  # type: ignore[arg-type]
         world.on(world.time, lambda: note("now"))
         world.step()
@@ -364,3 +365,11 @@ def test_a_robot_spawned_between_runs_is_served_at_once() -> None:
         assert odometry.times() == [0.5]
         world.run(0.1)
         assert odometry.count == 11
+
+
+def test_an_action_that_is_no_function_is_named() -> None:
+    with cw.World("empty") as world:
+        with pytest.raises(cw.CartwheelError) as caught:
+            world.on(99.0, None)  # type: ignore[arg-type]
+        assert caught.value.message == "action must be a function (got None)"
+        assert caught.value.values["name"] == "action"

@@ -227,3 +227,11 @@ def test_an_unknown_option_of_a_mark_is_an_error(pytester_run):
         'import pytest\n@pytest.mark.cartwheel(worl="walls")\ndef test_it(world): pass'
     )
     assert done.returncode == 1 and '"worl"' in done.stdout and '"world"' in done.stdout
+
+
+def test_a_wrong_mark_shows_only_the_error(pytester_run):
+    for mark in ('robot("no_such.urdf")', 'world("no_such")', "seed(-1)", "cartwheel(strikt=True)"):
+        done = pytester_run(f"import pytest\n@pytest.mark.{mark}\ndef test_it(world): pass\n")
+        assert done.returncode == 1 and "1 error" in done.stdout and "CW" in done.stdout
+        assert "bench.py" not in done.stdout and "Traceback" not in done.stdout
+        assert len(done.stdout.splitlines()) < 25

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Self
 
+from cartwheel.api.arguments import refused
 from cartwheel.api.conditions import Condition
 from cartwheel.api.running import RunningWorld
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, WAIT_TIMED_OUT
@@ -151,12 +152,13 @@ class TimedWorld(RunningWorld):
             SimulationError: The world is closed.
         """
         due = duration_ns(time, "the time in s")
+        if not callable(action):
+            raise refused("action", "a function", action)
         with self.used() as simulation:
-            if due < simulation.time_ns or not callable(action):
+            if due < simulation.time_ns:
                 now = simulation.time_ns / NANOSECONDS
                 raise CartwheelError(
-                    f"the action must be a function, and its time not before {now:.9g} s "
-                    f"(got {time:.9g} s)",
+                    f"the time must not be before {now:.9g} s (got {time:.9g} s)",
                     code=NUMBER_OUT_OF_RANGE,
                     values={"name": "time", "value": float(time), "now": now},
                 )

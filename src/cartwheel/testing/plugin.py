@@ -64,9 +64,14 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture
 def world(request: pytest.FixtureRequest) -> Iterator[World]:
     """A world for the test, made from files that were read once. It is closed after the test."""
+    from cartwheel.errors import CartwheelError
     from cartwheel.testing.bench import Bench
 
-    bench = Bench(request)
+    try:
+        bench = Bench(request)
+    except CartwheelError as error:
+        # The mark or the file is wrong, so the source of Cartwheel does not help.
+        pytest.fail(f"{error.code.number}: {error}", pytrace=False)
     request.node.stash[_BENCH] = bench
     try:
         yield bench.world
