@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import pickle
+import pydoc
 
 import pytest
 from tests.coded import raises
 
 import cartwheel as cw
+import cartwheel.testing
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.codes.world import VALUE_INVALID
@@ -273,3 +275,8 @@ def test_the_error_reaches_another_process(cart):
     copy = pickle.loads(pickle.dumps(error))
     assert type(copy) is UnmetError and copy.args == error.args
     assert vars(copy) == vars(error) and copy.values["moved"] == error.values["moved"]
+
+
+def test_help_and_completion_list_the_functions():
+    assert {"reaches", "sees", "stays_within"} <= set(dir(cartwheel.testing))
+    assert "\n    reaches(" in pydoc.render_doc(cartwheel.testing, renderer=pydoc.plaintext)

@@ -39,3 +39,8 @@ def __getattr__(name: str) -> Any:
     from cartwheel.testing import matchers
 
     return getattr(matchers, name)
+
+
+def __dir__() -> list[str]:
+    """Lists the functions for `help` and completion. Python does not know them before their use."""
+    return [*globals(), *__all__]
