@@ -61,6 +61,14 @@ def test_a_property_that_cannot_be_set_stays(handles):
             setattr(handles[handle], name, 3)
 
 
+@pytest.mark.parametrize("handle", ["model", "link", "joint", "light"])
+def test_a_handle_keeps_its_name(handle, handles):
+    name = handles[handle].name
+    with pytest.raises(AttributeError):
+        handles[handle].name = "other"
+    assert handles[handle].name == name
+
+
 def test_a_world_of_a_program_has_its_own_attributes():
     class Lab(cw.World):
         def __init__(self, world):

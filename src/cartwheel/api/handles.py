@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from types import MemberDescriptorType
 from typing import Any
 
 from cartwheel.similar_names import suggestion
@@ -33,6 +34,13 @@ class Handle(Sealed, ABC):
     """
 
     __slots__ = ()
+
+    def __setattr__(self, name: str, value: object) -> None:
+        # Otherwise, the handle would silently become that of something else.
+        slot = isinstance(getattr(type(self), name, None), MemberDescriptorType)
+        if slot and hasattr(self, name):
+            raise AttributeError(f"{type(self).__name__}.{name} cannot be set", name=name, obj=self)
+        super().__setattr__(name, value)
 
     @property
     @abstractmethod
