@@ -371,5 +371,5 @@ def test_an_action_that_is_no_function_is_named() -> None:
     with cw.World("empty") as world:
         with pytest.raises(cw.CartwheelError) as caught:
             world.on(99.0, None)  # type: ignore[arg-type]
-        assert caught.value.message == "action must be a function (got None)"
+        assert caught.value.code is OPTION_INVALID
         assert caught.value.values["name"] == "action"
