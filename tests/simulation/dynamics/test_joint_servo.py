@@ -63,17 +63,21 @@ def test_the_speed_toward_a_target_has_the_bits_of_the_formula(make, strength):
     places = [near * (1.0 + ulps * 2.0**-52) for ulps in range(-4, 5)]
     places += [near * factor for factor in (1 - 2e-9, 1 - 5e-10, 1 + 1e-9, 0.5, 3.0, 1e6)]
     places += [0.0, 5e-324, 1e-300, 1.0, 1e3]
+
+    def speed_to(target, rate, fastest):
+        speed = POSITION_BANDWIDTH * abs(target)
+        braked = math.sqrt(servo._braking * abs(target))
+        wanted = rate + math.copysign(braked if braked < speed else speed, target)
+        return min(max(wanted, -fastest), fastest)
+
     for size in places:
         for error in (size, -size):
             for rate, fastest in ((0.0, math.inf), (-0.0, math.inf), (0.3, 0.25), (-0.3, 0.0)):
-                speed = POSITION_BANDWIDTH * abs(error)
-                braked = math.sqrt(servo._braking * abs(error))
-                wanted = rate + math.copysign(braked if braked < speed else speed, error)
-                wanted = min(max(wanted, -fastest), fastest)
                 servo.command_position(error, rate, fastest)
-                assert servo._turning.hex() == wanted.hex()
-                servo._lead()
-                assert servo._turning.hex() == wanted.hex()
+                assert servo._turning.hex() == speed_to(error, rate, fastest).hex()
+                servo.follow()
+                later = error + rate * servo._step
+                assert servo._turning.hex() == speed_to(later, rate, fastest).hex()
 
 
 def test_far_away_it_brakes_in_time(make):
