@@ -130,6 +130,7 @@ class Simulation(Advancing):
             self.alarms.restart()
         self.forces.bind()
         for resident in population.everyone():
+            resident.forget_wrenches()
             for behaviour in tuple(resident.behaviours):
                 try:
                     behaviour.reset()

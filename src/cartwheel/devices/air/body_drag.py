@@ -66,7 +66,6 @@ class BodyDrag(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._wrench.forget()
         self._clear()
 
     def _clear(self) -> None:

@@ -79,10 +79,6 @@ class LiftDrag(Component):
         self._arm = (cx - mx, cy - my, cz - mz)
         part.schedule(0, before=self._apply)
 
-    def reset(self) -> None:
-        super().reset()
-        self._wrench.forget()
-
     def _apply(self) -> None:
         config, link = self._config, self._link
         self.part.locate()

@@ -97,8 +97,6 @@ class Propeller(Component):
         super().reset()
         self._target = self._speed = 0.0
         self._last_ns = self.part.time_ns
-        self._force.forget()
-        self._torque.forget()
 
     def _on_command(self, message: Any) -> None:
         config = self._config

@@ -142,7 +142,6 @@ class QuadrotorPropulsion(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._wrench.forget()
         self._clear()
 
     def _clear(self) -> None:

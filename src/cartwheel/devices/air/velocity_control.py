@@ -99,10 +99,9 @@ class VelocityControl:
             each.reset()
 
     def reset(self) -> None:
-        """Clears the controllers and the forces, which a reset has removed."""
+        """Clears the controllers."""
         self.restart()
         self._velocity = None
-        self._wrench.forget()
 
     def motion(self, seconds: float) -> Motion:
         """Returns the motion now, a time in s after the last call."""

@@ -97,10 +97,6 @@ class Wing(Component):
         self._arm = np.array(config.centre) - np.array(description.mass_centre)
         part.schedule(0, before=self._apply)
 
-    def reset(self) -> None:
-        super().reset()
-        self._wrench.forget()
-
     def _apply(self) -> None:
         config, link = self._config, self._link
         self.part.locate()

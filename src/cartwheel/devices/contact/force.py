@@ -55,10 +55,9 @@ class CommandedWrench(Component):
             self.part.schedule(0, before=self._rotate)
 
     def reset(self) -> None:
-        """Removes the force."""
+        """Discards the command."""
         super().reset()
         self._commanded = None
-        self._applied.forget()
 
     def _on_wrench(self, message: Any) -> None:
         force, torque = message.force, message.torque
@@ -123,9 +122,8 @@ class FrameSpring(Component):
         part.schedule(0, after=self._publish, topics=self.publishers)
 
     def reset(self) -> None:
-        """Removes the force and the target."""
+        """Removes the target."""
         super().reset()
-        self._applied.forget()
         self._frames.forget()
 
     def _pull(self) -> None:

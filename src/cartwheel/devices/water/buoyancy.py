@@ -106,11 +106,6 @@ class Buoyancy(Component):
             mass_centre=description.mass_centre,
         )
 
-    def reset(self) -> None:
-        super().reset()
-        for each in self._links:
-            each.wrench.forget()
-
     def _apply(self) -> None:
         self.part.locate()
         for each in self._links:

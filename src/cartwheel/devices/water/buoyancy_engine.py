@@ -63,7 +63,6 @@ class BuoyancyEngine(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._wrench.forget()
         self._clear()
 
     def _clear(self) -> None:

@@ -73,7 +73,6 @@ class Hydrodynamics(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._wrench.forget()
         self._clear()
 
     def _clear(self) -> None:

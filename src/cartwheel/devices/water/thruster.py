@@ -86,7 +86,6 @@ class Thruster(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._wrench.forget()
         self._clear()
 
     def _clear(self) -> None:

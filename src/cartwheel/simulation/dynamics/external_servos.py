@@ -137,5 +137,5 @@ class WrenchHandle:
         self._total += self._given
 
     def forget(self) -> None:
-        """Clears the wrench after a reset, which removed all forces."""
+        """Clears the wrench when a reset has removed all forces."""
         self._given = np.zeros(6)

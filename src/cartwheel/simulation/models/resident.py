@@ -12,6 +12,7 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
+from cartwheel.simulation.dynamics.external_servos import WrenchHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import MotorHandle
@@ -113,6 +114,12 @@ class Resident:
         for handle in self.part.handles:
             if isinstance(handle, ServoHandle):
                 handle.rewind()
+
+    def forget_wrenches(self) -> None:
+        """Clears the forces and torques of all plugins, after a reset has removed them."""
+        for handle in self.part.handles:
+            if isinstance(handle, WrenchHandle):
+                handle.forget()
 
     def end(self, plugin: object) -> None:
         """Closes a plugin; does nothing if it does not belong to this model."""
