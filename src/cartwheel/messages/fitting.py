@@ -30,7 +30,7 @@ def fits(message: Any) -> bool:
     return _test(cls)(message)
 
 
-@functools.cache
+@functools.lru_cache(1024)
 def _test(cls: Any) -> Test:
     """The test of a class. A call takes less than a microsecond for a message without lists."""
     known = fields(cls.__msgtype__)
