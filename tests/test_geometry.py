@@ -168,6 +168,14 @@ def test_a_pose_transforms_arrays_of_points():
     assert pose.inverse().apply(placed) == pytest.approx(points, abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    "point", [(1.0, 2.0), [1.0, 2.0, 3.0, 4.0], np.zeros((3, 2)), np.zeros(())]
+)
+def test_a_point_has_three_coordinates(point):
+    with raises(OPTION_INVALID, name="point"):
+        g.Pose().apply(point)
+
+
 @pytest.mark.parametrize("kind", [tuple, list, np.array])
 def test_poses_and_velocities_are_equal_if_their_numbers_are(kind):
     pose = g.Pose(kind([1.0, 0.0, 0.0]), kind([0.0, 0.0, 0.0, 1.0]))

@@ -293,9 +293,20 @@ class Pose:
 
         Args:
             point: m, shape (3,), or an array of shape (…, 3), such as that of `cartwheel.cloud`.
+
+        Raises:
+            CartwheelError: It does not have this shape.
         """
         if isinstance(point, np.ndarray):
+            if point.shape[-1:] != (3,):
+                raise CartwheelError(
+                    f"points must have the shape (…, 3) (got {point.shape})",
+                    code=OPTION_INVALID,
+                    values={"name": "point", "value": str(point.shape)},
+                )
             placed: Array = point @ matrix_from_quat(self.orientation).T + np.array(self.position)
             return placed
+        if type(point) is not tuple or len(point) != 3:
+            point = _three(point, "point")
         dx, dy, dz = rotate(self.orientation, point)
         return (self.position[0] + dx, self.position[1] + dy, self.position[2] + dz)

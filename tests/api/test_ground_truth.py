@@ -259,6 +259,20 @@ def test_a_push_without_end_ends_at_a_reset(falling):
     assert box.velocity.linear[2] == pytest.approx(-G, rel=1e-9)
 
 
+def test_a_push_is_ended(falling):
+    box = falling.model("box")
+    box.push((0, 0, 2 * G), seconds=math.inf)
+    falling.run(0.5)
+    box.end_pushes()
+    falling.run(0.25)
+    assert box.velocity.linear[2] == pytest.approx(-G * 0.25, rel=1e-9)
+    box.end_pushes()
+    box.link("link").push((0, 0, 2 * G), seconds=1.0)
+    box.link("link").end_pushes()
+    falling.run(0.25)
+    assert box.velocity.linear[2] == pytest.approx(-G * 0.5, rel=1e-9)
+
+
 def test_a_push_by_a_callback_is_a_whole_impulse(make, rosbots):
     """It acts in the step of the callback already, and ends within a longer run."""
     world = make.world(make.box("box", (0.2,) * 3, pose=cw.Pose((5, 5, 50))))

@@ -334,9 +334,34 @@ def test_a_reset_removes_actions() -> None:
         world.on(0.6, world.reset)
         world.on(0.7, lambda: told.append(world.time))
         world.run(0.5)
-        assert world.time == 0.0
         world.run(1.0)
         assert told == []
+
+
+@pytest.mark.parametrize("speed", [None, 100.0])
+def test_a_run_starts_again_after_a_reset(speed: float | None) -> None:
+    with cw.World("empty") as world:
+        world.run(0.3)
+        world.on(0.5, world.reset)
+        world.run(0.4, speed=speed)
+        assert world.time == pytest.approx(0.4, abs=1e-9)
+        world.on(0.5, world.reset)
+        world.run_until(lambda: world.time < 0.2, timeout=0.4, speed=speed)
+        assert world.time < 0.2
+        world.on(0.3, world.reset)
+        with pytest.raises(cw.TimedOutError) as caught:
+            world.run_until(lambda: False, timeout=0.4, speed=speed)
+        assert caught.value.values["time"] == pytest.approx(0.4, abs=0.01)
+        world.on(world.time + 0.01, world.reset)
+        world.step(20)
+        assert world.time == pytest.approx(20 * world.step_size, abs=1e-9)
+
+
+def test_a_reset_at_the_end_of_a_run_ends_it() -> None:
+    with cw.World("empty") as world:
+        world.on(0.5, world.reset)
+        world.run(0.5)
+        assert world.time == 0.0
 
 
 def test_an_error_of_an_action_stops_the_run() -> None:

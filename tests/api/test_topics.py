@@ -101,6 +101,34 @@ def test_a_field_must_be_named_by_a_text() -> None:
             clock.values(5)  # type: ignore[arg-type]
 
 
+def test_an_unknown_field_is_refused_before_the_first_message() -> None:
+    with cw.World("empty") as world:
+        odometry = world.topic("/odom", type="nav_msgs/Odometry")
+        assert odometry.values("pose.pose.position.x").shape == (0,)
+        assert odometry.values("pose.covariance[3]").shape == (0,)
+        for _ in range(2):
+            with raises(FIELD_UNKNOWN, field="pose.pose.positon.x", meant="position"):
+                odometry.values("pose.pose.positon.x")
+            with raises(FIELD_UNKNOWN, field="pose.pose.position.x.y", meant=""):
+                odometry.plot("pose.pose.position.x.y")
+            odometry.publish()
+            world.run(0.1)
+
+
+def test_a_name_is_in_the_namespace_of_the_model() -> None:
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro", namespace="left")
+        odometry = cart.topic("odom")
+        assert odometry is world.topic("/left/odom") is cart.topic("/left/odom")
+        cart.publish("part2_cmr/cmd_vel", linear_x=0.5)
+        world.run(1.0)
+        assert odometry.values("twist.twist.linear.x")[-1] > 0.3
+        with raises(TOPIC_UNKNOWN):
+            cart.topic("/odom")
+        plain = world.spawn("rosbots.xacro", name="plain", y=2.0)
+        assert plain.topic("odom") is world.topic("/odom")
+
+
 def test_a_latched_message_is_there_at_once() -> None:
     with cw.World("empty") as world:
         world.spawn("rosbots.xacro")
@@ -156,6 +184,9 @@ def test_a_wait_in_vain_says_what_is_known() -> None:
         with raises(WAIT_TIMED_OUT, cw.TimedOutError, publishers=(), messages=0, meant="/odom"):
             scans.wait(timeout=0.2)
         assert world.time == pytest.approx(0.2)
+        heights = world.topic("/height", type="std_msgs/Float32")
+        with raises(WAIT_TIMED_OUT, topic="/height", meant=""):
+            heights.wait(timeout=0.01)
         images = world.topic("/rosbots/camera1/image_raw")
         world.run(0.1)
         with raises(WAIT_TIMED_OUT, topic=images.name, rate=30.0, timeout=0.005):

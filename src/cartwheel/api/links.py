@@ -274,7 +274,7 @@ class Link(Handle):
         """Applies a force and a torque from now on, for an interval of simulation time.
 
         The impulse is exactly the force times `seconds`, even if `seconds` is not a multiple of the
-        time step. `World.reset` ends all pushes.
+        time step. `end_pushes` and `World.reset` end it earlier.
 
         Args:
             force: N, shape (3,), in world axes. It does not rotate with the link.
@@ -300,6 +300,16 @@ class Link(Handle):
                 at=point,
                 duration_ns=duration,
             )
+
+    def end_pushes(self) -> None:
+        """Ends all pushes on the link, also those of Gazebo's services.
+
+        Raises:
+            UnknownNameError: The model or the link does not exist any more.
+            SimulationError: The world is closed.
+        """
+        with self._world.used(change=True) as simulation:
+            simulation.truth.end_pushes(self.model, self.name)
 
     # -- attached links
 

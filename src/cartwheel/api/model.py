@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast, overload
 
 from cartwheel.api.arguments import text
 from cartwheel.api.handles import Handle
@@ -11,8 +11,11 @@ from cartwheel.api.links import Link
 from cartwheel.api.motion import Twist
 from cartwheel.api.values import Vector, instance, vector
 from cartwheel.geometry import Pose
+from cartwheel.graph.names import resolve_name
+from cartwheel.messages.typed import M, Message
 
 if TYPE_CHECKING:
+    from cartwheel.api.topics import Topic
     from cartwheel.api.world import World
 
 _NONE: Vector = (0.0, 0.0, 0.0)
@@ -99,8 +102,16 @@ class Model(Handle):
     ) -> None:
         """Pushes the root link; see `Link.push`."""
         with self._world.lock:
-            root = self._world.session.simulation.truth.description(self.name).canonical_link
-            self.link(root).push(force, torque, at=at, seconds=seconds)
+            self._root.push(force, torque, at=at, seconds=seconds)
+
+    def end_pushes(self) -> None:
+        """Ends all pushes on the root link; see `Link.end_pushes`."""
+        with self._world.lock:
+            self._root.end_pushes()
+
+    @property
+    def _root(self) -> Link:
+        return self.link(self._world.session.simulation.truth.description(self.name).canonical_link)
 
     # -- parts
 
@@ -171,9 +182,26 @@ class Model(Handle):
 
     # -- messages and the end
 
+    @overload
+    def topic(self, name: str, type: type[M], *, keep: int | None = None) -> Topic[M]: ...
+    @overload
+    def topic(
+        self, name: str, type: str | None = None, *, keep: int | None = None
+    ) -> Topic[Any]: ...
+    def topic(
+        self, name: str, type: type[Message] | str | None = None, *, keep: int | None = None
+    ) -> Topic[Any]:
+        """`World.topic`, where a name without a leading ``/`` is in the model's namespace."""
+        full = self._resolved(name)
+        # The overloads of `World.topic` know either a class or a name.
+        return self._world.topic(full, cast("str | None", type), keep=keep)
+
     def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
-        """`World.publish`."""
-        self._world.publish(topic, message, **fields)
+        """`World.publish`, where a name without a leading ``/`` is in the model's namespace."""
+        self._world.publish(self._resolved(topic), message, **fields)
+
+    def _resolved(self, topic: str) -> str:
+        return resolve_name(text(topic, "topic"), self.namespace)
 
     def delete(self) -> None:
         """Removes the model from the world."""

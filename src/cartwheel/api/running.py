@@ -16,6 +16,7 @@ from cartwheel.assembly.turns import Turns
 from cartwheel.codes.world import RUN_NESTED, SIMULATION_CLOSED
 from cartwheel.errors import CartwheelError, SimulationError
 from cartwheel.session import Session
+from cartwheel.simulation import RunState
 from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
@@ -126,8 +127,8 @@ class RunningWorld:
         Ctrl-C completes the current step, so that a later call can continue.
 
         Args:
-            seconds: Simulation time, at least 0. If a client resets the simulation, it starts
-                again.
+            seconds: Simulation time, at least 0. If a client, callback or action resets the
+                simulation, it starts again.
             speed: Target real-time factor; None is that of `pace`, by default as fast as
                 possible.
 
@@ -146,8 +147,12 @@ class RunningWorld:
     def _advance(self, simulation: Simulation, duration_ns: int, speed: float | None) -> None:
         """Runs for a simulation time within `_run`, or until the run is stopped."""
         if speed is None and not self.is_paced:
-            target = simulation.time_ns + duration_ns
-            simulation.advance(target)
+            rewinds = None
+            while rewinds != simulation.engine.rewinds:
+                rewinds, target = simulation.engine.rewinds, simulation.time_ns + duration_ns
+                simulation.advance(target)
+                if simulation.run_state is RunState.STOPPED:
+                    return
             if simulation.time_ns >= target:
                 simulation.complete()
         else:

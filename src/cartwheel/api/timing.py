@@ -43,6 +43,11 @@ class Timer:
 class TimedWorld(RunningWorld):
     """The part of `World` that advances by steps and until conditions, and schedules actions."""
 
+    @property
+    def step_size(self) -> float:
+        """Time step of the physics, s: that of the world file, or set by a client."""
+        return self.session.simulation.step_ns / NANOSECONDS
+
     def step(self, n: int = 1) -> None:
         """Advances the simulation by time steps; otherwise like `run`.
 

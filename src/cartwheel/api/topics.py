@@ -17,7 +17,7 @@ from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import GraphError, Value
 from cartwheel.geometry import Array
 from cartwheel.graph import checked_message
-from cartwheel.messages import from_dict, from_flat
+from cartwheel.messages import from_dict, from_flat, zero
 from cartwheel.messages.typed import M
 from cartwheel.similar_names import meant, suggestion
 from cartwheel.simulation.alarms import Alarm
@@ -176,7 +176,10 @@ class Topic(Generic[M]):
             GraphError: The type does not have the field, or the field is not a number or an array
                 of numbers.
         """
-        return arrays.values(self.history(size), field)
+        messages = self.history(size)
+        if not messages:
+            arrays.values((zero(self.type),), field)  # refuses unknown fields
+        return arrays.values(messages, field)
 
     def plot(self, *fields: str, size: int | None = None) -> Plot:
         """A plot of numbers over the simulation time, which notebooks display.
@@ -250,7 +253,8 @@ class Topic(Generic[M]):
             hint = None
         else:
             known = "nothing publishes it"
-            hint = suggestion(self.name, sorted(names - {self.name}))
+            others = sorted(names - {self.name})
+            hint = suggestion(self.name, others) if others else f"Nothing publishes {self.type}."
         last = (
             f"the last message was published at {self.latest_time:.9g} s" if self._messages else ""
         )

@@ -12,6 +12,7 @@ import numpy as np
 from cartwheel.arrays.data import Array, full_kind_of
 from cartwheel.codes.graph import FIELD_UNKNOWN
 from cartwheel.errors import GraphError
+from cartwheel.similar_names import meant, suggestion
 
 _PART = re.compile(r"([A-Za-z]\w*)((?:\[\d{1,9}\])*)")
 _INDEX = re.compile(r"\d+")
@@ -88,9 +89,9 @@ def _value(message: Any, field: str, steps: list[str | int]) -> float | Array:
     value = message
     for step in steps:
         if isinstance(step, str):
-            if step not in getattr(value, "__dataclass_fields__", ()):
-                owner = full_kind_of(value) if hasattr(value, "__msgtype__") else "a number or list"
-                raise _unknown(f'{owner} does not have the field "{step}" of "{field}"', field)
+            known = getattr(value, "__dataclass_fields__", ())
+            if step not in known:
+                raise _not_in(value, step, list(known), field)
             value = getattr(value, step)
         elif not isinstance(value, str) and hasattr(value, "__len__"):
             if step >= len(value):
@@ -107,6 +108,16 @@ def _value(message: Any, field: str, steps: list[str | int]) -> float | Array:
         if numbers.ndim == 1 and (numbers.dtype.kind in "biuf" or not numbers.size):
             return numbers.astype(float)
     raise _unknown(f'the field "{field}" is not a number or an array of numbers', field)
+
+
+def _not_in(value: Any, step: str, known: list[str], field: str) -> GraphError:
+    owner = full_kind_of(value) if hasattr(value, "__msgtype__") else "a number or list"
+    return GraphError(
+        f'{owner} does not have the field "{step}" of "{field}"',
+        code=FIELD_UNKNOWN,
+        hint=suggestion(step, known) if known else None,
+        values={"field": field, "meant": meant(step, known)},
+    )
 
 
 def _unknown(message: str, field: str) -> GraphError:

@@ -170,6 +170,16 @@ class GroundTruth:
         self._forces.wrench(model, link, force=force, torque=torque, duration_ns=duration_ns)
         self._apply_forces()
 
+    def end_pushes(self, model: str, link: str) -> None:
+        """Ends all pushes on a link.
+
+        Raises:
+            UnknownNameError: The model or link does not exist.
+        """
+        self.link(model, link)
+        self._forces.clear_wrenches(model, link)
+        self._apply_forces()
+
     def _apply_forces(self) -> None:
         # At once, so that a push by a callback acts in the step of the callback.
         self._forces.serve()
