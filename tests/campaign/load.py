@@ -15,7 +15,6 @@ import argparse
 import contextlib
 import json
 import os
-import random
 import signal
 import socket
 import subprocess
@@ -31,6 +30,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.campaign.live import PROGRAM
+from tests.reserved import dds_domains, free_port
 
 from benchmarks import wire_readers
 from cartwheel.control import ControlClient, running
@@ -131,16 +131,15 @@ class Run:
 
     def __init__(self, folder: Path, wires: list[str]) -> None:
         self.file = folder / "load.mcap"
-        port = random.randrange(20_000, 60_000)
         self.environment = {
             **os.environ,
             "XDG_RUNTIME_DIR": str(folder),
-            "ROS_MASTER_URI": f"http://127.0.0.1:{port}",
+            "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}",
             "ROS_HOSTNAME": "127.0.0.1",
-            "ROS_DOMAIN_ID": str(random.randrange(100, 200)),
+            "ROS_DOMAIN_ID": str(dds_domains()),
         }
         os.environ.update(self.environment)
-        self.foxglove = port + 1
+        self.foxglove = free_port()
         options = {
             "ros1": ["--ros1"],
             "ros2": ["--ros2"],
@@ -161,9 +160,13 @@ class Run:
             found = [one for one in running() if one.pid == self.process.pid]
             if found:
                 return ControlClient(found[0])
-            if self.process.poll() is not None:
-                raise CartwheelError("the run ended before it began")
+            self.check()
             time.sleep(0.1)
+
+    def check(self) -> None:
+        """Raises an error if it has ended."""
+        if self.process.poll() is not None:
+            raise CartwheelError(f"the run ended with status {self.process.returncode}")
 
     def address(self, wire: str) -> str:
         """Of a wire, as its reader takes it."""
@@ -235,12 +238,14 @@ def measure(minutes: float, wires: list[str], busy: int, seconds: float) -> dict
                     readers[wire] = Reader(wire, run.address(wire), run.environment)
                 except (OSError, KeyError):
                     # It is not there yet.
+                    run.check()
                     if time.monotonic() > begin + _START:
                         raise
                     time.sleep(0.5)
             stack.callback(readers[wire].close)
         missing = {(wire, topic) for wire in wires for topic in TOPICS}
         while missing:
+            run.check()
             if time.monotonic() > begin + _START:
                 return {"ok": False, "faults": [f"never came: {sorted(missing)}"]}
             time.sleep(0.5)
