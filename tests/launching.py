@@ -36,8 +36,15 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
-_OTHERS = ("viser", "PIL.Image", "websockets.sync.client")
-"""Modules that Cartwheel imports when it needs them."""
+_OTHERS = (
+    *("viser", "PIL.JpegImagePlugin", "PIL.PngImagePlugin", "websockets.sync.client", "xacro"),
+    *("rosbags.typesys.stores.ros2_jazzy", "rosbags.typesys.stores.ros1_noetic"),
+    # Of libraries, which import these in turn when they need them.
+    *("numpy.ma", "typer._adapters", "typer._click.decorators", "pydantic.type_adapter"),
+    *("pydantic.deprecated.class_validators", "pydantic.functional_validators", "sysconfig"),
+    *("rich.console", "rich.table", "foxglove", "pydantic.plugin._loader", "rosbags.usertypes"),
+)
+"""Modules that are imported when they are needed."""
 _AT_START = ("PYTHON", "LD_", "LC_", "LANG", "MUJOCO_", "CARTWHEEL_CODES_ONLY")
 _LATER = {"PYTHONUNBUFFERED"}
 _LONGEST = 200_000
