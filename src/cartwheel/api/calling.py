@@ -80,7 +80,7 @@ class CallingWorld(MessagingWorld):
         kind = service_classes(offered.type)[0].__msgtype__
         made = made_message(service, kind, request, fields)
         with self.used(change=True) as simulation, finding_with(self.session.types):
-            inside = self._running and self._runner == threading.get_ident()
+            inside = self._runner == threading.get_ident()
             if not inside:
                 simulation.drain_queued()
             if not offered.threaded:
@@ -171,7 +171,7 @@ class CallingWorld(MessagingWorld):
         offered = self.graph.action(text(action, "action"))
         made = made_message(action, f"{offered.type}_Goal", goal, fields)
         with self.used(change=True) as simulation, finding_with(self.session.types):
-            if not self._running or self._runner != threading.get_ident():
+            if self._runner != threading.get_ident():
                 simulation.drain_queued()
             return Goal(self, offered, made)
 

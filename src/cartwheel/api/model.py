@@ -28,10 +28,14 @@ class Model(Handle):
     """
 
     __slots__ = ("_world", "name")
+    _world: World
+    name: str
 
     def __init__(self, world: World, name: str) -> None:
-        self._world = world
-        self.name = name
+        # Programs create one for each read: without the check of `Handle`, it takes a third of the
+        # time.
+        object.__setattr__(self, "_world", world)
+        object.__setattr__(self, "name", name)
 
     def __repr__(self) -> str:
         return f"Model({self.name!r})"

@@ -58,8 +58,8 @@ class RunningWorld:
         self._host, self._allow_origin = host, tuple(allow_origin)
         self._driver = Driver(session.simulation, self.lock)
         self._connections: Connections | None = None
-        self._running = False
-        self._runner = 0
+        self._runner: int | None = None
+        """The thread of the current run; None if there is none."""
         self._closing = False
         session.simulation.drain()  # this thread is the owner
         if connections is not None and plan is not None:
@@ -111,7 +111,7 @@ class RunningWorld:
                 finally:
                     if change:
                         simulation.engine.note_change()
-                    if self._connections is not None and not self._running:
+                    if self._connections is not None and self._runner is None:
                         self._connections.update()
                         self._driver.pacer.show()
 
@@ -182,7 +182,7 @@ class RunningWorld:
 
     def stop(self) -> None:
         """Ends the current `run` or `spin` after the current step. Callable on any thread."""
-        if self._running:
+        if self._runner is not None:
             self.session.simulation.stop()
 
     @property
@@ -194,12 +194,12 @@ class RunningWorld:
         """Runs the block, which may close the world."""
         return Turn(self)
 
-    def begin(self) -> tuple[bool, int]:
-        """Begins a run, and returns whether another one is in progress, and its thread."""
+    def begin(self) -> int | None:
+        """Begins a run, and returns the thread of another one that is in progress."""
         self.check_open()
-        outer = self._running, self._runner
+        outer = self._runner
         thread = threading.get_ident()
-        if outer == (True, thread):
+        if outer == thread:
             raise SimulationError(
                 "a callback runs the world that called it",
                 code=RUN_NESTED,
@@ -207,21 +207,21 @@ class RunningWorld:
             )
         if self._connections is not None:
             self._connections.raise_failure()
-            if not outer[0]:
+            if outer is None:
                 self._connections.update()
-        self._running, self._runner = True, thread
-        if not outer[0]:
+        self._runner = thread
+        if outer is None:
             self._driver.begin()
         return outer
 
-    def finish(self, outer: tuple[bool, int], *, failed: bool) -> None:
+    def finish(self, outer: int | None, *, failed: bool) -> None:
         """Ends the run that `begin` began."""
         try:
             if not failed and self._connections is not None:
                 self._connections.raise_failure()
         finally:
-            self._running, self._runner = outer
-            if not self._running:
+            self._runner = outer
+            if outer is None:
                 self._driver.end()
                 if self._closing:
                     self._end()
@@ -341,7 +341,7 @@ class RunningWorld:
         connections.attach(self.session, self._driver, self.lock, ros1=ros1)
         self._connections = connections
         connections.close_with(self)
-        if not self._running:
+        if self._runner is None:
             self._driver.end()
 
     # -- end
@@ -360,7 +360,7 @@ class RunningWorld:
         if connections is not None and connections.forked:
             return
         with self.lock:
-            if not self._running:
+            if self._runner is None:
                 self._end()
                 return
             self._closing = True

@@ -29,7 +29,7 @@ class SavingWorld(MessagingWorld):
             SimulationError: The world is closed, or a callback of the same world called the method.
         """
         with self.used():
-            if self._running and self._runner == threading.get_ident():
+            if self._runner == threading.get_ident():
                 raise _nested("saves")
             return save(self.session, tuple(self._left_out()))
 
@@ -49,7 +49,7 @@ class SavingWorld(MessagingWorld):
         """
         instance(state, State, "state", "state = world.save()")
         with self.used(change=True):
-            if self._running:
+            if self._runner is not None:
                 raise _nested("restores")
             restore(self.session, state)
 

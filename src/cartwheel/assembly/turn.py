@@ -18,10 +18,10 @@ class _World(Protocol):
     session: Session
     lock: Turns
 
-    def begin(self) -> tuple[bool, int]:
-        """Begins a run, and returns the state before it."""
+    def begin(self) -> int | None:
+        """Begins a run, and returns the thread of the run around it."""
 
-    def finish(self, outer: tuple[bool, int], *, failed: bool) -> None:
+    def finish(self, outer: int | None, *, failed: bool) -> None:
         """Ends a run."""
 
 

@@ -58,9 +58,9 @@ class Turns:
         Raises:
             SimulationError: This process was forked while the simulation was connected.
         """
-        self.check()
-        if self._lock.acquire(blocking=False):
+        if not self._abandoned and self._lock.acquire(blocking=False):
             return
+        self.check()
         entered = threading.Event()
         asked: Post | None = None
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, Literal
 
 from cartwheel.calls import Post
@@ -129,7 +130,7 @@ def arrive(topic: Topic, message: Any, post: Post, cdr: CdrCache) -> None:
     if topic.take is not None:
         topic.take(message)
     else:
-        post(lambda: deliver_changed(topic, message, cdr))
+        post(partial(deliver_changed, topic, message, cdr))
 
 
 def deliver_changed(topic: Topic, message: Any, cdr: CdrCache) -> None:

@@ -83,7 +83,7 @@ class Advancing(Models):
             schedule = population.schedule
             first, last, due = schedule.at(engine.step)
             if engine.served_ns == engine.time_ns:
-                first, last = self._unserved(first), self._unserved(last)
+                first, last = self._unserved(first, last)
             if not first and not last:
                 forwarded = bool(engine.refreshed) and engine.is_refreshed()
             else:
@@ -151,7 +151,8 @@ class Advancing(Models):
         """
         engine, population = self.engine, self._population
         rewinds = engine.rewinds
-        self.drain()
+        if not self.commands.empty():
+            self.drain()
         if engine.rewinds != rewinds or self.run_state is not RunState.RUNNING:
             return
         if self.alarms.active and (self._ring() is None or self.run_state is not RunState.RUNNING):
@@ -162,7 +163,7 @@ class Advancing(Models):
             population.gather_tasks()
         first, last, _ = population.schedule.at(engine.step)
         if engine.served_ns == engine.time_ns:
-            first, last = self._unserved(first), self._unserved(last)
+            first, last = self._unserved(first, last)
         created = engine.tasks_created
         if (first or last) and self._serve(first, last):
             engine.keep()
@@ -181,9 +182,12 @@ class Advancing(Models):
             self.drain_queued()
         return due if self.engine.rewinds == rewinds else None
 
-    def _unserved(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+    def _unserved(self, *due: tuple[Task, ...]) -> Iterator[tuple[Task, ...]]:
+        """Those of the due tasks that were created after `complete` has run the others."""
         served = self.engine.served_tasks
-        return tuple(task for task in tasks if task.order >= served) if tasks else tasks
+        if served == self.engine.tasks_created:
+            return iter(((),) * len(due))
+        return (tuple(task for task in tasks if task.order >= served) for tasks in due)
 
     def _serve(self, first: Sequence[Task], last: Sequence[Task]) -> bool:
         """Runs due tasks; see `Schedule`.

@@ -213,13 +213,17 @@ class Schedule:
             step: A step with due tasks.
             limit: Where to stop looking.
         """
+        idle: tuple[Task, ...] = ()
         while step < limit:
             first, last, upcoming = self.at(step)
             if last:
                 return step
-            for task in first:
-                if task.idle is None or not task.idle():
-                    return step
+            # Tasks that are due together are one tuple.
+            if first is not idle:
+                for task in first:
+                    if task.idle is None or not task.idle():
+                        return step
+                idle = first
             step = upcoming
         return step
 

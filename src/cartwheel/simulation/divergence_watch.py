@@ -27,12 +27,15 @@ class Watch:
         self._guard = Guard()
         self.due = 1
         """The step of the next check."""
+        self._steps = 1
+        """Number of steps between two regular checks."""
         self._recovered = 0
         """`Engine.commanded` at the last recovery."""
         self._recoveries = 0
 
     def bind(self, model: Any, data: Any) -> None:
         """Continues with a newly compiled model and its data; the next check is due soon."""
+        self._steps = max(1, _INTERVAL_NS // self._engine.step_ns)
         self._wait_for_first()
         self._guard.bind(model, data)
 
@@ -59,10 +62,6 @@ class Watch:
     def is_regular(self) -> bool:
         """Whether a check is due at this step, whatever has happened before."""
         return self._engine.step % self._steps == 0
-
-    @property
-    def _steps(self) -> int:
-        return max(1, _INTERVAL_NS // self._engine.step_ns)
 
     @property
     def _next_regular(self) -> int:
