@@ -108,6 +108,48 @@ def test_a_skid_steer_turns_by_coulombs_law(make, ratio):
     assert rate == pytest.approx(RATE / (1 + 1 / ratio**2), rel=0.01)
 
 
+@pytest.mark.parametrize("turn", [0.4, 0.75])
+def test_a_skid_steer_with_an_uneven_load_turns_by_coulombs_law(make, turn):
+    """The side with more load slides less, so the base turns about a point beside its middle."""
+    aside, base = 0.1, skid_steer(1.1, track=0.57)
+    links = base.links.replace("<pose>0.0 0 0.0 0 0 0</pose>", f"<pose>0 {aside} 0 0 0 0</pose>", 1)
+    # 20 of the base's 22 kg are in its chassis.
+    shift = 20 / 22 * 2 * aside / base.track
+    expected = turning_rate(base.track, base.track / 1.1, shift, turn)
+    _, rate = motion(driven(make, replace(base, links=links)), turn=turn)
+    assert rate == pytest.approx(expected, rel=0.01)
+
+
+def turning_rate(track, wheelbase, shift, turn):
+    """Yaw rate in rad/s for which the friction of four sliding wheels adds up to nothing.
+
+    `shift` is the fraction of the load that is moved to the left wheels.
+    """
+    rim = turn * track / 2
+
+    def pull(side, ahead, rate):
+        """Forward friction of a wheel on a side, relative to the mean load, and its lever arm."""
+        along = side * rim - (ahead + side * rate * track / 2)
+        across = rate * wheelbase / 2
+        load = (1 - side * shift) / math.hypot(along, across)
+        return load * along, load * (side * along * track - across * wheelbase) / 2
+
+    def bisect(function, low, high):
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if function(middle) > 0 else (low, middle)
+        return low
+
+    def drift(rate):
+        return bisect(lambda ahead: sum(pull(side, ahead, rate)[0] for side in (-1, 1)), -1.0, 1.0)
+
+    def torque(rate):
+        ahead = drift(rate)
+        return sum(pull(side, ahead, rate)[1] for side in (-1, 1))
+
+    return bisect(torque, 1e-6, turn)
+
+
 def test_a_skid_steer_that_drags_a_ball_keeps_its_speed(make):
     """Gazebo loses 3 to 6 % with a ball like this; wheels with softer friction lose a quarter."""
     base = skid_steer(1.0)

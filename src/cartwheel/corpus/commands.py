@@ -20,8 +20,13 @@ _FLOAT, _FLOATS = "std_msgs/msg/Float64", "std_msgs/msg/Float64MultiArray"
 _ACTUATORS = {
     "mav_msgs/msg/Actuators": "angular_velocities",
     "actuator_msgs/msg/Actuators": "velocity",
+    "hector_uav_msgs/msg/MotorPWM": "pwm",
 }
-"""Fields with the propellers' speeds by message type."""
+"""Fields with the propellers' speeds, or duty cycles, by message type."""
+_DUTY = 255
+"""The duty cycle of a motor at its full voltage."""
+_PROPELLERS = 4
+"""Number of propellers of a plugin for all of them."""
 _VELOCITY = 0.5
 """rad/s or m/s."""
 _ROOM = 0.8
@@ -35,9 +40,12 @@ _STEPS = 20
 """Number of propeller speeds to try."""
 _CLIMBING = 1.0
 """Time at each propeller speed, s."""
+_LOOKING = 0.1
+"""Interval at which the height is measured, s."""
 _FASTEST = 838.0
 """rad/s; the default of gz-sim's motor model."""
 _MOTOR = re.compile(r"motor_model|multicopter-motor")
+_MOTORS = re.compile(r"quadrotor_propulsion")
 
 
 def spins(
@@ -101,26 +109,40 @@ def spins(
 
 
 def flights(world: World, model: Model, robot: RobotDescription) -> Iterator[Flight]:
-    """Increases the speeds of all propellers, from standstill, until the aircraft rises."""
+    """Tries increasing speeds of all propellers, each from standstill, until the aircraft rises.
+
+    Nothing stabilises it, so it tips over if the thrust hardly exceeds its weight for a while.
+    """
     tags = [tag for tag in robot.plugins if _MOTOR.search(short_name(tag.filename))]
-    if not tags:
+    together = [tag for tag in robot.plugins if _MOTORS.search(short_name(tag.filename))]
+    motors = len(tags) or _PROPELLERS * len(together)
+    if not motors:
         return
     stated = [tag.element.find("maxRotVelocity") for tag in tags]
     fastest = max([float(each.text) for each in stated if each is not None], default=_FASTEST)
     for info in world.graph.topics():
-        if info.type not in _ACTUATORS or not info.subscribers:
+        field = _ACTUATORS.get(info.type)
+        if field is None or not info.subscribers:
             continue
-        world.reset()
-        world.run(0.5)
-        height, speed, rose = model.pose.z, 0.0, 0.0
+        speed = rose = 0.0
         for step in range(1, _STEPS + 1):
-            speed = fastest * step / _STEPS
-            world.publish(info.name, {_ACTUATORS[info.type]: [speed] * len(tags)})
-            world.run(_CLIMBING)
-            rose = model.pose.z - height
+            speed = fastest * step / _STEPS if field != "pwm" else _DUTY * step // _STEPS
+            rose = _risen(world, model, info.name, {field: [speed] * motors})
             if rose >= RISEN:
                 break
-        yield Flight(topic=info.name, motors=len(tags), command=speed, rose=rose)
+        yield Flight(topic=info.name, motors=motors, command=speed, rose=rose)
+
+
+def _risen(world: World, model: Model, topic: str, command: Mapping[str, Any]) -> float:
+    """Largest increase in height after a command from standstill, m."""
+    world.reset()
+    world.run(0.5)
+    height, rose = model.pose.z, 0.0
+    world.publish(topic, command)
+    for _ in range(round(_CLIMBING / _LOOKING)):
+        world.run(_LOOKING)
+        rose = max(rose, model.pose.z - height)
+    return rose
 
 
 def _joints(info: TopicInfo, robot: RobotDescription) -> tuple[str, ...]:

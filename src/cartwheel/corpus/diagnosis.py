@@ -138,12 +138,13 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
     lost = _coded(said, frozenset({files.INCLUDE_ABSENT}))
     if lost is not None and wheels and not verdict.movers:
         yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)
-    for tag in managers(description):
-        replaced = [
-            each
-            for each in said
-            if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
-        ]
+    replaced = [
+        each
+        for each in said
+        if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
+    ]
+    # Such hardware may move a robot without joints, such as a quadrotor.
+    for tag in managers(description, jointless=bool(replaced)):
         reason = (
             _first(replaced)
             or _first(each for each in said if each.code in _CONTROL and _concerns(each, tag))

@@ -9,6 +9,7 @@ from typing import Any
 
 from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
+from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.heading import heading
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.thrusters import has_thrusters
@@ -131,11 +132,14 @@ def reaches(
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
     told: list[tuple[JointInput, Joint, float]] = []
-    for taker in world.graph.joint_inputs.all():
-        targets = {name: _target(joints[name], model.joint(name)) for name in taker.joints}
+    takers = world.graph.joint_inputs.all()
+    chosen = _targets(world, model, [joints[name] for taker in takers for name in taker.joints])
+    for taker in takers:
+        targets = {name: chosen[name] for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
         told += [(taker, joints[name], value) for name, value in targets.items()]
     held = {joint.name: _held(world, model, joint.name) for _, joint, _ in told}
+    coupled = couplings_of(world, model)
     if told:
         world.run(_REACHING)
     return [
@@ -145,7 +149,10 @@ def reaches(
             target=target,
             reached=model.joint(joint.name),
             angular=joint.type != "prismatic",
-            sag=_sag(world, model, joint.name, gains.get(joint.name, 0.0), held[joint.name]),
+            sag=max(
+                slope * _sag(world, model, name, gains.get(name, 0.0), held[name])
+                for name, slope in slopes(joint.name, held, coupled).items()
+            ),
         )
         for taker, joint, target in told
     ]
@@ -240,6 +247,24 @@ def _drive_on(world: World, topic: TopicInfo, command: Sequence[float], seconds:
             said = {"header": {"stamp": {"sec": now, "nanosec": rest}}, "twist": twist}
         world.publish(topic.name, said)
         world.run(1.0 / _RATE)
+
+
+def _targets(world: World, model: Model, joints: Sequence[Joint]) -> dict[str, float]:
+    """Nearby positions within the joints' limits; joints that follow each other move together."""
+    commanded = {joint.name: joint for joint in joints}
+    wanted = {name: _target(joint, model.joint(name)) for name, joint in commanded.items()}
+    coupled = couplings_of(world, model)
+    found: dict[str, float] = {}
+    for name, target in wanted.items():
+        if name in found:
+            continue
+        back = 2 * model.joint(name) - target
+        ways = [consistent((name, goal), wanted, coupled) for goal in (target, back)]
+        found |= next(
+            (way for way in ways if all(within(commanded[one], at) for one, at in way.items())),
+            ways[0],
+        )
+    return found
 
 
 def _target(joint: Joint, position: float) -> float:

@@ -56,9 +56,9 @@ def moving_plugins(robot: RobotDescription) -> list[PluginTag]:
     ]
 
 
-def managers(robot: RobotDescription) -> list[PluginTag]:
-    """Controller managers of a robot with movable joints."""
-    if all(joint.type == "fixed" for joint in robot.joints):
+def managers(robot: RobotDescription, *, jointless: bool = False) -> list[PluginTag]:
+    """Controller managers of a robot with movable joints, or of any robot if `jointless`."""
+    if not jointless and all(joint.type == "fixed" for joint in robot.joints):
         return []
     return [tag for tag in robot.plugins if _MANAGER.search(short_name(tag.filename))]
 

@@ -47,9 +47,12 @@ SCRUBBING_TIME_CONSTANT = 0.12
 """The same for tracks, and for wheels that slide sideways when their robot turns, such as those of
 skid steers, s.
 """
-SCRUBBING_IMPEDANCE = (0.5, 0.5, 0.0005, 0.5, 2.0)
-"""MuJoCo's solimp for both. They sink by g T² / 2, with the time constant T of the contact, which
-is more than the sliding friction lifts them.
+SCRUBBING_IMPEDANCE = (0.2, 0.95, 0.0005, 0.5, 2.0)
+"""MuJoCo's solimp for both, which rises from 0.2 at the surface to 0.95 at a depth of 0.5 mm.
+
+They sink by about g T² / 2, with the time constant T of the contact, which is more than the sliding
+friction lifts them. A wheel that is lifted further is held by a softer contact, so that it does not
+hop, also if the load on the wheels of both sides differs.
 """
 TORSION = 0.005
 """m; MuJoCo's default, which contacts with three dimensions do not use."""

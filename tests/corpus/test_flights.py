@@ -1,0 +1,77 @@
+"""Aircraft without a stabilising controller take off, or the reason is told."""
+
+import pytest
+
+from cartwheel.codes.devices import HARDWARE_NOT_SIMULATED
+from cartwheel.corpus import try_robot
+
+BODY = (
+    '<link name="body"><inertial><mass value="{mass}"/>'
+    '<inertia ixx="2e-3" iyy="2e-3" izz="3e-3"/></inertial><collision>'
+    '<geometry><box size="0.3 0.3 0.09"/></geometry></collision></link>'
+)
+ROTOR = (
+    '<link name="rotor_{i}"><inertial><mass value="0.005"/>'
+    '<inertia ixx="1e-6" iyy="8e-6" izz="9e-6"/></inertial></link>'
+    '<joint name="rotor_{i}_joint" type="continuous"><parent link="body"/>'
+    '<child link="rotor_{i}"/><origin xyz="{x} {y} 0"/><axis xyz="0 0 1"/></joint>'
+    '<gazebo><plugin name="motor_{i}" filename="librotors_gazebo_motor_model.so">'
+    "<jointName>rotor_{i}_joint</jointName><linkName>rotor_{i}</linkName>"
+    "<turningDirection>{way}</turningDirection><timeConstantUp>0.0125</timeConstantUp>"
+    "<timeConstantDown>0.025</timeConstantDown><maxRotVelocity>838</maxRotVelocity>"
+    "<motorConstant>8.5e-06</motorConstant><momentConstant>0.016</momentConstant>"
+    "<commandSubTopic>command/motor_speed</commandSubTopic><motorNumber>{i}</motorNumber>"
+    "<rotorDragCoefficient>8e-05</rotorDragCoefficient>"
+    "<rollingMomentCoefficient>1e-06</rollingMomentCoefficient>"
+    "<rotorVelocitySlowdownSim>10</rotorVelocitySlowdownSim></plugin></gazebo>"
+)
+PROPULSION = (
+    '<gazebo><plugin name="propulsion" filename="libhector_gazebo_quadrotor_propulsion.so">'
+    "{tags}</plugin></gazebo>"
+)
+
+
+def tried(tmp_path, *parts):
+    path = tmp_path / "aircraft.urdf"
+    path.write_text(f'<robot name="aircraft">{"".join(parts)}</robot>')
+    return try_robot(path, standing=1.0, controllers=[])
+
+
+def test_a_quadrotor_whose_thrust_is_not_centred_takes_off_before_it_tips_over(tmp_path):
+    """Its front rotors lift more than its rear ones, so it would tip over at a slow increase."""
+    places = [(0.09, -0.11, "ccw"), (-0.07, 0.11, "ccw"), (0.09, 0.11, "cw"), (-0.07, -0.11, "cw")]
+    rotors = [
+        ROTOR.format(i=i, x=x, y=y, way=way, name=f"rotor_{i}")
+        for i, (x, y, way) in enumerate(places)
+    ]
+    verdict = tried(tmp_path, BODY.format(mass=0.5), *rotors)
+    (flight,) = verdict.flights
+    assert flight.motors == 4
+    # Four rotors carry 5.1 N at sqrt(5.1 / 4 / 8.5e-6) = 387 rad/s.
+    assert flight.command == pytest.approx(1.2 * 387, rel=0.25)
+    assert flight.flies
+    assert verdict.good, verdict.faults
+
+
+def test_a_quadrotor_takes_off_at_a_duty_cycle(tmp_path):
+    verdict = tried(tmp_path, BODY.format(mass=1.5), PROPULSION.format(tags=""))
+    (flight,) = verdict.flights
+    assert flight.topic.endswith("motor_pwm")
+    assert flight.motors == 4
+    assert 0 < flight.command < 255
+    assert verdict.good, verdict.faults
+
+
+def test_unsupported_hardware_without_joints_is_why_nothing_moves(tmp_path):
+    """The hardware would command the propellers, whose plugin has no topics."""
+    control = (
+        '<gazebo><plugin name="control" filename="libgazebo_ros_control.so">'
+        "<robotSimType>own_hardware/QuadrotorHardware</robotSimType></plugin></gazebo>"
+    )
+    silent = PROPULSION.format(tags="<topicName/><pwmTopicName/>")
+    verdict = tried(tmp_path, BODY.format(mass=1.5), silent, control)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code) == ("controller", HARDWARE_NOT_SIMULATED)
+    assert fault.source == "unknown"
+    assert verdict.should_move
+    assert not verdict.moves
