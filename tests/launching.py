@@ -5,6 +5,8 @@ process therefore has a launcher: a process that has imported Cartwheel, and for
 The fork gets the arguments, folder, environment and streams of the start, and then runs as the
 program would. `Popen` and `run` are those of `subprocess` in all that tests use of them.
 
+ROS 1's programs have launchers as well, in the environments that were given to `admit_ros1`.
+
 What differs: the parent is the launcher, ``/proc/PID/cmdline`` and ``/proc/PID/environ`` are the
 launcher's, all modules are imported already, and hashes of strings have the same seed. Tests that
 look at these, at the start-up or at the usage of children use `subprocess`.
@@ -25,15 +27,16 @@ import pkgutil
 import re
 import select
 import shlex
+import shutil
 import signal
 import socket
 import subprocess
 import sys
 import traceback
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
 _OTHERS = (
@@ -45,7 +48,22 @@ _OTHERS = (
     *("rich.console", "rich.table", "foxglove", "pydantic.plugin._loader", "rosbags.usertypes"),
 )
 """Modules that are imported when they are needed."""
-_AT_START = ("PYTHON", "LD_", "LC_", "LANG", "MUJOCO_", "CARTWHEEL_CODES_ONLY")
+ROS1_PYTHON = "/usr/bin/python3"
+_OF_ROS1 = (
+    *("rospy", "roslaunch", "rosmaster", "rosmaster.main", "rosmaster.master", "rosbag", "rosmsg"),
+    *("rosnode", "rosparam", "rosservice", "rostopic", "actionlib", "tf2_ros"),
+    *("actionlib_msgs.msg", "geometry_msgs.msg", "nav_msgs.msg", "rosgraph_msgs.msg"),
+    *("sensor_msgs.msg", "std_msgs.msg", "std_srvs.srv", "tf2_msgs.msg", "trajectory_msgs.msg"),
+    *(
+        "gazebo_msgs.msg",
+        "gazebo_msgs.srv",
+        "gazebo_ros.spawn_model",
+        "controller_manager_msgs.srv",
+    ),
+    *("controller_manager.controller_manager", "control_msgs.msg"),
+)
+"""Modules that ROS 1's programs import, as far as an environment has them."""
+_AT_START = ("PYTHON", "LD_", "LC_", "LANG", "MUJOCO_", "CARTWHEEL_CODES_ONLY", "ROS_NAMESPACE")
 _LATER = {"PYTHONUNBUFFERED"}
 _LONGEST = 200_000
 """Bytes of a request: more does not fit into a packet."""
@@ -59,15 +77,16 @@ class Popen(subprocess.Popen):
 
     def _execute_child(self, *arguments: Any) -> None:
         start = _signature.bind(self, *arguments).arguments
-        request = _request(start)
-        if request is None:
+        found = _request(start)
+        if found is None:
             super()._execute_child(*arguments)
             return
+        launcher, request = found
         ends = [start[name] for name in ("p2cread", "c2pwrite", "errwrite")]
         streams = [number if end == -1 else end for number, end in enumerate(ends)]
         self._answer, theirs = socket.socketpair()
         with theirs:
-            socket.send_fds(_launcher(), [request], [*streams, theirs.fileno()])
+            socket.send_fds(_started(launcher, os.getpid()), [request], [*streams, theirs.fileno()])
         self.pid = int.from_bytes(self._receive(), "little")
         self._child_created = True
         pipes = ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")
@@ -139,18 +158,19 @@ def shell(text: str) -> list[str]:
     return [str(PROGRAM), *shlex.split(text)[1:]]
 
 
-def _request(start: Mapping[str, Any]) -> bytes | None:
-    """What the launcher is to start; None if that needs a process of its own."""
+def admit_ros1(environment: Mapping[str, str]) -> None:
+    """Starts ROS 1's programs from a launcher, in environments with the same `_at_start`."""
+    _ros1_variables.add(_at_start(environment))
+
+
+def _request(start: Mapping[str, Any]) -> tuple[_Launcher, bytes] | None:
+    """A launcher and what it is to start; None if that needs a process of its own."""
     args = start["args"]
     if isinstance(args, str | bytes | os.PathLike) or start["shell"] or start["executable"]:
         return None
     words = [os.fsdecode(word) for word in args]
     if words[0] == sys.executable and words[1:3] == ["-m", "cartwheel.cli.main"]:
         words = [str(PROGRAM), *words[3:]]
-    code = len(words) > 2 and words[1] == "-c"
-    script = len(words) > 1 and words[1].endswith(".py")
-    if words[0] != str(PROGRAM) and not (words[0] == sys.executable and (code or script)):
-        return None
     asked = ("preexec_fn", "pass_fds", "gid", "gids", "uid")
     if any(start.get(name) not in (None, (), []) for name in asked) or not start["close_fds"]:
         return None
@@ -158,7 +178,17 @@ def _request(start: Mapping[str, Any]) -> bytes | None:
         return None
     given = os.environ if start["env"] is None else start["env"]
     environment = {os.fsdecode(name): os.fsdecode(value) for name, value in given.items()}
-    if _at_start(environment) != _VARIABLES:
+    variables = _at_start(environment)
+    if words[0] in (str(PROGRAM), sys.executable):
+        launcher = _Launcher(sys.executable, _VARIABLES)
+    else:
+        launcher = _Launcher(ROS1_PYTHON, variables)
+        words[0] = shutil.which(words[0], path=environment.get("PATH")) or words[0]
+        # rospy reads remappings when it is imported; roslaunch's arguments only look like them.
+        remaps = Path(words[0]).name != "roslaunch" and any(":=" in word for word in words)
+        if variables not in _ros1_variables or remaps:
+            return None
+    if launcher.variables != variables or not _is_known(words, launcher.python):
         return None
     folder = Path(os.fsdecode(start["cwd"] or ".")).absolute()
     if not folder.is_dir():
@@ -170,36 +200,58 @@ def _request(start: Mapping[str, Any]) -> bytes | None:
         "session": bool(start["start_new_session"]),
     }
     data = json.dumps(request).encode()
-    return data if len(data) <= _LONGEST else None
+    return (launcher, data) if len(data) <= _LONGEST else None
 
 
-def _at_start(environment: Mapping[str, str]) -> dict[str, str]:
-    """The variables that Python and libraries read when they start."""
-    return {
-        name: value
-        for name, value in environment.items()
-        if name.startswith(_AT_START) and name not in _LATER
-    }
-
-
-_VARIABLES = _at_start(os.environ)
-"""Of the launcher. Tests and libraries change those of this process."""
-
-
-def _launcher() -> socket.socket:
-    """The connection to the launcher."""
-    return _started(os.getpid())
+def _is_known(words: list[str], python: str) -> bool:
+    """Whether these words start code, a file or a program that this Python runs."""
+    if words[0] == python:
+        return words[1:2] == ["-c"] or (len(words) > 1 and words[1].endswith(".py"))
+    return words[0] == str(PROGRAM) or _interpreter(words[0]) == python
 
 
 @functools.cache
-def _started(_process: int) -> socket.socket:
+def _interpreter(program: str) -> str:
+    """What the first line of a script names; empty for other files."""
+    try:
+        with Path(program).open("rb") as file:
+            first = file.readline(200)
+    except OSError:
+        return ""
+    return os.fsdecode(first[2:].strip()) if first.startswith(b"#!") else ""
+
+
+def _at_start(environment: Mapping[str, str]) -> frozenset[tuple[str, str]]:
+    """The variables that Python and libraries read when they start."""
+    return frozenset(
+        (name, value)
+        for name, value in environment.items()
+        if name.startswith(_AT_START) and name not in _LATER
+    )
+
+
+_VARIABLES = _at_start(os.environ)
+"""Of Cartwheel's launcher. Tests and libraries change those of this process."""
+_ros1_variables: set[frozenset[tuple[str, str]]] = set()
+
+
+class _Launcher(NamedTuple):
+    """Which launcher: there is one for each."""
+
+    python: str
+    variables: frozenset[tuple[str, str]]
+
+
+@functools.cache
+def _started(launcher: _Launcher, _process: int) -> socket.socket:
+    """The connection to a launcher of this process."""
     own, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with theirs:
         # It ends when this process has ended, which closes the socket.
         others = {name: os.environ[name] for name in os.environ if not name.startswith(_AT_START)}
         process = subprocess.Popen(
-            [sys.executable, __file__, str(theirs.fileno())],
-            env={**others, **_VARIABLES},
+            [launcher.python, __file__, str(theirs.fileno())],
+            env={**others, **dict(launcher.variables)},
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             cwd="/",
@@ -270,15 +322,15 @@ def _become(request: Mapping[str, Any], streams: list[int]) -> None:
     main_module = types.ModuleType("__main__")
     main_module.__builtins__ = __builtins__
     sys.modules["__main__"] = main_module
-    if words[1] == "-c":
-        name, source = "<string>", words[2]
-        sys.argv = ["-c", *words[3:]]
+    # The same list, because functions of imported modules have it as their default value.
+    sys.argv[:] = words[words[0] == sys.executable :]
+    if sys.argv[0] == "-c":
+        name, source = "<string>", sys.argv.pop(1)
         sys.path.insert(0, "")
     else:
-        name, source = words[1], Path(words[1]).read_bytes()
-        sys.argv = words[1:]
-        sys.path.insert(0, str(Path(words[1]).resolve().parent))
-        main_module.__file__ = words[1]
+        name = main_module.__file__ = sys.argv[0]
+        source = Path(name).read_bytes()
+        sys.path.insert(0, str(Path(name).resolve().parent))
     _leave(lambda: exec(compile(source, name, "exec", dont_inherit=True), vars(main_module)))
 
 
@@ -319,19 +371,24 @@ def _open_streams(*, unbuffered: bool) -> None:
         setattr(sys, f"__{name}__", stream)
 
 
+def _modules() -> Iterator[str]:
+    """Cartwheel's modules."""
+    import cartwheel
+
+    for module in pkgutil.walk_packages(cartwheel.__path__, "cartwheel."):
+        # Those of pytest's plugin import pytest, and a program's main module is not imported.
+        if not module.name.startswith("cartwheel.testing") and not module.name.endswith("__main__"):
+            yield module.name
+
+
 def _main() -> Callable[[], None]:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The folder of this file is no place for modules.
     sys.path.pop(0)
     gc.disable()
-    import cartwheel
-
-    found = [module.name for module in pkgutil.walk_packages(cartwheel.__path__, "cartwheel.")]
-    for name in (*found, *_OTHERS):
-        # Those of pytest's plugin import pytest, and a program's main module is not imported.
-        if not name.startswith("cartwheel.testing") and not name.endswith("__main__"):
-            with contextlib.suppress(ImportError):  # It needs a package that is not installed.
-                importlib.import_module(name)
+    for name in _OF_ROS1 if sys.executable == ROS1_PYTHON else (*_modules(), *_OTHERS):
+        with contextlib.suppress(ImportError):  # It needs a package that is not installed.
+            importlib.import_module(name)
     gc.collect()
     # Otherwise a collection in a fork copies all pages.
     gc.freeze()

@@ -12,16 +12,18 @@ import subprocess
 import sys
 import time
 import uuid
+import xmlrpc.client
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests import launching
 from tests.reserved import free_port
 
 ROOT = Path(__file__).parents[2]
-PYTHON = "/usr/bin/python3"
+PYTHON = launching.ROS1_PYTHON
 MARK = "TEST_ROS1"
 PATIENCE = 120.0
 """s; a machine may be busy."""
@@ -70,6 +72,7 @@ def overlay() -> Overlay:
     )
     pairs = (entry.partition("=") for entry in shell.stdout.split("\0") if entry)
     environment = {name: value for name, _, value in pairs}
+    launching.admit_ros1(environment)
     return Overlay({**environment, "ROS_MASTER_URI": "http://127.0.0.1:1"})
 
 
@@ -86,7 +89,7 @@ class Ros:
         """Starts a command in a session of its own."""
         for name in ("stdin", "stdout", "stderr"):
             options.setdefault(name, subprocess.DEVNULL if name == "stdin" else subprocess.PIPE)
-        process = subprocess.Popen(
+        process = launching.Popen(
             [str(word) for word in command],
             env={**self.environment, **options.pop("environment", {})},
             cwd=options.pop("cwd", self.folder),
@@ -117,13 +120,31 @@ class Ros:
                    stderr=subprocess.DEVNULL)  # fmt: skip
         self.until(lambda: reachable(int(self.port)))
 
+    def _named(self, kind: int) -> set[str]:
+        """The master's topics that are published (0) or subscribed to (1), or services (2)."""
+        try:
+            master = xmlrpc.client.ServerProxy(self.environment["ROS_MASTER_URI"])
+            state: Any = master.getSystemState("/test")
+        except OSError:
+            return set()  # No master yet.
+        return {name for name, _ in state[2][kind]}
+
+    @property
+    def services(self) -> set[str]:
+        return self._named(2)
+
+    @property
+    def topics(self) -> set[str]:
+        return self._named(0) | self._named(1)
+
     @property
     def port(self) -> str:
         return self.environment["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
 
     def python(self, code: str, *arguments: str) -> subprocess.Popen[str]:
         """Starts a program for the Python that has rospy."""
-        return self.start(PYTHON, "-u", "-c", code, *arguments)
+        environment = {"PYTHONUNBUFFERED": "1"}
+        return self.start(PYTHON, "-c", code, *arguments, environment=environment)
 
     def until(self, reached: Callable[[], object], what: str = "") -> Any:
         """Waits for something, and returns it."""
@@ -134,12 +155,16 @@ class Ros:
         return found
 
     def left(self) -> list[str]:
-        """The commands of all processes that were started here and still run."""
+        """The process IDs and commands of all that was started here and still runs."""
         mark = f"{MARK}={self.environment[MARK]}".encode()
-        found = []
+        # What a launcher started has the launcher's environment.
+        found = [
+            f"{process.pid} {process.args}" for process in self.started if process.poll() is None
+        ]
         for process in Path("/proc").glob("[0-9]*"):
             try:
-                if mark in (process / "environ").read_bytes().split(b"\0"):
+                new = int(process.name) not in {each.pid for each in self.started}
+                if new and mark in (process / "environ").read_bytes().split(b"\0"):
                     words = (process / "cmdline").read_bytes().split(b"\0")
                     found.append(f"{process.name} {b' '.join(words).decode()}")
             except OSError:

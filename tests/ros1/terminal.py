@@ -44,9 +44,13 @@ class Terminal:
 
     def type(self, command: str) -> None:
         """Types a line and the return key."""
+        self.forget()
+        os.write(self._master, command.encode() + b"\n")
+
+    def forget(self) -> None:
+        """Lets `read` and `wait_for` look only at what is shown from now on."""
         self.read(0.0)
         self._mark = len(self.said)
-        os.write(self._master, command.encode() + b"\n")
 
     def press(self, keys: str) -> None:
         """Presses keys, without return."""

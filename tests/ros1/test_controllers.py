@@ -34,12 +34,14 @@ class Programs:
         self._ros = ros
 
     def __call__(self, name: str, *words: str, status: int = 0) -> str:
-        done = self._ros.run("rosrun", "controller_manager", name, *words, status=status)
+        done = self._ros.run(self._path(name), *words, status=status)
         return str(done.stdout)
 
+    def _path(self, name: str) -> Path:
+        return Path(self._ros.overlay.program("controller_manager", name))
+
     def start(self, name: str, *words: str) -> subprocess.Popen[str]:
-        program = self._ros.overlay.program("controller_manager", name)
-        process: subprocess.Popen[str] = self._ros.start(program, *words)
+        process: subprocess.Popen[str] = self._ros.start(self._path(name), *words)
         return process
 
     def until(self, **states: str) -> None:
@@ -61,7 +63,8 @@ def programs(ros: Any) -> Programs:
     cartwheel = Path(sys.executable).with_name("cartwheel")
     ros.start(cartwheel, "run", "empty.world", "--headless", "--ros1",
               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
-    ros.run("rosrun", "gazebo_ros", "spawn_model", "-urdf", "-stdin", "-model", "arm", input=URDF)
+    spawn = ros.overlay.program("gazebo_ros", "spawn_model")
+    ros.run(spawn, "-urdf", "-stdin", "-model", "arm", input=URDF)
     return Programs(ros)
 
 
@@ -87,6 +90,12 @@ def test_controllers_are_loaded_switched_and_taken_away(programs: Programs) -> N
     programs.until(held="running", told="running")
     end(spawner)
     programs.until()
+
+
+def test_rosrun_finds_them(ros: Any) -> None:
+    for name in ("controller_manager", "controller_group", "spawner", "unspawner"):
+        shown = ros.run("rosrun", "--prefix", "echo", "controller_manager", name).stdout
+        assert shown.strip() == str(ros.overlay.program("controller_manager", name))
 
 
 def test_what_cannot_be_done_is_told(programs: Programs) -> None:

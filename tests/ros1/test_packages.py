@@ -1,10 +1,12 @@
 """What the overlay's packages are to others: messages, names, folders."""
 
+import os
 import re
 import subprocess
 from pathlib import Path
 
 import pytest
+from tests.ros1.conftest import PYTHON
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "ros1" / "src"
@@ -114,3 +116,13 @@ def test_the_program_that_is_missing_is_named(ros):
     assert "CARTWHEEL=" in done.stderr
     chosen = ros.run("sh", lost, "--version", environment={"CARTWHEEL": built_with})
     assert chosen.stdout.startswith("cartwheel ")
+
+
+def test_a_launcher_starts_python_unless_rospy_reads_something_when_it_is_imported(ros):
+    def parent(*words, **environment):
+        code = "import os; print(os.getppid())"
+        done = ros.run(PYTHON, "-c", code, *words, environment=environment)
+        return int(done.stdout)
+
+    assert parent() == parent() != os.getpid()
+    assert parent("a:=b") == parent(ROS_NAMESPACE="left") == os.getpid()

@@ -24,7 +24,7 @@ def launch(ros):
         )  # fmt: skip
         if service:
             ros.until(
-                lambda: service in ros.run("rosservice", "list", status=None).stdout.split(),
+                lambda: service in ros.services,
                 (ros.folder / "launch.log").read_text(),
             )
         return process
@@ -73,7 +73,7 @@ def test_what_the_arguments_do(ros, launch):
 
 def test_without_the_network_of_gazebo_there_is_the_clock(ros, launch):
     launch("gui:=false", "enable_ros_network:=false", service=None)
-    ros.until(lambda: "/clock" in ros.run("rostopic", "list", status=None).stdout.split())
+    ros.until(lambda: "/clock" in ros.topics)
     assert "/gazebo/spawn_urdf_model" not in ros.run("rosservice", "list").stdout.split()
 
 

@@ -38,7 +38,7 @@ class Keyboard:
         self.terminal, slave = pty.openpty()
         self.before = termios.tcgetattr(self.terminal)
         self.process = ros.start(
-            "rosrun", "teleop_twist_keyboard", "teleop_twist_keyboard.py", *arguments,
+            ros.overlay.program("teleop_twist_keyboard", "teleop_twist_keyboard.py"), *arguments,
             stdin=slave, stdout=slave, stderr=slave,
         )  # fmt: skip
         os.close(slave)

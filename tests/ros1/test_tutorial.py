@@ -107,8 +107,10 @@ def test_the_topics_are_those_of_the_tutorial(shell: Terminal) -> None:
     listed = shell.run("rostopic list").split()
     assert set(TOPICS) <= set(listed)
     assert "/rosbots/camera1/image_raw/compressed" in listed
-    for topic, kind in TOPICS.items():
-        assert shell.run(f"rostopic type {topic}").strip() == kind
+    # One topic a line: " * /imu/data [sensor_msgs/Imu] 1 publisher".
+    shown = shell.run("rostopic list -v")
+    assert TOPICS.items() <= dict(re.findall(r"^ \* (\S+) \[(\S+)\]", shown, re.M)).items()
+    assert shell.run("rostopic type /imu/data").strip() == TOPICS["/imu/data"]
 
 
 def test_a_post_is_put_before_the_camera(shell: Terminal) -> None:
@@ -171,9 +173,16 @@ def test_every_link_has_its_place_below_odom(desk: Desk, shell: Terminal) -> Non
 
 
 def test_the_keyboard_drives_the_cart(desk: Desk, shell: Terminal) -> None:
+    positions, speeds = desk.terminal(), desk.terminal()
+    positions.type("rostopic echo /odom/pose/pose/position/x")
+    speeds.type("rostopic echo /odom/twist/twist/linear/x")
+
+    def shown_next(terminal: Terminal) -> float:
+        terminal.forget()
+        return float(terminal.wait_for(r"---\n(\S+)\n---")[1])
+
     def place() -> float:
-        shown = shell.run("rostopic echo /odom/pose/pose/position/x -n1")
-        return float(shown.split()[0])
+        return shown_next(positions)
 
     before = place()
     keys = desk.terminal()
@@ -184,12 +193,13 @@ def test_the_keyboard_drives_the_cart(desk: Desk, shell: Terminal) -> None:
     keys.press("k")
 
     def speed() -> float:
-        shown = shell.run("rostopic echo /odom/twist/twist/linear/x -n1")
-        return abs(float(shown.split()[0]))
+        return abs(shown_next(speeds))
 
     assert eventually(lambda: speed() < 0.01)
     held = place()
     assert place() == pytest.approx(held, abs=0.02)
+    positions.close_command()
+    speeds.close_command()
 
 
 def test_tf_had_nothing_to_complain_about(rviz: Terminal) -> None:

@@ -93,9 +93,7 @@ def test_packages_that_are_named_as_unknown_are(ros):
 def test_reconfigure_works_with_rosservice_and_rostopic(ros):
     run = ros.start("rosrun", "gazebo_ros", "gzserver", "empty.world", stdout=-3, stderr=-3)
     ros.until(
-        lambda: (
-            "/gazebo/set_parameters" in ros.run("rosservice", "list", status=None).stdout.split()
-        ),
+        lambda: "/gazebo/set_parameters" in ros.services,
         "the service",
     )
     told = ros.run("rostopic", "echo", "-n", "1", "/gazebo/parameter_updates").stdout
