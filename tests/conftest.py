@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import importlib
 import os
 import signal
 import tempfile
@@ -74,6 +76,26 @@ def pytest_configure() -> None:
         os.environ["PYTHONPATH"] = os.pathsep.join(
             filter(None, (folder, os.environ.get("PYTHONPATH", "")))
         )
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Imports all tests in a worker of a run of all, each worker from another place on.
+
+    Pytest rewrites the assertions of each file that has changed, which takes longer than everything
+    else before the first test. Workers that collect in the same order all rewrite the same file at
+    the same time. So each rewrites a part, and reads what the others have written.
+    """
+    config = session.config
+    worker = getattr(config, "workerinput", None)
+    if worker is None or config.args != config.getini("testpaths"):
+        return
+    files = sorted(_TESTS.rglob("test_*.py"))
+    first = len(files) * int(worker["workerid"].removeprefix("gw")) // worker["workercount"]
+    for file in files[first:] + files[:first]:
+        name = ".".join(file.relative_to(_TESTS.parent).with_suffix("").parts)
+        # The collection imports it again, and reports the error.
+        with contextlib.suppress(Exception, pytest.skip.Exception):
+            importlib.import_module(name)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -50,4 +50,29 @@ def closest(name: str, known: list[str], cutoff: float) -> list[str]:
         scoped = [each for each in known if len(each) <= LONGEST and each.endswith(end)]
         if scoped and name not in known:
             return [min(scoped, key=lambda each: (each.count("/"), each))]
-    return difflib.get_close_matches(name, known, n=1, cutoff=cutoff)
+    best = most_similar(name, known, cutoff)
+    return [best] if best is not None else []
+
+
+def most_similar(name: str, known: Iterable[str], cutoff: float) -> str | None:
+    """The first name that `difflib.get_close_matches` finds, and None if it finds none.
+
+    difflib compares a name with all that may be similar enough. This compares it with the most
+    promising ones first, and leaves out those that cannot be more similar than the best one.
+    """
+    matcher = difflib.SequenceMatcher()
+    matcher.set_seq2(name)
+    promising = []
+    for each in known:
+        matcher.set_seq1(each)
+        if matcher.real_quick_ratio() >= cutoff and (bound := matcher.quick_ratio()) >= cutoff:
+            promising.append((bound, each))
+    best: tuple[float, str] | None = None
+    for bound, each in sorted(promising, reverse=True):
+        if best is not None and bound < best[0]:
+            break
+        matcher.set_seq1(each)
+        ratio = matcher.ratio()
+        if ratio >= cutoff and (best is None or (ratio, each) > best):
+            best = ratio, each
+    return best[1] if best is not None else None

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yourdfpy
 
 from cartwheel.api import World
 from cartwheel.corpus import try_robot
@@ -88,6 +87,9 @@ def test_a_published_robot_does_what_it_should(name, expected):
 
 @pytest.mark.parametrize("name", ROBOTS, ids=lambda name: name[-40:])
 def test_masses_and_places_are_those_that_another_reader_computes(name):
+    # Imports trimesh.
+    import yourdfpy
+
     robot = load_robot(CORPUS / name)
     other = yourdfpy.URDF.load(
         io.BytesIO(robot.text.encode()),

@@ -1,4 +1,4 @@
-"""Compares a world that goes on with one that was saved and restored."""
+"""Compares a world that goes on with one that was saved and restored, or reset."""
 
 from __future__ import annotations
 
@@ -6,11 +6,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.saving.journeys import Journey, continued
+from tests.saving.journeys import Journey, continued, traveller
+
+SEED = 3
+"""The new seed of a reset."""
 
 
 def compare(
-    file: Path, elsewhere: Callable[..., Any], times: tuple[float, float] = (1.0, 0.5)
+    file: Path,
+    elsewhere: Callable[..., Any],
+    times: tuple[float, float] = (1.0, 0.5),
+    *,
+    resets: bool = False,
 ) -> list[str]:
     """Compares the continuations: in the same world, twice, and in a new world elsewhere.
 
@@ -18,11 +25,13 @@ def compare(
         file: A robot, or a world with a robot.
         elsewhere: Calls a function in another process.
         times: Seconds until the world is saved, and after.
+        resets: Whether to compare the world after a reset with a new one, too.
 
     Returns:
         What the saved state leaves out, without subscribers.
     """
-    journey = Journey(file)
+    who = traveller(file)
+    journey = Journey(who)
     with journey.world as world:
         journey.set_out(times[0])
         state = world.save()
@@ -30,6 +39,13 @@ def compare(
         for _ in range(2):
             world.restore(state)
             assert journey.go_on(times[1]) == expected
+        if resets:
+            world.reset(seed=SEED)
+            again = journey.go_on(times[1])
     # The world is closed, because two worlds cannot use the same port.
-    assert elsewhere(continued, file, state, journey.height, times[1]) == expected
+    assert elsewhere(continued, file, state, who.height, times[1]) == expected
+    if resets:
+        new = Journey(who, seed=SEED)
+        with new.world:
+            assert new.go_on(times[1]) == again
     return [each for each in state.left_out if not each.startswith("subscriber")]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from tests.golden.commanding import PERIOD, Commands
 from tests.golden.trial import resting_height
 
 import cartwheel as cw
-from cartwheel.description import load_robot
+from cartwheel.description import load_robot, load_world
+from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.messages import encode_cdr
 
 ROBOTS = Path(__file__).parents[1] / "golden" / "robots"
@@ -21,24 +23,45 @@ DUE = {2: 0.5, 4: 1.5, 6: 2.5}
 for them."""
 
 
+@dataclass(frozen=True)
+class Traveller:
+    """What the worlds of several journeys contain."""
+
+    world: WorldDescription
+    robot: RobotDescription | None = None
+    """What is spawned, if the world does not contain it."""
+    height: float = 0.0
+    """Where it is spawned, m."""
+
+
+def traveller(file: Path, height: float | None = None) -> Traveller:
+    """Reads a robot, or a world with a robot.
+
+    Args:
+        file: The file.
+        height: Height at which the robot is spawned, m; None if it is to rest on the ground.
+    """
+    if file.suffix == ".world":
+        return Traveller(load_world(file))
+    robot = load_robot(file)
+    return Traveller(
+        load_world("empty"), robot, resting_height(robot) if height is None else height
+    )
+
+
 class Journey:
     """A robot with commands under way, whose messages and states are hashed.
 
     Args:
-        file: A robot, or a world with a robot.
-        height: Height at which the robot is spawned, m; None if it is to rest on the ground.
+        who: The robot, or its world.
         seed: Seed of the noise.
     """
 
-    def __init__(self, file: Path, height: float | None = None, seed: int = 0) -> None:
-        self.height = height or 0.0
-        if file.suffix == ".world":
-            self.world = cw.World(file, seed=seed, lenient=True)
-        else:
-            description = load_robot(file)
-            self.height = resting_height(description) if height is None else height
-            self.world = cw.World(seed=seed, lenient=True)
-            self.world.spawn(description, z=self.height, controllers=controller_files(description))
+    def __init__(self, who: Traveller, seed: int = 0) -> None:
+        self.world = cw.World(who.world, seed=seed, lenient=True)
+        if who.robot is not None:
+            files = controller_files(who.robot)
+            self.world.spawn(who.robot, z=who.height, controllers=files)
         self._sum = hashlib.sha256()
         self._counts: dict[str, int] = {}
         for topic in self.world.graph.topics():
@@ -87,7 +110,7 @@ def continued(
     file: Path, state: cw.State, height: float, seconds: float
 ) -> tuple[str, dict[str, int]]:
     """What `Journey.go_on` returns in a new world that restores a state."""
-    journey = Journey(file, height)
+    journey = Journey(traveller(file, height))
     with journey.world as world:
         world.restore(state)
         return journey.go_on(seconds)

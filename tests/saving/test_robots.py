@@ -1,8 +1,8 @@
-"""A saved world continues bit for bit: a robot for each plugin."""
+"""A saved or reset world continues bit for bit: a robot for each plugin."""
 
 import pytest
 from tests.saving.continuing import compare
-from tests.saving.journeys import ROBOTS, Journey
+from tests.saving.journeys import ROBOTS
 
 CONNECTED = {
     "ArduPilotPlugin.urdf": ["Conversation"],
@@ -13,18 +13,6 @@ NAMES = sorted(each.name for each in ROBOTS.iterdir() if each.suffix in (".urdf"
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_each_plugin_continues(name, elsewhere):
-    left_out = compare(ROBOTS / name, elsewhere)
+def test_each_plugin_continues_and_is_new_after_a_reset(name, elsewhere):
+    left_out = compare(ROBOTS / name, elsewhere, resets=True)
     assert [each.rpartition("(")[2].rstrip(")") for each in left_out] == CONNECTED.get(name, [])
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_reset_plugin_is_that_of_a_new_world(name):
-    new = Journey(ROBOTS / name, seed=3)
-    with new.world:
-        expected = new.go_on()
-    used = Journey(ROBOTS / name, seed=4)
-    with used.world as world:
-        used.set_out()
-        world.reset(seed=3)
-        assert used.go_on() == expected

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from tests.coded import raises
 from tests.saving.built import restored, run
-from tests.saving.journeys import ROBOTS, Journey
+from tests.saving.journeys import ROBOTS, Journey, traveller
 
 import cartwheel as cw
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, RUN_NESTED, SIMULATION_CLOSED, STATE_MISMATCH
@@ -325,7 +325,7 @@ def test_links_that_are_attached():
 
 
 def test_controllers_that_were_unloaded_or_stopped():
-    journey = Journey(ROBOTS / "libgazebo_ros2_control.urdf")
+    journey = Journey(traveller(ROBOTS / "libgazebo_ros2_control.urdf"))
     with journey.world as world:
         journey.set_out()
         manager = next(

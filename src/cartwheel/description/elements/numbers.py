@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import math
 import re
@@ -11,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from cartwheel.codes.tags import TEXT_AFTER_NUMBER, VALUE_INVALID
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 from cartwheel.geometry import Vec3
+from cartwheel.similar_names import most_similar
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _LEADING = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)", re.ASCII)
@@ -185,8 +185,8 @@ def likely(name: str, known: Iterable[str], cutoff: float = 0.7) -> str | None:
         return None
     known = itertools.islice((each for each in known if len(each) <= _LONGEST_NAME), _MOST_NAMES)
     by_lower = {candidate.lower(): candidate for candidate in sorted(known, reverse=True)}
-    close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=cutoff)
-    return by_lower[close[0]] if close else None
+    close = most_similar(name.lower(), by_lower, cutoff)
+    return by_lower[close] if close is not None else None
 
 
 def _quoted(value: str) -> str:
