@@ -87,7 +87,8 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     """
     config = session.config
     worker = getattr(config, "workerinput", None)
-    if worker is None or config.args != config.getini("testpaths"):
+    folders = set(config.args)
+    if worker is None or folders != set(config.getini("testpaths")):
         return
     files = sorted(_TESTS.rglob("test_*.py"))
     first = len(files) * int(worker["workerid"].removeprefix("gw")) // worker["workercount"]
