@@ -332,15 +332,19 @@ class JointsHandle:
 class MotorHandle:
     """A joint driven at a velocity with limited effort; it brakes at zero velocity.
 
-    Dry friction acts between the joint and a rotor that turns at the target velocity. The joint
-    velocity is exact below the effort limit; at the limit, the joint slips. A servo with the
-    strength of a typical motor would overshoot at each step on a light wheel. Gazebo's physics
-    drives joints with the same kind of constraint.
+    Dry friction acts between the joint and a rotor that turns at the target velocity, as Gazebo's
+    physics does it. The joint velocity is exact below the effort limit; at the limit, the joint
+    slips.
     """
 
-    def __init__(self, model: str, motor: Motor) -> None:
+    rivalled = False
+    """Whether another handle, which does not yield, drives the joint."""
+
+    def __init__(self, model: str, motor: Motor, *, yields: bool = False) -> None:
         self.model_name = model
         self.motor = motor
+        self.yields = yields
+        """Whether the owner of the handle leaves the joint to others while it has no command."""
         self.target = 0.0
         # Until the model is compiled, commands are only stored.
         self.rotors: Any = [0.0]
@@ -353,7 +357,8 @@ class MotorHandle:
         name = scoped(self.model_name, self.motor.joint, ROTOR)
         self.id = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
         self.rotors, self.dof = memoryview(data.qvel), int(model.jnt_dofadr[self.id])
-        self.command(self.target)
+        if not (self.yields and self.rivalled):
+            self.command(self.target)
 
     @property
     def turns(self) -> bool:

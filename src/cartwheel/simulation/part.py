@@ -21,8 +21,8 @@ from cartwheel.simulation.handles import (
     Handle,
     MotorHandle,
 )
+from cartwheel.simulation.motor_requests import MotorRequests
 from cartwheel.simulation.random_numbers import RandomNumbers
-from cartwheel.simulation.requests import Requests
 from cartwheel.simulation.sensing.contacts import contacts_of, geoms_of
 from cartwheel.simulation.sensing.rays import RayHandle
 from cartwheel.simulation.sensing.views import Depth, Image
@@ -39,7 +39,7 @@ class Tuned(Protocol):
     """A dataclass with the fields ``p``, ``i``, ``d``, ``i_min`` and ``i_max``."""
 
 
-class Part(Requests):
+class Part(MotorRequests):
     """A plugin's access to its model in the simulation. Use it only on the simulation's thread.
 
     Args:

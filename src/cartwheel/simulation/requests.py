@@ -1,17 +1,11 @@
-"""A plugin's requests for joints, links, motors, cameras and other parts of its model."""
+"""A plugin's requests for joints, links, cameras and other parts of its model."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
-from functools import partial
-
-import numpy as np
 
 from cartwheel.codes import devices, running
-from cartwheel.description.kinematics import link_poses
-from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription
+from cartwheel.description.model import CameraIntrinsics, RobotDescription
 from cartwheel.errors import (
     Diagnostic,
     Origin,
@@ -21,9 +15,8 @@ from cartwheel.errors import (
 )
 from cartwheel.geometry import Array, Pose
 from cartwheel.simulation.clock import Task, Topic, always
-from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
+from cartwheel.simulation.dynamics.external_servos import WrenchHandle
 from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle, SurroundingsHandle
-from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import (
@@ -32,23 +25,15 @@ from cartwheel.simulation.handles import (
     JointHandle,
     JointsHandle,
     LinkHandle,
-    MotorHandle,
 )
 from cartwheel.simulation.sensing.rays import RayHandle
 from cartwheel.world.additions import Addition
-from cartwheel.world.entry import BodyDrive, CameraMount, ModelEntry, Motor, scoped
+from cartwheel.world.entry import CameraMount, ModelEntry, scoped
 from cartwheel.world.tyres import axle_of
-
-_DRIVE_WEIGHTS = 5.0
-"""Maximum force of a whole-model servo, as a multiple of the weight: well above any friction."""
-_DRIVE_BAND = 0.05
-"""Velocity error at which the servo reaches its maximum force, m/s or rad/s."""
-_DRIVE_ARM = 0.1
-"""Minimum lever arm for the maximum torque, m."""
 
 
 class Requests:
-    """Creates handles, which are bound to the compiled model, and adds motors and cameras to it.
+    """Creates handles, which are bound to the compiled model, and adds cameras and others to it.
 
     Args:
         engine: The engine that simulates the model.
@@ -155,156 +140,6 @@ class Requests:
         """A handle to several joints of this model that are read together."""
         handle = JointsHandle(joints)
         self.handles.append(handle)
-        return handle
-
-    def velocity_motor(
-        self,
-        joint: str,
-        *,
-        max_effort: float | None,
-        beyond: bool = False,
-        origin: Origin | None = None,
-    ) -> MotorHandle:
-        """A motor that holds a joint's velocity with at most `max_effort` N m or N.
-
-        With `beyond`, `max_effort` may exceed the joint's effort limit. Several requests for the
-        same joint share the first motor. If a servo already drives the joint, the motor is shared;
-        see `ServoHandle`.
-        """
-        self.joint(joint, origin=origin)
-        motor = self._entry.motors.get(joint)
-        if motor is None:
-            motor = Motor(joint=joint, mode="velocity", max_effort=max_effort, beyond=beyond)
-            self._entry.motors[joint] = motor
-        elif motor.mode == "servo":
-            motor = self._share(motor, max_effort, origin)
-        else:
-            self._warn_of_two(joint, "the last command is used", origin)
-        handle = MotorHandle(self.name, motor)
-        self.handles.append(handle)
-        return handle
-
-    def servo(
-        self,
-        joint: str,
-        *,
-        max_effort: float | None,
-        beyond: bool = False,
-        origin: Origin | None = None,
-    ) -> ServoHandle:
-        """A joint drive with effort, velocity or position commands.
-
-        If a drive plugin already drives the joint, the motor is shared; see `ServoHandle`.
-
-        Args:
-            joint: Joint name.
-            max_effort: N m or N; at most the joint's own limit.
-            beyond: Whether positions and velocities may use more than the joint's limit.
-            origin: Origin of the request, for errors.
-        """
-        self.joint(joint, origin=origin)
-        made = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
-        motor = self._entry.motors.setdefault(joint, made)
-        drives = motor.mode == "velocity"
-        handle = ServoHandle(self.name, motor)
-        self.handles.append(handle)
-        if drives:
-            self._share(motor, motor.max_effort, origin)
-        servos = self._servos(joint)
-        for servo in servos:
-            servo.alone = len(servos) == 1 and not servo.shared
-        if len(servos) == 2:
-            self._warn_of_two(joint, "the last command is used", origin)
-        task = self.schedule(0, before=handle.follow)
-        task.asleep = task.reads_state = True
-        handle.wake = partial(self._engine.wake, task)
-        return handle
-
-    def _servos(self, joint: str) -> list[ServoHandle]:
-        return [h for h in self.handles if isinstance(h, ServoHandle) and h.motor.joint == joint]
-
-    def _share(self, motor: Motor, max_effort: float | None, origin: Origin | None) -> Motor:
-        """Shares a joint's motor between a drive, which sets its strength, and a servo."""
-        shared = replace(motor, mode="servo", max_effort=max_effort)
-        self._entry.motors[motor.joint] = shared
-        for handle in self._servos(motor.joint):
-            handle.shared, handle.alone = True, False
-        self._warn_of_two(motor.joint, "the efforts of both plugins are added", origin)
-        return shared
-
-    def _warn_of_two(self, joint: str, result: str, origin: Origin | None) -> None:
-        self.report(
-            running.JOINT_DRIVEN_TWICE.diagnostic(
-                f'joint "{joint}" is driven by two plugins: {result}',
-                origin=origin,
-                values={"joint": joint},
-            )
-        )
-
-    def mimic(self, joint: str, mimic: Mimic, *, origin: Origin | None = None) -> None:
-        """Makes a joint follow another joint.
-
-        Raises:
-            UnknownNameError: A joint does not exist or cannot move; the error has this `origin`.
-        """
-        for name in (joint, mimic.joint):
-            self.joint(name, origin=origin)
-        self._entry.mimics[joint] = mimic
-
-    def body_drive(
-        self, *, gains: tuple[float, float] | None = None, origin: Origin | None = None
-    ) -> BodyDriveHandle:
-        """A servo that moves the whole model by its canonical link.
-
-        Its force acts at the centre of mass.
-
-        Args:
-            gains: Force gain in N s/m and torque gain in N m s/rad, without a limit. None is as
-                stiff as possible, with at most `_DRIVE_WEIGHTS` times the model's weight.
-            origin: Origin for errors.
-
-        Raises:
-            PluginError: The model cannot move, or has no mass.
-        """
-        description = self.description
-        link = description.link(description.canonical_link)
-        bolted = any(j.child == description.canonical_link for j in description.joints)
-        if description.static or bolted or link is None or description.mass <= 0:
-            raise PluginError(
-                f'model "{self.name}" cannot be moved because it is static, is fixed to the '
-                "world or has no mass",
-                code=running.MODEL_NOT_MOVABLE,
-                origin=origin,
-                values={"model": self.name},
-            )
-        poses = link_poses(description, {})
-        to_link = poses[link.name].inverse()
-        centre, reach = np.zeros(3), 0.0
-        places = [
-            (other.inertial.mass, (to_link @ poses[other.name]).apply(other.inertial.pose.position))
-            for other in description.links
-            if other.inertial is not None
-        ]
-        for mass, place in places:
-            centre += mass / description.mass * np.array(place)
-        for mass, place in places:
-            reach += mass / description.mass * float(np.sum((np.array(place) - centre) ** 2))
-        band = _DRIVE_BAND if gains is None else math.inf
-        if gains is None:
-            force = _DRIVE_WEIGHTS * 9.8 * description.mass / _DRIVE_BAND
-            gains = (force, force * max(_DRIVE_ARM, 2 * reach**0.5))
-        drive = BodyDrive(
-            link=link.name,
-            centre=(float(centre[0]), float(centre[1]), float(centre[2])),
-            force_gain=gains[0],
-            torque_gain=gains[1],
-            band=band,
-            number=len(self._entry.drives),
-        )
-        self._entry.drives.append(drive)
-        handle = BodyDriveHandle(self.name, drive)
-        self.handles.append(handle)
-        self.schedule(0, before=handle.hold).reads_state = True
         return handle
 
     def wrench(self, link: str, *, origin: Origin | None = None) -> WrenchHandle:

@@ -38,6 +38,8 @@ class JointActuatorConfig:
     joint follows it regardless of its load, up to `strength`."""
     led: bool = False
     """Whether the joint follows another joint. It is then not held while it has no command."""
+    yields: bool = False
+    """Whether only a drive plugin moves the joint, if there is one, while no controller does."""
     origin: Origin | None = None
     """File and line for errors."""
 
@@ -78,13 +80,23 @@ class JointActuator:
         self._servo: ServoHandle | None = None
         if config.commands == ("velocity",) and not self.pids:
             self._motor = part.velocity_motor(
-                name, max_effort=config.strength, beyond=config.exceeds_limit, origin=origin
+                name,
+                max_effort=config.strength,
+                beyond=config.exceeds_limit,
+                yields=config.yields,
+                origin=origin,
             )
         elif config.commands:
             self._servo = part.servo(
-                name, max_effort=config.strength, beyond=config.exceeds_limit, origin=origin
+                name,
+                max_effort=config.strength,
+                beyond=config.exceeds_limit,
+                yields=config.yields,
+                origin=origin,
             )
-        self._active = ""
+        self._yields = config.yields
+        self._report_two = partial(part.report_two_drives, name, "the last command is used", origin)
+        self._active = self._resting = ""
         self.command = 0.0
         """The active command: rad or m, rad/s or m/s, or N m or N."""
         self.rate = 0.0
@@ -132,6 +144,11 @@ class JointActuator:
 
     def activate(self, command: str) -> None:
         """Selects the active command. The joint stays at its position."""
+        self._select(command)
+        if self._yields and self._rivalled:
+            self._report_two()
+
+    def _select(self, command: str) -> None:
         self._active = command
         self.damping = 0.0
         self.strength = math.inf
@@ -148,6 +165,7 @@ class JointActuator:
         self.rate = self.damping = 0.0
         if self._active in ("velocity", "effort"):
             self.command = 0.0
+        self._rest()
 
     def rest(self, *, holds: bool) -> None:
         """Called before any controller commands the joint.
@@ -161,10 +179,32 @@ class JointActuator:
             self._active = ""
             self._servo.release()
             return
-        self.activate(self._commands[0])
+        self._select(self._commands[0])
         if holds and self._servo is not None:
             self._active = "held"
             self.command = self.position
+        self._rest()
+
+    @property
+    def _rivalled(self) -> bool:
+        drive = self._motor or self._servo
+        return drive is not None and drive.rivalled
+
+    def _rest(self) -> None:
+        if self._yields and self._active:
+            self._resting, self._active = self._active, "resting"
+
+    def _decide(self, seconds: float) -> None:
+        """Leaves the joint to a drive plugin, or applies the command; called at the first write,
+        when all plugins are known.
+        """
+        if not self._rivalled:
+            self._active = self._resting
+            self.write(seconds)
+            return
+        self._active = ""
+        if self._servo is not None:
+            self._servo.release()
 
     def set_effort(self, command: DampedEffort) -> None:
         """Commands an effort that decreases with velocity, for controllers with their own PID."""
@@ -214,6 +254,8 @@ class JointActuator:
         elif active == "held":
             assert self._servo is not None
             self._servo.command_position(target)
+        elif active == "resting":
+            self._decide(seconds)
 
     def halt(self) -> None:
         """Sets efforts to 0, and brakes joints with velocity or position commands."""

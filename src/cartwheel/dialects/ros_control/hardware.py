@@ -66,6 +66,9 @@ class JointHardware(JointActuator):
                 exceeds_limit=min(strength, STRONGEST) > joint_limits.effort,
                 pid=gains,
                 led=joint.mimic is not None or interfaces.mimic is not None,
+                # gz_ros2_control and gazebo_ros2_control stop such joints once in each control
+                # period, after which the motor of the drive plugin turns them on in the same step.
+                yields=limits is None,
                 origin=interfaces.origin,
             ),
         )

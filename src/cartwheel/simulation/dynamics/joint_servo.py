@@ -37,14 +37,18 @@ class ServoHandle:
     """Whether a drive plugin also drives the joint."""
     alone = True
     """Whether no other handle drives the joint, so that the actuator keeps what was applied."""
+    rivalled = False
+    """Whether another handle, which does not yield, drives the joint."""
     period = math.inf
     """Time between two commands while a position is commanded, s; unlimited if it is unknown."""
     wake: Callable[[], None] = staticmethod(lambda: None)
     """Called when `follow` has to be called at every step from now on."""
 
-    def __init__(self, model: str, motor: Motor) -> None:
+    def __init__(self, model: str, motor: Motor, *, yields: bool = False) -> None:
         self.model_name = model
         self.motor = motor
+        self.yields = yields
+        """Whether the owner of the handle leaves the joint to others while it has no command."""
         self.mode: Mode = "idle"
         self._applied: Mode = "idle"
         """The mode in which `_apply` set the actuator; idle if it must be set again."""

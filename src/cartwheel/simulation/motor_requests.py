@@ -1,0 +1,216 @@
+"""A plugin's requests for motors of joints, and for a drive of the whole model."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from cartwheel.codes import running
+from cartwheel.description.kinematics import link_poses
+from cartwheel.description.model import Mimic
+from cartwheel.errors import Origin, PluginError
+from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
+from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.handles import MotorHandle
+from cartwheel.simulation.requests import Requests
+from cartwheel.world.entry import BodyDrive, Motor
+
+_DRIVE_WEIGHTS = 5.0
+"""Maximum force of a whole-model servo, as a multiple of the weight: well above any friction."""
+_DRIVE_BAND = 0.05
+"""Velocity error at which the servo reaches its maximum force, m/s or rad/s."""
+_DRIVE_ARM = 0.1
+"""Minimum lever arm for the maximum torque, m."""
+
+
+class MotorRequests(Requests):
+    """Creates handles to motors, and adds the motors to the model."""
+
+    def velocity_motor(
+        self,
+        joint: str,
+        *,
+        max_effort: float | None,
+        beyond: bool = False,
+        yields: bool = False,
+        origin: Origin | None = None,
+    ) -> MotorHandle:
+        """A motor that holds a joint's velocity with at most `max_effort` N m or N.
+
+        Several requests for the same joint share the first motor whose owner does not yield. If a
+        servo already drives the joint, the motor is shared; see `ServoHandle`.
+
+        Args:
+            joint: Joint name.
+            max_effort: N m or N.
+            beyond: Whether `max_effort` may exceed the joint's effort limit.
+            yields: Whether the caller leaves the joint to others while it has no command for it. It
+                then reports itself when both drive the joint.
+            origin: Origin of the request, for errors.
+        """
+        self.joint(joint, origin=origin)
+        motor = self._entry.motors.get(joint)
+        made = Motor(joint=joint, mode="velocity", max_effort=max_effort, beyond=beyond)
+        if motor is not None and motor.mode == "servo":
+            motor = self._share(motor, max_effort)
+        elif motor is None or (not yields and all(each.yields for each in self._drives(joint))):
+            motor = self._entry.motors[joint] = made
+        handle = MotorHandle(self.name, motor, yields=yields)
+        self._add_drive(handle, origin)
+        return handle
+
+    def servo(
+        self,
+        joint: str,
+        *,
+        max_effort: float | None,
+        beyond: bool = False,
+        yields: bool = False,
+        origin: Origin | None = None,
+    ) -> ServoHandle:
+        """A joint drive with effort, velocity or position commands.
+
+        If a drive plugin already drives the joint, the motor is shared; see `ServoHandle`.
+
+        Args:
+            joint: Joint name.
+            max_effort: N m or N; at most the joint's own limit.
+            beyond: Whether positions and velocities may use more than the joint's limit.
+            yields: See `velocity_motor`.
+            origin: Origin of the request, for errors.
+        """
+        self.joint(joint, origin=origin)
+        made = Motor(joint=joint, mode="servo", max_effort=max_effort, beyond=beyond)
+        motor = self._entry.motors.setdefault(joint, made)
+        drives = motor.mode == "velocity"
+        handle = ServoHandle(self.name, motor, yields=yields)
+        self._add_drive(handle, origin)
+        if drives:
+            self._share(motor, motor.max_effort)
+        servos = self._servos(joint)
+        for servo in servos:
+            servo.alone = len(servos) == 1 and not servo.shared
+        task = self.schedule(0, before=handle.follow)
+        task.asleep = task.reads_state = True
+        handle.wake = partial(self._engine.wake, task)
+        return handle
+
+    def _drives(self, joint: str) -> list[MotorHandle | ServoHandle]:
+        drives = (h for h in self.handles if isinstance(h, MotorHandle | ServoHandle))
+        return [each for each in drives if each.motor.joint == joint]
+
+    def _servos(self, joint: str) -> list[ServoHandle]:
+        return [each for each in self._drives(joint) if isinstance(each, ServoHandle)]
+
+    def _add_drive(self, handle: MotorHandle | ServoHandle, origin: Origin | None) -> None:
+        """Adds a handle to its joint, and reports others that drive the joint at the same time."""
+        joint = handle.motor.joint
+        others = self._drives(joint)
+        self.handles.append(handle)
+        # One of two that yield must hold the joint.
+        second = handle.yields and any(each.yields for each in others)
+        handle.yields = handle.yields and not second
+        drives = [*others, handle]
+        for each in drives:
+            each.rivalled = any(not one.yields for one in drives if one is not each)
+        rivals = [each for each in others if second or not each.yields]
+        if handle.yields or not rivals:
+            return
+        kinds = {type(each) for each in (*rivals, handle)}
+        if len(kinds) == 1:
+            self.report_two_drives(joint, "the last command is used", origin)
+        else:
+            self.report_two_drives(joint, "the efforts of both plugins are added", origin)
+
+    def _share(self, motor: Motor, max_effort: float | None) -> Motor:
+        """Shares a joint's motor between a drive, which sets its strength, and a servo."""
+        shared = replace(motor, mode="servo", max_effort=max_effort)
+        self._entry.motors[motor.joint] = shared
+        for handle in self._servos(motor.joint):
+            handle.shared, handle.alone = True, False
+        return shared
+
+    def report_two_drives(self, joint: str, result: str, origin: Origin | None) -> None:
+        """Reports that two plugins drive a joint.
+
+        Args:
+            joint: Joint name.
+            result: What becomes of it.
+            origin: Origin of the second plugin's request.
+        """
+        self.report(
+            running.JOINT_DRIVEN_TWICE.diagnostic(
+                f'joint "{joint}" is driven by two plugins: {result}',
+                origin=origin,
+                values={"joint": joint},
+            )
+        )
+
+    def mimic(self, joint: str, mimic: Mimic, *, origin: Origin | None = None) -> None:
+        """Makes a joint follow another joint.
+
+        Raises:
+            UnknownNameError: A joint does not exist or cannot move; the error has this `origin`.
+        """
+        for name in (joint, mimic.joint):
+            self.joint(name, origin=origin)
+        self._entry.mimics[joint] = mimic
+
+    def body_drive(
+        self, *, gains: tuple[float, float] | None = None, origin: Origin | None = None
+    ) -> BodyDriveHandle:
+        """A servo that moves the whole model by its canonical link.
+
+        Its force acts at the centre of mass.
+
+        Args:
+            gains: Force gain in N s/m and torque gain in N m s/rad, without a limit. None is as
+                stiff as possible, with at most `_DRIVE_WEIGHTS` times the model's weight.
+            origin: Origin for errors.
+
+        Raises:
+            PluginError: The model cannot move, or has no mass.
+        """
+        description = self.description
+        link = description.link(description.canonical_link)
+        bolted = any(j.child == description.canonical_link for j in description.joints)
+        if description.static or bolted or link is None or description.mass <= 0:
+            raise PluginError(
+                f'model "{self.name}" cannot be moved because it is static, is fixed to the '
+                "world or has no mass",
+                code=running.MODEL_NOT_MOVABLE,
+                origin=origin,
+                values={"model": self.name},
+            )
+        poses = link_poses(description, {})
+        to_link = poses[link.name].inverse()
+        centre, reach = np.zeros(3), 0.0
+        places = [
+            (other.inertial.mass, (to_link @ poses[other.name]).apply(other.inertial.pose.position))
+            for other in description.links
+            if other.inertial is not None
+        ]
+        for mass, place in places:
+            centre += mass / description.mass * np.array(place)
+        for mass, place in places:
+            reach += mass / description.mass * float(np.sum((np.array(place) - centre) ** 2))
+        band = _DRIVE_BAND if gains is None else math.inf
+        if gains is None:
+            force = _DRIVE_WEIGHTS * 9.8 * description.mass / _DRIVE_BAND
+            gains = (force, force * max(_DRIVE_ARM, 2 * reach**0.5))
+        drive = BodyDrive(
+            link=link.name,
+            centre=(float(centre[0]), float(centre[1]), float(centre[2])),
+            force_gain=gains[0],
+            torque_gain=gains[1],
+            band=band,
+            number=len(self._entry.drives),
+        )
+        self._entry.drives.append(drive)
+        handle = BodyDriveHandle(self.name, drive)
+        self.handles.append(handle)
+        self.schedule(0, before=handle.hold).reads_state = True
+        return handle
