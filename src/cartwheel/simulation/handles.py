@@ -332,9 +332,8 @@ class JointsHandle:
 class MotorHandle:
     """A joint driven at a velocity with limited effort; it brakes at zero velocity.
 
-    Dry friction acts between the joint and a rotor that turns at the target velocity, as Gazebo's
-    physics does it. The joint velocity is exact below the effort limit; at the limit, the joint
-    slips.
+    As in Gazebo, dry friction acts between the joint and a rotor that turns at the target velocity.
+    The joint velocity is exact below the effort limit; at the limit, the joint slips.
     """
 
     rivalled = False
