@@ -31,10 +31,10 @@ PROPULSION = (
 )
 
 
-def tried(tmp_path, *parts):
+def tried(tmp_path, *parts, controllers=()):
     path = tmp_path / "aircraft.urdf"
     path.write_text(f'<robot name="aircraft">{"".join(parts)}</robot>')
-    return try_robot(path, standing=1.0, controllers=[])
+    return try_robot(path, standing=1.0, controllers=list(controllers))
 
 
 def test_a_quadrotor_whose_thrust_is_not_centred_takes_off_before_it_tips_over(tmp_path):

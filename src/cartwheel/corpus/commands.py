@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from cartwheel.api import Model, World
@@ -12,14 +14,22 @@ from cartwheel.corpus.motion import degree, positions, resistance
 from cartwheel.corpus.thrusters import thruster_topics
 from cartwheel.corpus.verdict import RISEN, Flight, Spin
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.dialects.catalogue import short_name
+from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.gz.joint_controller import (
+    JointController,
+    JointVelocityParameters,
+    actuator_of,
+)
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.tags import read
+from cartwheel.errors import PluginError
 from cartwheel.graph import TopicInfo
 
+_GZ_ACTUATORS = "actuator_msgs/msg/Actuators"
 _FLOAT, _FLOATS = "std_msgs/msg/Float64", "std_msgs/msg/Float64MultiArray"
 _ACTUATORS = {
     "mav_msgs/msg/Actuators": "angular_velocities",
-    "actuator_msgs/msg/Actuators": "velocity",
+    _GZ_ACTUATORS: "velocity",
     "hector_uav_msgs/msg/MotorPWM": "pwm",
 }
 """Fields with the propellers' speeds, or duty cycles, by message type."""
@@ -27,8 +37,10 @@ _DUTY = 255
 """The duty cycle of a motor at its full voltage."""
 _PROPELLERS = 4
 """Number of propellers of a plugin for all of them."""
-_VELOCITY = 0.5
-"""rad/s or m/s."""
+_VELOCITY, _FAST = 0.5, 20.0
+"""rad/s or m/s; the second for joints whose controllers' gains are too small for the first."""
+_FASTER = 5.0
+"""Time to reach the second, s."""
 _ROOM = 0.8
 """Fraction of the way to a joint's limit that it may move."""
 _ACCELERATION = 5.0
@@ -36,6 +48,8 @@ _ACCELERATION = 5.0
 would accelerate a light link beyond all bounds."""
 _SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
 """s."""
+_GLIMPSE, _MOVES = 0.1, 1e-5
+"""A shorter time of pushing, s, and the minimum speed in it, rad/s or m/s."""
 _STEPS = 20
 """Number of propeller speeds to try."""
 _CLIMBING = 1.0
@@ -46,6 +60,27 @@ _FASTEST = 838.0
 """rad/s; the default of gz-sim's motor model."""
 _MOTOR = re.compile(r"motor_model|multicopter-motor")
 _MOTORS = re.compile(r"quadrotor_propulsion")
+
+
+@dataclass(frozen=True, slots=True)
+class _Input:
+    """A topic that commands joints."""
+
+    info: TopicInfo
+    joints: tuple[str, ...]
+    numbers: Mapping[str, int] = field(default_factory=dict)
+    """The indices of the joints in a message of type Actuators."""
+
+    def message(self, values: Sequence[float]) -> dict[str, Any]:
+        """The message with a value for each joint."""
+        if self.info.type == _FLOAT:
+            return {"data": values[0]}
+        if self.info.type == _FLOATS:
+            return {"data": list(values)}
+        said = [0.0] * (1 + max(self.numbers.values()))
+        for name, value in zip(self.joints, values, strict=True):
+            said[self.numbers[name]] = value
+        return {"velocity": said}
 
 
 def spins(
@@ -60,12 +95,14 @@ def spins(
     `gains` contains the proportional gains of PID controllers with an effort output and a slow or
     no integral, by joint, in N m s/rad or N s/m.
     """
-    by_velocity: list[tuple[TopicInfo, tuple[str, ...]]] = []
-    by_effort: list[tuple[TopicInfo, tuple[str, ...]]] = []
+    by_velocity: list[_Input] = []
+    by_effort: list[_Input] = []
     by_position = {each.owner for each in world.graph.joint_inputs.all()}
     controllers = {each.node: each for each in started}
     thrusters = thruster_topics(world, model, robot)
     for info in world.graph.topics():
+        if info.type == _GZ_ACTUATORS and (numbers := _actuated(info, robot)):
+            by_velocity.append(_Input(info, tuple(numbers), numbers))
         if info.type not in (_FLOAT, _FLOATS) or info.name in thrusters:
             continue
         for node in info.subscribers:
@@ -76,36 +113,80 @@ def spins(
             kind = owner.type + str(owner.interfaces) if owner is not None else info.name
             if joints:
                 pushes = re.search("effort|force", kind, re.IGNORECASE) and "Velocity" not in kind
-                (by_effort if pushes else by_velocity).append((info, joints))
-    if by_velocity:
-        speeds: dict[str, float] = {}
-
-        def speed_of(name: str) -> float:
-            speeds[name] = _velocity(robot.joint(name), model.joint(name))
-            return speeds[name]
-
-        before, after = _moved(world, model, by_velocity, speed_of, (_SPEEDING, _MEASURED))
-        for info, joints in by_velocity:
-            for name in joints:
-                yield Spin(
-                    topic=info.name,
-                    joint=name,
-                    commanded=speeds[name],
-                    measured=(after[name] - before[name]) / _MEASURED,
-                    effort=False,
-                    sag=_sag(world, model, name, gains.get(name, 0.0)),
-                )
-    for info, joints in by_effort:
-        for index, name in enumerate(joints):
+                (by_effort if pushes else by_velocity).append(_Input(info, joints))
+    yield from _spun(world, model, robot, by_velocity, gains)
+    for each in by_effort:
+        for index, name in enumerate(each.joints):
             # An effort on several joints of a chain may move one of them backward.
             effort = _effort(world, model, robot, name)
-            only = index if info.type == _FLOATS else None
+            only = index if each.info.type == _FLOATS else None
             pushed, pulled = (
-                _moved(world, model, [(info, joints)], _always(push), (0.0, _PUSHING), only=only)[1]
+                _moved(world, model, [each], _always(push), (_GLIMPSE, _PUSHING), only=only)
                 for push in (effort, -effort)
             )
-            speed = (pushed[name] - pulled[name]) / 2 / _PUSHING
-            yield Spin(topic=info.name, joint=name, commanded=effort, measured=speed, effort=True)
+            # The joints of an arm that falls meanwhile soon move each other more than the effort.
+            ways = (
+                (forth[name] - back[name]) / 2 for forth, back in zip(pushed, pulled, strict=True)
+            )
+            speeds = [way / time for way, time in zip(ways, (_GLIMPSE, _PUSHING), strict=True)]
+            speed = speeds[0] if abs(speeds[0]) > _MOVES else speeds[1]
+            yield Spin(
+                topic=each.info.name, joint=name, commanded=effort, measured=speed, effort=True
+            )
+
+
+def _spun(
+    world: World,
+    model: Model,
+    robot: RobotDescription,
+    inputs: Sequence[_Input],
+    gains: Mapping[str, float],
+) -> Iterator[Spin]:
+    """Commands velocities of all joints at once.
+
+    Joints that do not follow because of their gains are commanded again, at a higher velocity, of
+    which the error from friction and rolling resistance is a smaller part.
+    """
+    slow = list(_spinning(world, model, robot, inputs, gains, velocity=_VELOCITY))
+    late = {each.joint for each in slow if not each.follows and gains.get(each.joint)}
+    again = [each for each in inputs if not late.isdisjoint(each.joints)]
+    fast = {
+        (each.topic, each.joint): each
+        for each in _spinning(world, model, robot, again, gains, velocity=_FAST)
+        if each.joint in late and each.follows
+    }
+    yield from (fast.get((each.topic, each.joint), each) for each in slow)
+
+
+def _spinning(
+    world: World,
+    model: Model,
+    robot: RobotDescription,
+    inputs: Sequence[_Input],
+    gains: Mapping[str, float],
+    *,
+    velocity: float,
+) -> Iterator[Spin]:
+    if not inputs:
+        return
+    speeds: dict[str, float] = {}
+
+    def speed_of(name: str) -> float:
+        speeds[name] = _velocity(robot.joint(name), model.joint(name), velocity)
+        return speeds[name]
+
+    begun = _SPEEDING if velocity == _VELOCITY else _FASTER
+    before, after = _moved(world, model, inputs, speed_of, (begun, begun + _MEASURED))
+    for each in inputs:
+        for name in each.joints:
+            yield Spin(
+                topic=each.info.name,
+                joint=name,
+                commanded=speeds[name],
+                measured=(after[name] - before[name]) / _MEASURED,
+                effort=False,
+                sag=_sag(world, model, name, gains.get(name, 0.0)),
+            )
 
 
 def flights(world: World, model: Model, robot: RobotDescription) -> Iterator[Flight]:
@@ -145,6 +226,21 @@ def _risen(world: World, model: Model, topic: str, command: Mapping[str, Any]) -
     return rose
 
 
+def _actuated(info: TopicInfo, robot: RobotDescription) -> dict[str, int]:
+    """The joints that a topic of type Actuators commands by velocity, with their indices."""
+    found: dict[str, int] = {}
+    for tag in robot.plugins:
+        if plugin_named(tag.filename) is not JointController:
+            continue
+        with contextlib.suppress(PluginError):
+            config, _ = read(JointVelocityParameters, tag.element)
+            number = actuator_of(config)
+            topic = (config.topic or config.sub_topic).strip() or "actuators"
+            if number is not None and info.name.endswith(topic):
+                found |= dict.fromkeys((name.strip() for name in config.joints), number)
+    return found
+
+
 def _joints(info: TopicInfo, robot: RobotDescription) -> tuple[str, ...]:
     """The joint of a plugin's topic such as ``/model/robot/joint/arm/cmd_vel``, or of its tag."""
     named = [each.name for each in robot.joints if f"/joint/{each.name}/" in info.name]
@@ -173,11 +269,11 @@ def _always(value: float) -> Callable[[str], float]:
     return lambda _: value
 
 
-def _velocity(joint: Joint | None, position: float) -> float:
+def _velocity(joint: Joint | None, position: float, most: float) -> float:
     """A velocity at which a joint stays within its limits during the test, rad/s or m/s."""
     if joint is None:
-        return _VELOCITY
-    fastest = min(_VELOCITY, joint.axis.velocity or _VELOCITY)
+        return most
+    fastest = min(most, joint.axis.velocity or most)
     lower, upper = joint.axis.lower, joint.axis.upper
     if joint.type == "continuous" or lower is None or upper is None:
         return fastest
@@ -200,28 +296,25 @@ def _effort(world: World, model: Model, robot: RobotDescription, name: str) -> f
 def _moved(
     world: World,
     model: Model,
-    inputs: Sequence[tuple[TopicInfo, tuple[str, ...]]],
+    inputs: Sequence[_Input],
     value: Callable[[str], float],
     seconds: tuple[float, float],
     *,
     only: int | None = None,
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Positions at the beginning and end of a measurement, after a reset and a command.
+    """Positions at two times after a reset and a command.
 
-    `value` returns the command of a joint. `seconds` contains the time before the measurement and
-    its duration. `only` is the index of the joint that receives its value; the others of its topic
-    receive 0.
+    `value` returns the command of a joint. `seconds` contains both times. `only` is the index of
+    the joint that receives its value; the others of its topic receive 0.
     """
     world.reset()
     world.run(0.5)
-    for info, joints in inputs:
+    for each in inputs:
         values = [
-            value(name) if only in (None, index) else 0.0 for index, name in enumerate(joints)
+            value(name) if only in (None, index) else 0.0 for index, name in enumerate(each.joints)
         ]
-        said: Any = values[0] if info.type == _FLOAT else values
-        world.publish(info.name, {"data": said})
-    if seconds[0]:
-        world.run(seconds[0])
+        world.publish(each.info.name, each.message(values))
+    world.run(seconds[0])
     start = positions(world, model)
-    world.run(seconds[1])
+    world.run(seconds[1] - seconds[0])
     return start, positions(world, model)

@@ -252,7 +252,7 @@ def _drive_on(world: World, topic: TopicInfo, command: Sequence[float], seconds:
 def _targets(world: World, model: Model, joints: Sequence[Joint]) -> dict[str, float]:
     """Nearby positions within the joints' limits; joints that follow each other move together."""
     commanded = {joint.name: joint for joint in joints}
-    wanted = {name: _target(joint, model.joint(name)) for name, joint in commanded.items()}
+    wanted = {name: target_of(joint, model.joint(name)) for name, joint in commanded.items()}
     coupled = couplings_of(world, model)
     found: dict[str, float] = {}
     for name, target in wanted.items():
@@ -267,7 +267,7 @@ def _targets(world: World, model: Model, joints: Sequence[Joint]) -> dict[str, f
     return found
 
 
-def _target(joint: Joint, position: float) -> float:
+def target_of(joint: Joint, position: float) -> float:
     """A nearby position within the joint's limits."""
     step = _SLIDE if joint.type == "prismatic" else _STEP
     if joint.axis.velocity:

@@ -18,6 +18,7 @@ from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
+from cartwheel.corpus.poses import posed
 from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
@@ -26,8 +27,10 @@ from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.joint_controller import (
+    JointController,
     JointPositionController,
     JointPositionParameters,
+    JointVelocityParameters,
 )
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles
@@ -186,7 +189,7 @@ def _place(robot: RobotDescription) -> Pose:
         if (solid := solid_of(collision, link.name)) is not None
     ]
     box = bounds(clouds)
-    if any(joint.parent == "world" for joint in robot.joints):
+    if any(joint.parent == "world" and joint.type != "floating" for joint in robot.joints):
         lowest = 0.0 if box is None else float(np.round(box[0][2], 6))
         return Pose((0.0, 0.0, _HIGH + max(0.0, -lowest))) @ robot.pose
     if box is None:
@@ -233,7 +236,8 @@ def _joints_moved(
 ) -> Iterator[Verdict]:
     started = _controllers(world).started
     gains = _gains(robot, started)
-    verdict = replace(verdict, reaches=tuple(motion.reaches(world, model, robot, gains)))
+    reached = [*motion.reaches(world, model, robot, gains), *posed(world, model, robot)]
+    verdict = replace(verdict, reaches=tuple(reached))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
 
@@ -292,6 +296,12 @@ def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, 
                 config, _ = read(JointPositionParameters, tag.element)
                 if not config.velocity and motion.yields(config.p, config.i):
                     found |= dict.fromkeys(config.joints, config.p)
+        if plugin_named(tag.filename) is JointController:
+            with contextlib.suppress(PluginError):
+                speed, _ = read(JointVelocityParameters, tag.element)
+                weak = motion.yields(speed.p, speed.i) or speed.i_max < speed.p
+                if speed.force and weak:
+                    found |= dict.fromkeys(speed.joints, speed.p)
     return found
 
 

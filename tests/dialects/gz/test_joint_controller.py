@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from cartwheel.codes import devices
+from cartwheel.codes import devices, running
 from cartwheel.errors import PluginError
 
 INERTIA = 1.0
@@ -140,3 +140,55 @@ def test_a_joint_goes_where_it_is_put_by_hand(make, kind):
     taker.put({"turn": 0.5}, 1.0)
     world.run(3.0)
     assert float(world.session.simulation.data.qpos[0]) == pytest.approx(0.5, abs=0.02)
+
+
+ACTUATED = "<use_actuator_msg>true</use_actuator_msg><actuator_number>1</actuator_number>"
+
+
+def actuated(make, kind, tags, topic, **message):
+    plugin = controller(kind, tags)
+    world = make.world(make.sdf(arm(plugin)), ground=None)
+    world.publish(topic, **message)
+    world.run(1.0)
+    data = world.session.simulation.data
+    return float(data.qpos[0]), float(data.qvel[0]), world.diagnostics
+
+
+@pytest.mark.parametrize(
+    ("tags", "topic"),
+    [
+        ("", "/actuators"),
+        ("<sub_topic>motors</sub_topic>", "/model/arm/motors"),
+        ("<topic>own/motors</topic>", "/own/motors"),
+    ],
+)
+def test_a_velocity_is_read_from_an_actuators_message(make, tags, topic):
+    _, velocity, _ = actuated(
+        make, "joint-controller", ACTUATED + tags, topic, velocity=[9.0, 0.5, 9.0]
+    )
+    assert velocity == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_position_is_read_from_an_actuators_message(make):
+    tags = ACTUATED + "<use_velocity_commands>true</use_velocity_commands>"
+    position, _, _ = actuated(
+        make, "joint-position-controller", tags, "/actuators", position=[9.0, 0.5]
+    )
+    assert position == pytest.approx(0.5, abs=1e-3)
+
+
+def test_an_actuators_message_without_the_joint_s_value_is_ignored(make):
+    _, velocity, found = actuated(make, "joint-controller", ACTUATED, "/actuators", velocity=[9.0])
+    assert velocity == pytest.approx(0.0, abs=1e-6)
+    (warning,) = [each for each in found if each.code is running.COMMAND_IGNORED]
+    assert warning.values["actuator"] == 1
+
+
+def test_actuators_messages_need_a_number(make):
+    tags = "<use_actuator_msg>true</use_actuator_msg>"
+    plugin = controller("joint-controller", tags)
+    world = make.world(make.sdf(arm(plugin)), ground=None)
+    world.publish(VELOCITY, data=0.5)
+    world.run(1.0)
+    assert float(world.session.simulation.data.qvel[0]) == pytest.approx(0.5, abs=1e-3)
+    assert [each.code for each in world.diagnostics] == [devices.PLUGIN_PARAMETER_IGNORED]

@@ -1,7 +1,20 @@
 """Effort limits of joints with position commands."""
 
 import pytest
-from tests.dialects.ros_control.arms import ARM, GRAVITY, MASS, ROS1, beam, robot, transmission
+import yaml
+from tests.dialects.ros_control.arms import (
+    ARM,
+    GRAVITY,
+    MASS,
+    ROS1,
+    beam,
+    robot,
+    ros2_joint,
+    ros2_parameters,
+    ros2_plugin,
+    ros2_system,
+    transmission,
+)
 
 from cartwheel.codes import devices
 
@@ -64,3 +77,34 @@ def test_an_effort_limit_above_the_weight_holds_the_arm(held):
     places, warnings = held(1.02 * WEIGHT)
     assert warnings == []
     assert places[-1] == pytest.approx(-0.2, abs=1e-3)
+
+
+@pytest.mark.parametrize("classic", [True, False])
+def test_gazebo_classic_ignores_the_effort_limit_of_velocities(bench, tmp_path, classic):
+    """gazebo_ros2_control sets the velocity of a joint; gz_ros2_control's motor has the limit."""
+    file = tmp_path / "own.yaml"
+    settings = {
+        "type": "velocity_controllers/JointGroupVelocityController",
+        "joints": ["beam_joint"],
+    }
+    file.write_text(yaml.safe_dump(ros2_parameters(200, c=settings)))
+    limit = 'lower="-3" upper="3" effort="1" velocity="10"'
+    body = beam("beam", "world", limit=limit)
+    body += ros2_system(ros2_joint("beam_joint", "velocity"))
+    control = ros2_plugin(file)
+    if classic:
+        control = control.replace("gz_ros2_control-system", "libgazebo_ros2_control.so")
+    made = bench(robot(body, control))
+    made.world.run(0.1)
+    made.publish("/c/commands", "std_msgs/msg/Float64MultiArray", data=[-0.5])
+    made.world.run(0.2)
+    before = made.position("beam_joint")
+    made.world.run(0.5)
+    raised = [each for each in made.warnings if each.code is devices.EFFORT_LIMIT_TOO_LOW]
+    if classic:
+        # Upward, against a weight of 9.8 N m.
+        assert made.position("beam_joint") - before == pytest.approx(-0.25, abs=0.01)
+        assert raised[0].values["stated"] == 1
+    else:
+        assert made.position("beam_joint") > before
+        assert raised == []

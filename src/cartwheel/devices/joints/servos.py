@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from cartwheel.codes import running
 from cartwheel.component import Component, Scope
 from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.devices.periodic import Elapsed
 from cartwheel.messages import message_class
 
 _FLOAT = "std_msgs/msg/Float64"
+_ACTUATORS = "actuator_msgs/msg/Actuators"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,7 +22,9 @@ class JointServosConfig:
     joints: tuple[str, ...]
     """Names of the joints, which have the same target."""
     topic: str
-    """Topic of the target (Float64)."""
+    """Topic of the target (Float64, or Actuators with an `actuator`)."""
+    actuator: int | None = None
+    """Index of the target in a message of type Actuators. None: the type is Float64."""
     quantity: Literal["position", "velocity"]
     """Quantity of the target: a position in rad or m, or a velocity in rad/s or m/s."""
     initial: float = 0.0
@@ -54,7 +58,10 @@ class JointServos(Component):
         self._pids = [Pid(gains) for _ in self._joints] if gains is not None else []
         for name, pid in zip(config.joints, self._pids, strict=False):
             part.tune(name, pid)
-        self.subscribe(config.topic, _FLOAT, self._on_command)
+        if config.actuator is None:
+            self.subscribe(config.topic, _FLOAT, self._on_command)
+        else:
+            self.subscribe(config.topic, _ACTUATORS, self._on_actuators)
         self.reset()
         moves = config.quantity == "position"
         part.schedule(0, before=self._move if moves else self._turn).reads_state = True
@@ -71,8 +78,26 @@ class JointServos(Component):
     def _on_command(self, message: Any) -> None:
         self._target = float(message.data)
 
+    def _on_actuators(self, message: Any) -> None:
+        config = self._config
+        number = config.actuator or 0
+        targets = message.position if config.quantity == "position" else message.velocity
+        if number >= len(targets):
+            self.warn(
+                running.COMMAND_IGNORED,
+                f"a command is ignored: it has only {len(targets)} {config.quantity} values, so "
+                f"that of actuator {number} is missing",
+                values={"values": len(targets), "actuator": number},
+            )
+            return
+        self._target = float(targets[number])
+
     def _publish_command(self, wanted: Mapping[str, float], seconds: float) -> None:  # noqa: ARG002
         (value,) = wanted.values()
+        if self._config.actuator is not None:
+            # A message would also command the other actuators of the topic.
+            self._target = float(value)
+            return
         message = message_class(_FLOAT)(data=float(value))
         self.graph.publish(self.resolve(self._config.topic), _FLOAT, message)
 

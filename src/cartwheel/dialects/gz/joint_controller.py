@@ -23,7 +23,7 @@ from cartwheel.simulation.limits import FARTHEST
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class _ServoParameters:
+class ServoParameters:
     p: float = tag("p_gain", default=1.0, doc="Proportional gain of the PID controller.")
     i: float = tag("i_gain", default=0.0, doc="Integral gain of the PID controller.")
     d: float = tag(
@@ -50,13 +50,22 @@ class _ServoParameters:
         doc="Constant that is added to the output of the PID controller.",
     )
     actuators: bool = tag(
-        "use_actuator_msg", default=False, doc="No effect: only Float64 commands are supported."
+        "use_actuator_msg",
+        default=False,
+        doc="Whether the type of the topic is Actuators instead of Float64. It has no effect "
+        "without `<actuator_number>`.",
+    )
+    actuator: int | None = tag(
+        "actuator_number",
+        default=None,
+        least=0,
+        doc="Index of the target in a message of type Actuators.",
     )
     topic: str = tag(
         "topic",
         default="",
         doc="Topic of the target positions (Float64). Default: "
-        "`/model/<model>/joint/<joint>/cmd_pos`.",
+        "`/model/<model>/joint/<joint>/cmd_pos`, or `/actuators` for messages of type Actuators.",
     )
     sub_topic: str = tag(
         "sub_topic",
@@ -71,7 +80,7 @@ class _ServoParameters:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class JointPositionParameters(_ServoParameters):
+class JointPositionParameters(ServoParameters):
     i: float = tag("i_gain", default=0.1, doc="Integral gain of the PID controller.")
     d: float = tag(
         "d_gain",
@@ -99,12 +108,12 @@ class JointPositionParameters(_ServoParameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class JointVelocityParameters(_ServoParameters):
+class JointVelocityParameters(ServoParameters):
     topic: str = tag(
         "topic",
         default="",
         doc="Topic of the target velocities (Float64). Default: "
-        "`/model/<model>/joint/<joint>/cmd_vel`.",
+        "`/model/<model>/joint/<joint>/cmd_vel`, or `/actuators` for messages of type Actuators.",
     )
     force: bool = tag(
         "use_force_commands",
@@ -156,12 +165,13 @@ def _add_servos(
                 origin=plugin.place_of(f"{what}_min"),
                 values={"parameter": f"{what}_min", "value": low, "most": high},
             )
-    if config.actuators:
-        plugin.warn_ignored("use_actuator_msg", "only Float64 commands are supported")
+    if config.actuators and config.actuator is None:
+        plugin.warn_ignored("use_actuator_msg", "there is no <actuator_number>")
     joints = tuple(name.strip() for name in config.joints)
     device = JointServosConfig(
         joints=joints,
         topic=_topic(plugin, joints[0], _DEFAULT_TOPICS[quantity]),
+        actuator=actuator_of(config),
         quantity=quantity,
         initial=config.initial,
         gains=_gains(config) if by_pid else None,
@@ -170,18 +180,25 @@ def _add_servos(
     plugin.add(JointServos(plugin.scope, device))
 
 
+def actuator_of(config: ServoParameters) -> int | None:
+    """Returns the index of the target in messages of type Actuators; None for Float64."""
+    return config.actuator if config.actuators else None
+
+
 def _topic(plugin: Plugin[Any], joint: str, default: str) -> str:
     """Returns the topic of the target, whose last part is `default` if no tag states it."""
-    config: _ServoParameters = plugin.config
+    config: ServoParameters = plugin.config
     topic = config.topic
     if not topic and config.sub_topic:
         topic = f"/model/{plugin.part.name}/{config.sub_topic.strip().lstrip('/')}"
+    if not topic and actuator_of(config) is not None:
+        topic = "/actuators"
     topic = topic or f"/model/{plugin.part.name}/joint/{joint}/{default}"
     # Gazebo's topic contains the axis, as in /0/cmd_pos, which is not a valid name in ROS.
     return gz_name(plugin, re.sub(r"/\d+(?=/)", "", topic), "")
 
 
-def _gains(config: _ServoParameters) -> PidGains:
+def _gains(config: ServoParameters) -> PidGains:
     return PidGains(
         p=config.p,
         i=config.i,

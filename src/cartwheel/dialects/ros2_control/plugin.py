@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 from cartwheel.codes import devices, running
 from cartwheel.description.model import Element
 from cartwheel.devices.joints.pid import PidGains
+from cartwheel.dialects.catalogue import short_name
 from cartwheel.dialects.ros2_control.components import HardwareComponents
 from cartwheel.dialects.ros2_control.services import Ros2ManagerServices
 from cartwheel.dialects.ros_control.control_plugin import ControlPlugin
@@ -136,7 +137,9 @@ class Ros2Control(ControlPlugin):
                 "no parameter specifies a controller type, so no controller starts",
                 at=Origin(file=source),
             )
-        hardware = Hardware(self, joints, _gains(joints, merged.nodes))
+        # In Gazebo Classic, it sets the velocity of a joint without a motor.
+        forced = short_name(self.tag.filename) == "gazebo_ros2_control"
+        hardware = Hardware(self, joints, _gains(joints, merged.nodes), forced=forced)
         hardware.holds = config.hold_joints
         robot = ControlledRobot(
             self,

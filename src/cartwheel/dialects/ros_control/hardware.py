@@ -31,6 +31,7 @@ class JointHardware(JointActuator):
         gains: An interface whose commands a PID converts to efforts, with the gains.
         limits: Parameters that override the limits in the description. If given, even empty, the
             soft limits in the description apply.
+        forced: Whether a joint follows velocity commands regardless of its effort limit.
 
     Raises:
         PluginError: A limit is not a number.
@@ -43,6 +44,8 @@ class JointHardware(JointActuator):
         needs: Callable[[], Mapping[str, float]],
         gains: tuple[str, PidGains] | None = None,
         limits: Settings | None = None,
+        *,
+        forced: bool = False,
     ) -> None:
         joint = owner.part.description.joint(interfaces.name)
         assert joint is not None
@@ -50,12 +53,11 @@ class JointHardware(JointActuator):
         """Name for controllers. In a reference, it differs from the name in the description."""
         self.interfaces = interfaces
         joint_limits = _limits(joint, limits)
-        follows_position = "position" in interfaces.commands and (
-            gains is None or gains[0] != "position"
-        )
+        free = [each for each in interfaces.commands if gains is None or gains[0] != each]
+        command = "position" if "position" in free else "velocity"
         strength = joint_limits.effort
-        if follows_position:
-            strength = _strength(owner, interfaces, joint, strength, needs)
+        if command in free and (forced or command == "position"):
+            strength = _strength(owner, interfaces, joint, strength, needs, command=command)
         super().__init__(
             owner.part,
             JointActuatorConfig(
@@ -109,8 +111,13 @@ def _strength(
     joint: Joint,
     limit: float,
     needs: Callable[[], Mapping[str, float]],
+    *,
+    command: str,
 ) -> float:
-    """Returns the maximum effort of position commands, N m or N, which holds the joint."""
+    """Returns the maximum effort of a command, N m or N, which holds the joint.
+
+    `command` is "position" or "velocity".
+    """
     if limit == math.inf:
         return limit
     need = needs().get(joint.name, 0.0) + _friction(owner.part.description, joint)
@@ -119,9 +126,9 @@ def _strength(
     raises = owner.part.adds("raised-efforts")
     held, unit = 2 * need if raises else limit, "N" if joint.type == "prismatic" else "N m"
     result = (
-        "as in Gazebo, the joint still follows position commands, with up to "
+        f"as in Gazebo, the joint still follows {command} commands, with up to "
         if raises
-        else "the joint follows position commands with no more than "
+        else f"the joint follows {command} commands with no more than "
     )
     owner.warn(
         devices.EFFORT_LIMIT_TOO_LOW,
@@ -152,6 +159,7 @@ class Hardware:
         joints: Interfaces of the joints.
         gains: Interface and gains of each joint whose commands a PID converts to efforts.
         limits: ROS 1's parameters ``joint_limits``; None in ROS 2, which has no soft limits.
+        forced: Whether joints follow velocity commands regardless of their effort limits.
     """
 
     def __init__(
@@ -160,6 +168,8 @@ class Hardware:
         joints: list[JointInterfaces],
         gains: Mapping[str, tuple[str, PidGains]],
         limits: Settings | None = None,
+        *,
+        forced: bool = False,
     ) -> None:
         self._description = owner.part.description
         self._tags = "no <ros2_control>" if limits is None else "no <transmission>"
@@ -171,6 +181,7 @@ class Hardware:
                 needs,
                 gains.get(each.name),
                 limits.section(each.name) if limits is not None else None,
+                forced=forced,
             )
             for each in joints
         }

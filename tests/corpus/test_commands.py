@@ -1,0 +1,125 @@
+"""Joints are commanded as their plugins and controllers allow it."""
+
+import pytest
+from tests.corpus.test_flights import tried
+
+BASE = (
+    '<link name="base"><inertial><mass value="{mass}"/>'
+    '<inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial><collision>'
+    '<geometry><box size="0.3 0.3 0.1"/></geometry></collision></link>'
+)
+LINK = (
+    '<link name="{name}"><inertial><origin xyz="{at}"/><mass value="{mass}"/>'
+    '<inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial></link>'
+    '<joint name="{name}_joint" type="{kind}"><parent link="{parent}"/><child link="{name}"/>'
+    '<origin xyz="{place}"/><axis xyz="{axis}"/>'
+    '<limit lower="-3" upper="3" effort="200" velocity="100"/></joint>'
+)
+TRANSMISSION = (
+    '<transmission name="{name}"><type>transmission_interface/SimpleTransmission</type>'
+    '<joint name="{name}_joint"><hardwareInterface>hardware_interface/EffortJointInterface'
+    '</hardwareInterface></joint><actuator name="{name}_motor"/></transmission>'
+)
+CONTROL = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
+
+
+def link(name, parent, **more):
+    values = {
+        "at": "0 0 0", "mass": 0.2, "i": 1e-3, "kind": "continuous", "place": "0 0 0.2",
+        "axis": "0 0 1",
+    }  # fmt: skip
+    return LINK.format(name=name, parent=parent, **(values | more))
+
+
+def test_joints_are_commanded_by_their_numbers_in_actuators_messages(tmp_path):
+    plugins = "".join(
+        '<gazebo><plugin name="gz::sim::systems::JointController" '
+        f'filename="gz-sim-joint-controller-system"><joint_name>{name}_joint</joint_name>'
+        "<sub_topic>command/motor_speed</sub_topic><use_actuator_msg>true</use_actuator_msg>"
+        f"<actuator_number>{number}</actuator_number></plugin></gazebo>"
+        for name, number in (("left", 1), ("right", 0))
+    )
+    parts = link("left", "base", place="0 0.1 0.2") + link("right", "base", place="0 -0.1 0.2")
+    verdict = tried(tmp_path, BASE.format(mass=5), parts, plugins)
+    assert {spin.joint for spin in verdict.spins} == {"left_joint", "right_joint"}
+    assert {spin.topic for spin in verdict.spins} == {"/model/aircraft/command/motor_speed"}
+    assert verdict.good, verdict.faults
+
+
+def test_an_effort_is_measured_before_the_rest_of_the_arm_falls(tmp_path):
+    """The torque for the light wrist is a thousandth of those by which the arm falls."""
+    parts = link("upper", "base", kind="revolute", axis="0 1 0", at="0 0 0.3", mass=3, i=0.05)
+    parts += link(
+        "lower", "upper", kind="revolute", axis="0 1 0", at="0.2 0 0.3", mass=2, i=0.03,
+        place="0 0 0.6",
+    )  # fmt: skip
+    parts += link(
+        "wrist",
+        "lower",
+        kind="revolute",
+        axis="1 0 0",
+        at="0.02 0 0.01",
+        mass=0.1,
+        i=1e-5,
+        place="0.1 0.05 0.5",
+    )
+    names = ("upper", "lower", "wrist")
+    parts += "".join(TRANSMISSION.format(name=name) for name in names) + CONTROL
+    file = tmp_path / "push.yaml"
+    file.write_text(
+        "".join(
+            f"{name}:\n  type: effort_controllers/JointEffortController\n  joint: {name}_joint\n"
+            for name in names
+        )
+    )
+    verdict = tried(tmp_path, BASE.format(mass=50), parts, controllers=[file])
+    assert {spin.joint for spin in verdict.spins} == {f"{name}_joint" for name in names}
+    assert all(spin.follows for spin in verdict.spins), verdict.spins
+
+
+def test_a_weak_velocity_controller_is_tested_at_a_higher_speed(tmp_path):
+    """Its friction of 0.1 N m is not in the description of the joint: the wheel drags another."""
+    parts = link("wheel", "base", i=0.01) + TRANSMISSION.format(name="wheel") + CONTROL
+    brake = link("brake", "wheel", axis="0 0 1", place="0 0 0").replace(
+        "<limit", '<dynamics friction="0.1"/><limit'
+    )
+    brake += (
+        '<gazebo><plugin name="hold" filename="libroboticsgroup_gazebo_mimic_joint_plugin.so">'
+        "<joint>wheel_joint</joint><mimicJoint>brake_joint</mimicJoint><multiplier>1</multiplier>"
+        "</plugin></gazebo>"
+    )
+    file = tmp_path / "spin.yaml"
+    file.write_text(
+        "spin:\n  type: effort_controllers/JointVelocityController\n  joint: wheel_joint\n"
+        "  pid: {p: 0.5, i: 0.01, d: 0.0}\n"
+    )
+    verdict = tried(tmp_path, BASE.format(mass=5), parts, brake, controllers=[file])
+    (spin,) = verdict.spins
+    # The error of 0.1 / 0.5 rad/s and more is 40 % at 0.5 rad/s, and a few percent at 20 rad/s.
+    assert spin.commanded == 20.0
+    assert spin.measured == pytest.approx(19.8, rel=0.05)
+    assert verdict.good, verdict.faults
+
+
+def test_a_trajectory_sets_the_joints_of_a_plugin_without_forces(tmp_path):
+    plugin = (
+        '<gazebo><plugin name="pose" filename="libgazebo_ros_joint_pose_trajectory.so">'
+        "<topicName>set_pose</topicName></plugin></gazebo>"
+    )
+    arm = link("arm", "base", kind="revolute", axis="0 1 0", at="0 0 0.2")
+    verdict = tried(tmp_path, BASE.format(mass=5), arm, plugin)
+    (reach,) = verdict.reaches
+    assert (reach.controller, reach.joint) == ("gazebo_ros_joint_pose_trajectory", "arm_joint")
+    assert abs(reach.target) == pytest.approx(0.2, abs=0.01)
+    assert abs(reach.error) < 0.02
+    assert verdict.moves
+
+
+def test_a_robot_on_a_floating_joint_of_the_world_stands_on_the_ground(tmp_path):
+    world = (
+        '<link name="world"/><joint name="free" type="floating"><parent link="world"/>'
+        '<child link="base"/></joint>'
+    )
+    verdict = tried(tmp_path, world, BASE.format(mass=5))
+    assert abs(verdict.stand.sunk) < 0.01
+    assert verdict.good, verdict.faults
