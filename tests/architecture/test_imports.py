@@ -1,12 +1,11 @@
 """Imports point one way: each room knows only the rooms below it."""
 
 import ast
+import functools
 import re
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
-
-import pytest
 
 SOURCE = Path(__file__).parents[2] / "src" / "cartwheel"
 
@@ -140,6 +139,16 @@ MAY_IMPORT = {
 }
 
 
+@functools.cache
+def parsed(path: Path) -> ast.Module:
+    """The syntax tree of a file, for all rules."""
+    return ast.parse(path.read_text())
+
+
+def shown(path: Path) -> str:
+    return str(path.relative_to(SOURCE.parent))
+
+
 def room_of(path: Path) -> str:
     return path.relative_to(SOURCE).parts[0].removesuffix(".py")
 
@@ -147,7 +156,7 @@ def room_of(path: Path) -> str:
 def imported_rooms(path: Path) -> set[tuple[str, int]]:
     """Every room of ours that a file imports, wherever in the file, with its line."""
     found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(parsed(path)):
         names = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -171,13 +180,18 @@ FILES = sorted(
 )
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
-def test_a_file_imports_only_rooms_below_its_own(path: Path) -> None:
-    room = room_of(path)
-    assert room in MAY_IMPORT, f"{room} has no place in the order of the rooms"
-    allowed = MAY_IMPORT[room] | LEAVES | {room}
-    wrong = sorted((name, line) for name, line in imported_rooms(path) if name not in allowed)
-    assert not wrong, f"{room} may not import {wrong}"
+def test_each_room_has_a_place_in_the_order() -> None:
+    assert {room_of(path) for path in FILES} <= set(MAY_IMPORT)
+
+
+def test_a_file_imports_only_rooms_below_its_own() -> None:
+    wrong = [
+        f"{shown(path)}:{line}: {room_of(path)} may not import {name}"
+        for path in FILES
+        for name, line in sorted(imported_rooms(path))
+        if name not in MAY_IMPORT[room_of(path)] | LEAVES | {room_of(path)}
+    ]
+    assert not wrong, "\n".join(wrong)
 
 
 def test_the_order_has_no_cycle() -> None:
@@ -197,9 +211,14 @@ GENERATED = SOURCE / "msgs"
 MOST_LINES = 400
 
 
-def imported_modules(path: Path) -> Iterator[str]:
-    """Yields the modules that a file imports when it runs."""
-    pending: list[ast.AST] = [ast.parse(path.read_text())]
+@functools.cache
+def imported_modules(path: Path) -> frozenset[str]:
+    """The modules that a file imports when it runs."""
+    return frozenset(_imported_modules(path))
+
+
+def _imported_modules(path: Path) -> Iterator[str]:
+    pending: list[ast.AST] = [parsed(path)]
     while pending:
         node = pending.pop()
         if isinstance(node, ast.ImportFrom):
@@ -208,8 +227,13 @@ def imported_modules(path: Path) -> Iterator[str]:
             pending += ast.iter_child_nodes(node)
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(SOURCE)))
-def test_the_files_and_folders_of_a_folder_import_each_other_one_way(folder: Path) -> None:
+def test_the_files_and_folders_of_a_folder_import_each_other_one_way() -> None:
+    cycles = {shown(folder): cycle for folder in FOLDERS if (cycle := cycle_in(folder))}
+    assert not cycles
+
+
+def cycle_in(folder: Path) -> list[str]:
+    """Files and folders of a folder that import each other in a circle; empty without one."""
     below: dict[str, set[str]] = {}
     prefix = folder.relative_to(SOURCE.parent).parts
     for path in folder.rglob("*.py"):
@@ -227,21 +251,29 @@ def test_the_files_and_folders_of_a_folder_import_each_other_one_way(folder: Pat
     try:
         TopologicalSorter(order).prepare()
     except CycleError as error:
-        pytest.fail(f"{folder.relative_to(SOURCE)}: a cycle of {error.args[1]}")
+        cycle: list[str] = error.args[1]
+        return cycle
+    return []
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: str(path.relative_to(SOURCE)))
-def test_a_folder_is_small_enough_to_look_through(folder: Path) -> None:
-    if folder == GENERATED:
-        return
-    assert len([path for path in folder.iterdir() if path.name != "__pycache__"]) <= MOST_FILES
+def test_a_folder_is_small_enough_to_look_through() -> None:
+    sizes = {
+        shown(folder): len([path for path in folder.iterdir() if path.name != "__pycache__"])
+        for folder in FOLDERS
+        if folder != GENERATED
+    }
+    assert not {folder: size for folder, size in sizes.items() if size > MOST_FILES}
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
-def test_a_long_file_says_why_it_is_long(path: Path) -> None:
-    text = path.read_text()
-    reason = "The file is long because" in (ast.get_docstring(ast.parse(text)) or "")
-    assert reason or len(text.splitlines()) <= MOST_LINES
+def test_a_long_file_says_why_it_is_long() -> None:
+    lengths = {path: len(path.read_text().splitlines()) for path in FILES}
+    long = [
+        f"{shown(path)}: {length}"
+        for path, length in lengths.items()
+        if length > MOST_LINES
+        and "The file is long because" not in (ast.get_docstring(parsed(path)) or "")
+    ]
+    assert not long
 
 
 def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
@@ -254,7 +286,7 @@ def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
         "mujoco": None,
     }
     for path in FILES:
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(parsed(path)):
             names = []
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
-from tests.messages.cdr.test_cdr import grown
+from tests.messages.cdr.test_cdr import bundled_types, grown
 
 from cartwheel.errors import Origin
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, message_class, zero
@@ -19,7 +19,7 @@ from cartwheel.messages.classes import Classes
 from cartwheel.messages.defaults import STATED
 from cartwheel.messages.library.parsing import parse_definition
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1
-from cartwheel.messages.store import ROS2_DEFINITIONS, definitions, loaded
+from cartwheel.messages.store import ROS2_DEFINITIONS, definitions
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
@@ -62,11 +62,14 @@ def test_messages_are_equal_if_their_fields_are() -> None:
         hash(one)
 
 
-@pytest.mark.parametrize("name", sorted(loaded().types))
-def test_a_message_of_each_type_equals_its_copy(name: str) -> None:
-    made = grown(name, random.Random(3))
-    again = decode_cdr(encode_cdr(made), name)
-    assert again == decode_cdr(encode_cdr(again), name)
+def test_a_message_of_each_type_equals_its_copy() -> None:
+    wrong = []
+    for name in bundled_types():
+        made = grown(name, random.Random(3))
+        again = decode_cdr(encode_cdr(made), name)
+        if again != decode_cdr(encode_cdr(again), name):
+            wrong.append(name)
+    assert not wrong
 
 
 def test_constants_and_names_are_those_of_rosbags() -> None:
@@ -79,9 +82,12 @@ def test_constants_and_names_are_those_of_rosbags() -> None:
         assert {key: getattr(ours, key) for key in constants} == constants
 
 
-@pytest.mark.parametrize("name", sorted(loaded().types))
-def test_omitted_fields_have_the_same_defaults_in_classes_and_mappings(name: str) -> None:
-    assert encode_cdr(message_class(name)()) == encode_cdr(zero(name))
+def test_omitted_fields_have_the_same_defaults_in_classes_and_mappings() -> None:
+    assert not [
+        name
+        for name in bundled_types()
+        if encode_cdr(message_class(name)()) != encode_cdr(zero(name))
+    ]
 
 
 def test_omitted_fields_have_the_defaults_of_the_definition() -> None:

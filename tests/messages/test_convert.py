@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 from tests.coded import raises
+from tests.messages.cdr.test_cdr import bundled_types
 
 from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID, MESSAGE_NOT_DECODABLE
 from cartwheel.errors import Code, GraphError, UnknownNameError
@@ -21,7 +22,6 @@ from cartwheel.messages import (
     from_dict,
     from_flat,
     message_class,
-    store,
     to_dict,
     to_yaml,
     zero,
@@ -98,11 +98,14 @@ def test_every_way_out_leads_back(data: Any, name: str) -> None:
     assert to_dict(from_dict(name, parsed)) == mapping
 
 
-@pytest.mark.parametrize("name", sorted(store().types))
-def test_every_type_has_a_zero_that_can_be_sent(name: str) -> None:
-    message = zero(name)
-    assert to_dict(decode_cdr(encode_cdr(message), name)) == to_dict(message)
-    yaml.safe_load(to_yaml(message))
+def test_every_type_has_a_zero_that_can_be_sent() -> None:
+    wrong = []
+    for name in bundled_types():
+        message = zero(name)
+        if to_dict(decode_cdr(encode_cdr(message), name)) != to_dict(message):
+            wrong.append(name)
+        yaml.safe_load(to_yaml(message))
+    assert not wrong
 
 
 def test_missing_fields_are_zero() -> None:

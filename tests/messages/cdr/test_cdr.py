@@ -21,8 +21,14 @@ from cartwheel.messages import (
 )
 from cartwheel.messages.field import Field
 from cartwheel.messages.fields import fields
+from cartwheel.messages.store import is_bundled
 
-TYPES = sorted(store().fielddefs)
+
+def bundled_types() -> list[str]:
+    """All types, without those that other tests have registered."""
+    found = sorted(name for name in store().fielddefs if is_bundled(name))
+    assert len(found) > 500
+    return found
 
 
 def grown(name: str, chance: random.Random) -> Any:
@@ -57,11 +63,14 @@ def _one(field: Field, chance: random.Random) -> Any:
     return chance.choice([0.0, -1.5, 0.1, 1e30])
 
 
-@pytest.mark.parametrize("name", TYPES)
-def test_every_type_has_the_bytes_that_rosbags_writes(name: str) -> None:
-    chance = random.Random(name)
-    for message in (zero(name), *(grown(name, chance) for _ in range(5))):
-        assert encode_cdr(message) == bytes(store().serialize_cdr(message, name))
+def test_every_type_has_the_bytes_that_rosbags_writes() -> None:
+    wrong = set()
+    for name in bundled_types():
+        chance = random.Random(name)
+        for message in (zero(name), *(grown(name, chance) for _ in range(5))):
+            if encode_cdr(message) != bytes(store().serialize_cdr(message, name)):
+                wrong.add(name)
+    assert not wrong
 
 
 def test_lengths_that_are_not_cached_between_those_that_are() -> None:
