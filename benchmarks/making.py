@@ -35,7 +35,7 @@ def figures(effort: Effort) -> Iterator[Figure]:
     """The cart and some of the published robots, if their folder exists; then many carts."""
     yield from _robot("cart", load_robot("rosbots.xacro"), effort)
     corpus = Path(os.environ.get("CARTWHEEL_CORPUS", _ROOT.parent / "shared" / "corpus"))
-    for name, file in _PUBLISHED.items():
+    for name, file in list(_PUBLISHED.items())[:: effort.every]:
         if (corpus / file).is_file():
             yield from _robot(name, load_robot(corpus / file), effort)
     yield from _together(_CARTS if effort.every == 1 else 2)

@@ -6,6 +6,7 @@ that a comment above its block names.
 """
 
 import contextlib
+import importlib.metadata
 import os
 import pty
 import re
@@ -231,6 +232,23 @@ def _shows_messages(page: Path) -> bool:
 def test_the_commands_of_a_page_do_what_it_says(page: Path, reader: Reader) -> None:
     for command in commands(page):
         reader.follow(command)
+
+
+def test_the_extras_that_pages_install_exist() -> None:
+    """pip only warns of an extra that does not exist."""
+    known = importlib.metadata.metadata("cartwheel").get_all("Provides-Extra") or []
+    named = {
+        (str(page.relative_to(ROOT)), extra)
+        for page in PAGES
+        if page.is_file()
+        for block in blocks(page, "console")
+        for line in block.lines
+        if line.startswith("$ pip install")
+        for extras in re.findall(r"cartwheel\[([^\]]+)\]", line)
+        for extra in extras.split(",")
+    }
+    assert {extra for _, extra in named} >= {"foxglove", "gym", "ray"}
+    assert not {each for each in named if each[1] not in known}
 
 
 def test_the_pages_show_commands() -> None:
