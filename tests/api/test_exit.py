@@ -15,19 +15,19 @@ from cartwheel.bridges.recording.opening import open_recording
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes in /proc")
 
 _PROGRAM = """
-import sys, threading
+import sys, threading, time
 import cartwheel as cw
 world = cw.World("empty", record="drive.mcap", foxglove=0, viewer=0)
 world.spawn("rosbots.xacro")
-world.run(1.0)
+world.run(0.2)
 print("ready", flush=True)
 sys.stdin.readline()
 {end}
 """
 _SPINNING = """
 threading.Thread(target=world.spin, daemon=True).start()
-while world.time < 1.2:
-    pass
+while world.time < 0.4:
+    time.sleep(0.01)
 """
 
 
@@ -48,7 +48,7 @@ def _alive(pid: int) -> bool:
         ("world.stop()\ndel world", 0),
         ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", -signal.SIGKILL),
         ("import os, signal; os.kill(os.getpid(), signal.SIGTERM)", -signal.SIGTERM),
-        ("import os\nif not os.fork(): sys.exit()\nos.wait()\nworld.run(0.5)", 0),
+        ("import os\nif not os.fork(): sys.exit()\nos.wait()\nworld.run(0.2)", 0),
     ],
 )
 def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:

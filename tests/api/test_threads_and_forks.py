@@ -1,6 +1,5 @@
 """One world used by several threads, and by processes that were forked from its own."""
 
-import subprocess
 import sys
 import threading
 import time
@@ -8,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from tests import launching
 
 import cartwheel as cw
 from cartwheel.simulation.sensing.opengl import ForkedError
@@ -75,7 +75,7 @@ assert world.time == 0
     ids=["after an image", "before any image", "multiprocessing"],
 )
 def test_a_fork(script):
-    done = subprocess.run(
+    done = launching.run(
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")
@@ -204,7 +204,7 @@ print(round(world.time, 3))
 
 
 def test_a_connected_world_is_refused_in_a_forked_process(tmp_path: Path) -> None:
-    done = subprocess.run(
+    done = launching.run(
         [sys.executable, "-c", FORKED_CONNECTED],
         cwd=tmp_path,
         capture_output=True,

@@ -19,7 +19,7 @@ from tests import launching
 from tests.reserved import free_port
 
 PROGRAM = Path(sys.executable).with_name("cartwheel")
-PYTHON = "/usr/bin/python3"
+PYTHON = launching.ROS1_PYTHON
 PATIENCE = 120.0
 
 NEEDED = ("rosmaster", "rostopic", "rosservice", "rosnode", "rosbag", "rosparam")
@@ -50,6 +50,7 @@ class Master:
             "ROS_HOME": str(folder),
             "XDG_RUNTIME_DIR": str(folder),
         }
+        launching.admit_ros1(self.environment)
         self._process: subprocess.Popen[bytes] | None = None
         self.start()
 
@@ -58,7 +59,7 @@ class Master:
         return xmlrpc.client.ServerProxy(self.uri)
 
     def start(self) -> None:
-        self._process = subprocess.Popen(
+        self._process = launching.Popen(
             ["rosmaster", "--core", "-p", str(self.port)],
             env=self.environment,
             stdout=subprocess.DEVNULL,
@@ -78,7 +79,7 @@ class Master:
 
     def run(self, *command: str, timeout: float = PATIENCE, check: bool = True) -> str:
         """The output of a tool."""
-        done = subprocess.run(
+        done = launching.run(
             command,
             env=self.environment,
             capture_output=True,
@@ -91,7 +92,7 @@ class Master:
 
     def python(self, script: str, *arguments: str) -> subprocess.Popen[str]:
         """A rospy script of Debian's Python, running."""
-        return subprocess.Popen(
+        return launching.Popen(
             [PYTHON, "-c", script, *arguments],
             env=self.environment,
             stdin=subprocess.PIPE,

@@ -2,9 +2,12 @@
 
 import contextlib
 import threading
+import types
+import zipfile
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from viser import _icons
 
 from cartwheel.gate.access import Access
 from cartwheel.gate.listening import listen
@@ -68,3 +71,12 @@ def test_threads_send_messages_while_the_loop_waits(page):
                     sources = [message.get("source", "") for message in browser.messages]
                     arrived = [source for source in sources if source.startswith(prefix)]
                     assert arrived == [f"{prefix}{count}" for count in range(MESSAGES)]
+
+
+def test_each_icon_is_that_of_viser(page):
+    assert isinstance(_icons.zipfile, types.SimpleNamespace)
+    with zipfile.ZipFile(_icons.ICONS_DIR / "tabler-icons.zip") as archive:
+        for name in (page.viser.Icon.CAMERA, page.viser.Icon.TRASH):
+            expected = archive.read(f"{name}.svg").decode()
+            assert _icons.svg_from_icon.__wrapped__(name) == expected
+            assert _icons.svg_from_icon.__wrapped__(name) == expected

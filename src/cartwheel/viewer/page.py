@@ -66,6 +66,7 @@ class Page:
         from cartwheel.gate.gate import Gate
 
         self.viser = viser
+        viser_internals.open_icons_once()
         # Errors of arbitrary connections, such as port scanners, are not printed in the terminal.
         logging.getLogger("websockets").addHandler(logging.NullHandler())
         host = hidden_host()

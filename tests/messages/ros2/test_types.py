@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from tests import launching
 
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import (
@@ -229,3 +231,21 @@ def test_what_jazzy_asks_for_and_is_answered_has_the_newest_form() -> None:
     (spawnable,) = to_dict(response)["spawnables"]
     assert (spawnable["uri"], spawnable["description"]) == ("a", "b")
     assert older_versions("std_srvs/srv/Empty") == ()
+
+
+FRESH = """
+from cartwheel.messages.ros2.types import ros2_service, ros2_type
+from cartwheel.messages.store import loaded
+
+print(ros2_type("gazebo_msgs/msg/ModelState").hash, ros2_service("std_srvs/srv/Empty").hash)
+print("gazebo_msgs/msg/LinkStates" in loaded().fielddefs)
+"""
+
+
+def test_hashes_read_only_the_types_that_they_need() -> None:
+    """A bridge computes them when it starts, and reading all types takes longer than its start."""
+    done = launching.run([sys.executable, "-c", FRESH], capture_output=True, text=True, check=True)
+    model, service, others_read = done.stdout.split()
+    assert model == ros2_type("gazebo_msgs/msg/ModelState").hash
+    assert service == ros2_service("std_srvs/srv/Empty").hash
+    assert others_read == "False"

@@ -14,7 +14,10 @@ from cartwheel.messages.ros2.hashes import rihs01
 from cartwheel.messages.store import (
     FIRST,
     TWIN,
+    is_bundled,
     learning,
+    loaded,
+    message_class,
     service_classes,
     service_name,
     store,
@@ -88,11 +91,11 @@ def ros2_type(name: str) -> Ros2Type:
         UnknownNameError: ROS 2 does not have this type.
     """
     full = type_name(name)
-    known = store().fielddefs
-    if full not in known or is_ros1_only(full):
+    if not _exists(full) or is_ros1_only(full):
+        known = store().fielddefs
         raise UnknownNameError("ROS 2 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
     real = ros2_name(full)
-    return Ros2Type(name=real, dds=dds_name(real), hash=rihs01(_hash_store().fielddefs, real))
+    return Ros2Type(name=real, dds=dds_name(real), hash=rihs01(_hashed_types(), real))
 
 
 @functools.cache
@@ -109,17 +112,17 @@ def ros2_service(name: str) -> Ros2Service:
         raise UnknownNameError("ROS 2 service type", name, (), code=MESSAGE_TYPE_UNKNOWN)
     request, response = (each.__msgtype__ for each in service_classes(full))
     real = ros2_name(full)
-    made = _hash_store(first=_is_first(full))
-    if real not in made.fielddefs:
-        made.fielddefs |= _whole(real)
+    made = _hashed_types(first=_is_first(full))
+    if real not in made:
+        made |= _whole(real)
     return Ros2Service(
         name=real,
         dds=dds_name(real),
-        hash=rihs01(made.fielddefs, real),
+        hash=rihs01(made, real),
         request=request,
         response=response,
-        request_hash=rihs01(made.fielddefs, f"{real}_Request"),
-        response_hash=rihs01(made.fielddefs, f"{real}_Response"),
+        request_hash=rihs01(made, f"{real}_Request"),
+        response_hash=rihs01(made, f"{real}_Response"),
     )
 
 
@@ -130,7 +133,7 @@ def ros2_hash_of(name: str) -> str:
         UnknownNameError: ROS 2 does not have this type.
     """
     fields_of(name)
-    return rihs01(_hash_store().fielddefs, name)
+    return rihs01(_hashed_types(), name)
 
 
 def fields_of(name: str) -> list[tuple[str, Any]]:
@@ -139,13 +142,14 @@ def fields_of(name: str) -> list[tuple[str, Any]]:
     Raises:
         UnknownNameError: ROS 2 does not have this type.
     """
-    known = _hash_store().fielddefs
+    known = _hashed_types()
     if name not in known and "/msg/" not in name:
         service = _PART.sub("", name)
         twin = twin_name(service)
-        ros2_service(twin if f"{twin}_Request" in store().fielddefs else service)
+        ros2_service(twin if _exists(f"{twin}_Request") else service)
     if name not in known:
-        raise UnknownNameError("ROS 2 type", name, known, code=MESSAGE_TYPE_UNKNOWN)
+        names = [ros2_name(each) for each in store().fielddefs if not is_ros1_only(each)]
+        raise UnknownNameError("ROS 2 type", name, names, code=MESSAGE_TYPE_UNKNOWN)
     from rosbags.interfaces import Nodetype
 
     # rosidl adds this field to a type without fields.
@@ -178,49 +182,66 @@ def dds_name(name: str) -> str:
     return f"{package}::{kind}::dds_::{last}_"
 
 
+def _exists(name: str) -> bool:
+    """Whether Cartwheel contains a message type, or has learnt it."""
+    return is_bundled(name) or name in loaded().fielddefs
+
+
 def _is_first(name: str) -> bool:
     """Whether a type in the graph is the first of two versions."""
     return name.partition("/")[0].endswith(FIRST)
 
 
-def _hash_store(*, first: bool = False) -> Any:
-    stores, added = _hash_stores()
+def _hashed_types(*, first: bool = False) -> _HashedTypes:
+    made, added = _all_hashed_types()
     with learning:
         for each in learnt_since(len(added)):
             added.append(each.name)
             constants, kinds = each.fielddefs(hashed=True)
             described = [(field, _hashed(kind)) for field, kind in kinds]
-            for made in stores:
-                made.fielddefs.setdefault(each.name, (constants, described))
-    return stores[first]
+            for types in made:
+                types.setdefault(each.name, (constants, described))
+    return made[first]
 
 
 @functools.cache
-def _hash_stores() -> tuple[tuple[Any, Any], list[str]]:
-    """Stores without and with the first versions of types, and the types that were added."""
-    return (_made_hash_store(first=False), _made_hash_store(first=True)), []
+def _all_hashed_types() -> tuple[tuple[_HashedTypes, _HashedTypes], list[str]]:
+    """Types without and with the first versions of types, and the types that were learnt."""
+    return (_HashedTypes(first=False), _HashedTypes(first=True)), []
 
 
-def _made_hash_store(*, first: bool) -> Any:
-    """Typestore with only ROS 2 types, under their ROS 2 names and with ``uint8`` for ``char``.
+class _HashedTypes(dict[str, Any]):
+    """ROS 2 types by their ROS 2 names, with ``uint8`` for ``char``, in the form of rosbags.
 
-    ROS 2 computes its hashes from these types.
+    ROS 2 computes its hashes from these types. Each is read when it is needed, because reading
+    all takes longer than the start of a bridge.
 
     Args:
-        first: Whether types with two versions are stored in their first version.
+        first: Whether types with two versions are in their first version.
     """
-    from rosbags.typesys import Stores, get_typestore
 
-    made = get_typestore(Stores.ROS2_JAZZY)
-    made.fielddefs = {
-        ros2_name(name): (constants, [(field, _hashed(kind)) for field, kind in fields])
-        # First versions come last, and so replace the newer versions.
-        for name, (constants, fields) in sorted(
-            store().fielddefs.items(), key=lambda item: _is_first(item[0])
-        )
-        if not is_ros1_only(name) and (first or not _is_first(name)) and learnt(name) is None
-    }
-    return made
+    def __init__(self, *, first: bool) -> None:
+        super().__init__()
+        self._first = first
+
+    def __contains__(self, name: object) -> bool:
+        try:
+            self[str(name)]
+        except KeyError:
+            return False
+        return True
+
+    def __missing__(self, name: str) -> Any:
+        package, slash, rest = name.partition("/")
+        suffixes = (FIRST, "", TWIN) if self._first else ("", TWIN)
+        for suffix in suffixes:
+            full = f"{package}{suffix}{slash}{rest}"
+            if ros2_name(full) == name and is_bundled(full) and not is_ros1_only(full):
+                message_class(full)
+                constants, fields = loaded().fielddefs[full]
+                self[name] = constants, [(field, _hashed(kind)) for field, kind in fields]
+                return self[name]
+        raise KeyError(name)
 
 
 def _hashed(kind: Any) -> Any:
