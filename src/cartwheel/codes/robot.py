@@ -186,3 +186,15 @@ BODY_ON_GROUND = Code(
     "warning",
     "the body of a robot touches the ground as well as its driven wheels",
 )
+STEERING_REVERSED = Code(
+    "CW246",
+    "steering-reversed",
+    "warning",
+    "the axis of a steering joint points down, so the robot steers to the wrong side",
+)
+LIMIT_UNREACHABLE = Code(
+    "CW247",
+    "limit-unreachable",
+    "error",
+    "a joint starts far outside its limits, which it cannot reach",
+)

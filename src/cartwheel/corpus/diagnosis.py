@@ -15,6 +15,8 @@ from cartwheel.errors import Code, Diagnostic
 
 _AGREES = 0.15
 """Relative tolerance between a measured velocity and the one that a mistake predicts."""
+_BRAKED = 0.15
+"""Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DRIVING = frozenset(
@@ -236,7 +238,9 @@ def _of_drive(
         expected = [1.0, *(factor for _, factor in factors.values())]
         if min(expected) < ratio < max(expected):
             return next(iter(factors.values()))[0]
-    codes = _TURNING if turning else _DRIVING
+    # A caster may also brake a base that drives straight ahead.
+    brakes = 1.0 - _BRAKED < ratio < 1.0
+    codes = _TURNING if turning else _DRIVING | {robot.CASTER_FRICTION} if brakes else _DRIVING
     return _first(each for each in found if each.code in codes and not _only_measures(each))
 
 
@@ -282,6 +286,8 @@ def _factor(finding: Diagnostic, turning: bool) -> float | None:
     if finding.code is robot.SKID_STEERING and turning:
         ratio = values.get("ratio")
         return ratio if isinstance(ratio, float) else None
+    if finding.code is robot.STEERING_REVERSED and turning:
+        return -1.0
     if finding.code is robot.WHEELS_SWAPPED:
         # Seen in the other direction, the robot drives backward instead.
         return -1.0

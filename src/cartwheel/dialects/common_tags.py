@@ -14,9 +14,9 @@ from cartwheel.simulation.limits import FARTHEST
 ZEROS = (0.0, 0.0, 0.0)
 
 
-def joint_tag(name: str, *, optional: bool = False, doc: str) -> Any:
+def joint_tag(name: str, *, role: Role = "joint", optional: bool = False, doc: str) -> Any:
     """A joint that by default has the name of the tag."""
-    return tag(name, default=name, role="joint", optional=optional, doc=doc)
+    return tag(name, default=name, role=role, optional=optional, doc=doc)
 
 
 def joints_tag(name: str, *, role: Role = "joint", doc: str) -> Any:

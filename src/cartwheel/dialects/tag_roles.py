@@ -19,6 +19,7 @@ Role = Literal[
     "wheel_diameter",
     "wheel_torque",
     "joint",
+    "steering",
     "link",
     "frame",
     "rate",
@@ -30,7 +31,7 @@ Role = Literal[
 """Meaning of a tag.
 
 - ``left_wheel``: the joint of a driven wheel; ``left_wheels``: joints separated by spaces.
-- ``joint``: any other joint.
+- ``steering``: a joint that steers a wheel; ``joint``: any other joint.
 - ``wheel_separation``: distance between wheels across the robot; ``wheel_base``: along it.
 - ``link``: the link that the plugin measures or moves.
 - ``frame``: the frame ID of messages, which is the name of a link.
@@ -40,7 +41,7 @@ Role = Literal[
 - ``tcp_port``, ``udp_port``: a port that the plugin opens.
 """
 WHEEL_ROLES: tuple[Role, ...] = ("left_wheel", "right_wheel", "left_wheels", "right_wheels")
-JOINT_ROLES: tuple[Role, ...] = (*WHEEL_ROLES, "joint")
+JOINT_ROLES: tuple[Role, ...] = (*WHEEL_ROLES, "steering", "joint")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -703,6 +703,19 @@ def test_reversed_limits_have_no_effect():
 
 
 @pytest.mark.parametrize(
+    ("lower", "upper", "reachable"),
+    [(2000, 3000, False), (-3000, -2000, False), (-3000, 3000, True), (1, 2, True)],
+)
+def test_limits_far_from_where_a_joint_starts_have_no_effect(lower, upper, reachable):
+    limits = f"<axis><limit><lower>{lower}</lower><upper>{upper}</upper></limit></axis>"
+    found = robot(BAD_JOINT.format("revolute", ENDS + limits))
+    errors = [named(each) for each in found.diagnostics if each.severity == "error"]
+    assert errors == ([] if reachable else ["limit-unreachable"])
+    (joint,) = found.joints
+    assert (joint.axis.lower is None) is not reachable
+
+
+@pytest.mark.parametrize(
     ("sensor", "code"),
     [
         ('<sensor name="s"/>', "tag-missing"),

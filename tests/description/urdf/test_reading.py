@@ -335,6 +335,10 @@ LOADED = {
         joint("j", "a", "b", '<limit lower="2" upper="1" effort="1" velocity="1"/>', "revolute"),
         "limit-reversed",
     ),
+    "unreachable": (
+        joint("j", "a", "b", '<limit lower="1e9" upper="1e9" effort="0"/>', "revolute"),
+        "limit-unreachable",
+    ),
     "damping": (joint("j", "a", "b", '<dynamics damping="-1"/>', "continuous"), "value-invalid"),
     "friction": (joint("j", "a", "b", '<dynamics friction="-1"/>', "continuous"), "value-invalid"),
     "mimic": (joint("j", "a", "b", '<mimic joint="k"/>', "continuous"), "mimic-unknown"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 from cartwheel.codes import robot, tags
@@ -283,9 +284,7 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
         xyz = rotate(quat_conjugate(in_model.orientation), rotate(frame.orientation, xyz))
     lower = _limit(node.optional_number_at("limit/lower", infinite=True))
     upper = _limit(node.optional_number_at("limit/upper", infinite=True))
-    if lower is not None and upper is not None and lower > upper:
-        ctx.report(reversed_limits(joint, lower, upper, node.origin))
-        lower = upper = None
+    lower, upper = usable_limits(joint, lower, upper, node.origin, ctx.report)
     return Axis(
         xyz=xyz,
         lower=lower,
@@ -297,6 +296,10 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
         spring_stiffness=node.number_at("dynamics/spring_stiffness", 0.0),
         spring_reference=node.number_at("dynamics/spring_reference", 0.0),
     )
+
+
+_FARTHEST = 1000.0
+"""rad or m; limits further from 0, where a joint starts, cannot be meant."""
 
 
 def _limit(value: float | None) -> float | None:
@@ -340,11 +343,32 @@ def _pitch(node: Node) -> float:
     return -2 * math.pi / value
 
 
-def reversed_limits(joint: str, lower: float, upper: float, origin: Origin) -> Diagnostic:
-    """The error for reversed limits, which Gazebo's physics engine ignores."""
-    return robot.LIMIT_REVERSED.diagnostic(
-        f'joint "{joint}": the lower limit {lower:g} is above the upper limit {upper:g}, so the '
-        "joint is not limited",
-        origin=origin,
-        values={"joint": joint, "lower": lower, "upper": upper},
+def usable_limits(
+    joint: str,
+    lower: float | None,
+    upper: float | None,
+    origin: Origin,
+    report: Callable[[Diagnostic], None],
+) -> tuple[float | None, float | None]:
+    """The limits of a joint, rad or m; None for both, with a report, if no position can be between
+    them.
+
+    Gazebo's physics engine ignores reversed limits. It would throw a joint that starts far from its
+    limits towards them.
+    """
+    if lower is not None and upper is not None and lower > upper:
+        code, why = robot.LIMIT_REVERSED, f"the lower limit {lower:g} is above the upper {upper:g}"
+    elif (lower is not None and lower > _FARTHEST) or (upper is not None and upper < -_FARTHEST):
+        stated = [f"{each:g}" for each in (lower, upper) if each is not None]
+        code = robot.LIMIT_UNREACHABLE
+        why = f"it starts at 0, which is far from its limits {' and '.join(stated)}"
+    else:
+        return lower, upper
+    report(
+        code.diagnostic(
+            f'joint "{joint}": {why}, so the joint is not limited',
+            origin=origin,
+            values={"joint": joint, "lower": lower, "upper": upper},
+        )
     )
+    return None, None

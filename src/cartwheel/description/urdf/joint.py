@@ -10,7 +10,7 @@ from cartwheel.codes import robot, tags
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.xml import Node
 from cartwheel.description.model import Axis, Joint, JointType, Mimic, SoftLimits
-from cartwheel.description.sdf.joint import reversed_limits
+from cartwheel.description.sdf.joint import usable_limits
 from cartwheel.description.urdf.context import UrdfContext, read_origin
 from cartwheel.errors import Value
 from cartwheel.geometry import Pose, Vec3
@@ -130,9 +130,7 @@ def _axis(node: Node, limits: Node | None, name: str, kind: JointType, ctx: Urdf
         velocity = _bound(limits, "velocity", name, ctx)
         if kind in ("revolute", "prismatic"):
             lower, upper = lower or 0.0, upper or 0.0
-            if lower > upper:
-                ctx.report(reversed_limits(name, lower, upper, limits.origin))
-                lower = upper = None
+            lower, upper = usable_limits(name, lower, upper, limits.origin, ctx.report)
     elif kind in ("revolute", "prismatic"):
         ctx.warn(
             robot.LIMIT_MISSING,

@@ -12,6 +12,7 @@ from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
 from cartwheel.devices.elementwise import Number, clamp, where
 from cartwheel.devices.ramp import ramp
+from cartwheel.geometry import rotate
 
 _QUARTER = math.pi / 2
 """Maximum steering angle, rad."""
@@ -115,7 +116,11 @@ class TricycleDrive(Drive):
         return forward * math.cos(angle), forward * math.sin(angle) / self._wheel_base()
 
     def _wheel_base(self) -> float:
-        """Distance from the steered wheel to the middle of the free wheels, m."""
+        """Distance of the steered wheel ahead of the middle of the free wheels, m.
+
+        Ahead is where the driven wheel rolls. A robot steered by a wheel behind the others turns to
+        the right at a positive angle.
+        """
         config, description = self._config, self.part.description
         poses = link_poses(description, {})
         steered, left, right = (
@@ -124,7 +129,12 @@ class TricycleDrive(Drive):
             if (joint := description.joint(name)) is not None
         )
         middle = [(a + b) / 2 for a, b in zip(left, right, strict=True)]
-        return math.dist(steered[:2], middle[:2])
+        wheel = description.joint(config.wheel)
+        assert wheel is not None
+        pose = poses[wheel.child]
+        axis = rotate(pose.orientation, rotate(wheel.pose.orientation, wheel.axis.xyz))
+        ahead = (steered[0] - middle[0]) * axis[1] - (steered[1] - middle[1]) * axis[0]
+        return math.copysign(math.dist(steered[:2], middle[:2]), ahead)
 
     def update(self, seconds: float) -> None:
         config = self._config

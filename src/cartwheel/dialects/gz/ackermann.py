@@ -27,10 +27,10 @@ class GzAckermannParameters(GzLimitedParameters):
         "right_joint", doc="Joint of a driven right wheel. Repeat the tag for each wheel."
     )
     steer_left: str = joint_tag(
-        "left_steering_joint", doc="Joint that steers the front left wheel."
+        "left_steering_joint", role="steering", doc="Joint that steers the front left wheel."
     )
     steer_right: str = joint_tag(
-        "right_steering_joint", doc="Joint that steers the front right wheel."
+        "right_steering_joint", role="steering", doc="Joint that steers the front right wheel."
     )
     wheel_separation: float = size_tag(
         "wheel_separation",

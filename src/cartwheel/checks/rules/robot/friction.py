@@ -12,10 +12,15 @@ from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
-from cartwheel.description.model import Link
+from cartwheel.description.model import Collision, Link, Sphere
+from cartwheel.description.solids import solid_of
 from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01
+_LEVEL = 0.006
+"""m; maximum difference of the heights of parts that touch the same ground."""
+_LOW = 0.3
+"""Friction coefficient of a caster that hardly brakes a robot."""
 
 
 @rule(robot_codes.WHEEL_FRICTIONLESS)
@@ -56,7 +61,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             collision = link.collisions[0]
             mu = collision.surface.mu1
-            if (mu is not None and mu <= 0.3) or _names_nothing(subject):
+            if (mu is not None and mu <= _LOW) or _names_nothing(subject):
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
             yield robot_codes.CASTER_FRICTION.diagnostic(
@@ -68,6 +73,34 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 instead=text,
                 hint="Add these tags to the robot, or change the existing values.",
             )
+        for link, collision in _fixed_balls(robot, wheels):
+            mu = collision.surface.mu1
+            if (mu is not None and mu <= _LOW) or _names_nothing(subject):
+                continue
+            yield robot_codes.CASTER_FRICTION.diagnostic(
+                message=f'the sphere of link "{link.name}" is a caster that cannot roll, and its '
+                f"friction coefficient is {'1, the default' if mu is None else f'{mu:g}'}",
+                values={"link": link.name, "friction": mu},
+                origin=collision.origin,
+                hint="Move the sphere to a link of its own, on a fixed joint, and set <mu1> and "
+                "<mu2> of this link to 0.",
+            )
+
+
+def _fixed_balls(robot: Robot, wheels: set[str]) -> Iterator[tuple[Link, Collision]]:
+    """Spheres of links that are not casters by name, on which a robot stands beside its wheels."""
+    bottoms = [h for name in wheels if (h := lowest(robot, name)) is not None]
+    trunks = {robot.rigid_root(robot.joints[joint.name].parent) for joint in wheel_joints(robot)}
+    for link in robot.description.links:
+        if "caster" in link.name.lower() or robot.rigid_root(link.name) not in trunks:
+            continue
+        for collision in link.collisions:
+            solid = solid_of(collision, link.name) if isinstance(collision.shape, Sphere) else None
+            if solid is None or not bottoms or link.name not in robot.placed:
+                continue
+            height = float(solid.placed(robot.links[link.name].pose)[:, 2].min())
+            if abs(height - min(bottoms)) < _LEVEL:
+                yield link, collision
 
 
 def _names_nothing(subject: Subject) -> bool:
@@ -91,4 +124,4 @@ def _surface_node(robot: Robot, link: str, tag: str) -> Node | None:
 def _touches_ground(robot: Robot, link: Link, wheels: set[str]) -> bool:
     height = lowest(robot, link.name)
     bottoms = [h for name in wheels if (h := lowest(robot, name)) is not None]
-    return height is not None and bool(bottoms) and abs(height - min(bottoms)) < 0.006
+    return height is not None and bool(bottoms) and abs(height - min(bottoms)) < _LEVEL

@@ -1,10 +1,10 @@
-"""Directions of the axes of driven wheels."""
+"""Directions of the axes of driven and steered wheels."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cartwheel.checks import nodes
+from cartwheel.checks import nodes, plugin_tags
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -13,6 +13,7 @@ from cartwheel.checks.wheels import (
     axis_senses,
     axle_toward_left,
     faces_backwards,
+    wheel_axis,
     wheel_pairs,
     wheel_place,
 )
@@ -21,6 +22,9 @@ from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic
 from cartwheel.geometry import matrix_from_quat
+
+_DOWN = -0.5
+"""Cosine of the angle between a steering axis and the vertical."""
 
 
 @rule(robot_codes.WHEEL_AXIS_MISALIGNED)
@@ -73,3 +77,32 @@ def _not_across(robot: Robot, joint: Joint, toward_left: Floats) -> Diagnostic:
         place="" if written is None else "attribute" if node is not None else "inside",
         mark="xyz" if node is not None else f'name="{joint.name}"',
     )
+
+
+@rule(robot_codes.STEERING_REVERSED)
+def steering_axes(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        steered = {
+            name.strip(): None
+            for tag in robot.description.plugins
+            for each in plugin_tags.roles(tag.filename)
+            if each.role == "steering"
+            for name in each.joints(tag.element)
+        }
+        for name in steered:
+            joint = robot.joints.get(name)
+            if joint is None or joint.child not in robot.placed:
+                continue
+            if wheel_axis(robot, joint)[2] > _DOWN:
+                continue
+            node = nodes.child(robot.joint_node(name), "axis")
+            xyz = " ".join(nodes.short(-value + 0.0) for value in joint.axis.xyz)
+            yield robot_codes.STEERING_REVERSED.diagnostic(
+                message=f'the axis of the steering joint "{name}" points down, so the robot steers '
+                "to the wrong side",
+                values={"joint": name},
+                origin=node.origin if node is not None else joint.origin,
+                instead=f'xyz="{xyz}"' if node is not None else "",
+                place="attribute" if node is not None else "",
+                mark="xyz",
+            )

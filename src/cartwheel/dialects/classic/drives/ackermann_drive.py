@@ -27,10 +27,10 @@ class AckermannParameters:
     rear_left: str = joint_tag("rear_left_joint", doc="Joint of the driven rear left wheel.")
     rear_right: str = joint_tag("rear_right_joint", doc="Joint of the driven rear right wheel.")
     steer_left: str = joint_tag(
-        "left_steering_joint", doc="Joint that steers the front left wheel."
+        "left_steering_joint", role="steering", doc="Joint that steers the front left wheel."
     )
     steer_right: str = joint_tag(
-        "right_steering_joint", doc="Joint that steers the front right wheel."
+        "right_steering_joint", role="steering", doc="Joint that steers the front right wheel."
     )
     steering_wheel: str = joint_tag(
         "steering_wheel_joint",

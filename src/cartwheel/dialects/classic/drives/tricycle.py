@@ -21,7 +21,7 @@ class TricycleParameters:
         "steeringJoint",
         "steering_joint",
         default="front_steering_joint",
-        role="joint",
+        role="steering",
         doc="Joint that steers the driven wheel.",
     )
     wheel_joint: str = tag(

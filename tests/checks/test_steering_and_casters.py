@@ -1,0 +1,103 @@
+"""Axes of steering joints, and casters that are spheres of the body."""
+
+import pytest
+
+import cartwheel
+from cartwheel.codes.robot import CASTER_FRICTION, STEERING_REVERSED
+
+INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
+WHEEL = (
+    '<link name="{name}">' + INERTIAL.format(m=0.5, i=0.002) + "<collision>"
+    '<origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.1" length="0.03"/></geometry>'
+    '</collision></link><joint name="{name}_joint" type="continuous"><parent link="{parent}"/>'
+    '<child link="{name}"/><origin xyz="{place}"/><axis xyz="0 1 0"/></joint>'
+)
+BODY = (
+    '<link name="base">' + INERTIAL.format(m=5, i=0.1) + "<collision><geometry>"
+    '<box size="0.4 0.2 0.1"/></geometry></collision>{more}</link>'
+)
+REAR = WHEEL.format(name="left", parent="base", place="-0.2 0.15 0") + WHEEL.format(
+    name="right", parent="base", place="-0.2 -0.15 0"
+)
+FORK = (
+    '<link name="{name}">' + INERTIAL.format(m=0.2, i=0.001) + "</link>"
+    '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'
+    '<origin xyz="{place}" rpy="{rpy}"/><axis xyz="{axis}"/></joint>'
+)
+
+
+def found(tmp_path, text, code):
+    path = tmp_path / "robot.urdf"
+    path.write_text(f'<robot name="robot">{text}</robot>')
+    return [each for each in cartwheel.check(path).findings if each.code is code]
+
+
+def tricycle(rpy, axis):
+    fork = FORK.format(name="fork", place="0.2 0 0", rpy=rpy, axis=axis)
+    plugin = (
+        '<gazebo><plugin name="drive" filename="libgazebo_ros_tricycle_drive.so">'
+        "<steeringJoint>fork_joint</steeringJoint><actuatedWheelJoint>front_joint"
+        "</actuatedWheelJoint><encoderWheelLeftJoint>left_joint</encoderWheelLeftJoint>"
+        "<encoderWheelRightJoint>right_joint</encoderWheelRightJoint></plugin></gazebo>"
+    )
+    front = WHEEL.format(name="front", parent="fork", place="0 0 0")
+    return BODY.format(more="") + REAR + fork + front + plugin
+
+
+@pytest.mark.parametrize(
+    ("rpy", "axis", "meant"),
+    [
+        ("0 0 0", "0 0 1", None),
+        ("0 0 0", "0 0 -1", 'xyz="0 0 1"'),
+        ("-1.5708 0 0", "0 1 0", 'xyz="0 -1 0"'),
+        ("-1.5708 0 0", "0 -1 0", None),
+        ("0.2 0 0", "0 0 1", None),
+    ],
+)
+def test_a_steering_axis_that_points_down_is_reported(tmp_path, rpy, axis, meant):
+    findings = found(tmp_path, tricycle(rpy, axis), STEERING_REVERSED)
+    if meant is None:
+        assert findings == []
+        return
+    (finding,) = findings
+    assert finding.values["joint"] == "fork_joint"
+    assert finding.instead == meant
+
+
+def test_both_steering_joints_of_a_car_are_examined(tmp_path):
+    forks = "".join(
+        FORK.format(name=name, place=f"0.2 {y} 0", rpy="0 0 0", axis=axis)
+        + WHEEL.format(name=f"{name}_wheel", parent=name, place="0 0 0")
+        for name, y, axis in (("one", 0.15, "0 0 1"), ("two", -0.15, "0 0 -1"))
+    )
+    plugin = (
+        '<gazebo><plugin name="drive" filename="gz-sim-ackermann-steering-system">'
+        "<left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>"
+        "<left_steering_joint>one_joint</left_steering_joint>"
+        "<right_steering_joint>two_joint</right_steering_joint></plugin></gazebo>"
+    )
+    (finding,) = found(tmp_path, BODY.format(more="") + REAR + forks + plugin, STEERING_REVERSED)
+    assert finding.values["joint"] == "two_joint"
+
+
+DRIVE = (
+    '<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+    "<leftJoint>left_joint</leftJoint><rightJoint>right_joint</rightJoint>"
+    "<wheelSeparation>0.3</wheelSeparation><wheelDiameter>0.2</wheelDiameter></plugin></gazebo>"
+)
+
+
+@pytest.mark.parametrize(
+    ("z", "mu", "reported"),
+    [(-0.08, None, True), (-0.08, 0.8, True), (-0.08, 0.1, False), (-0.04, None, False)],
+)
+def test_a_sphere_of_the_body_beside_the_wheels_is_a_caster(tmp_path, z, mu, reported):
+    """The wheels have a radius of 0.1 m, and the ball of 0.02 m."""
+    ball = (
+        f'<collision><origin xyz="0.15 0 {z}"/><geometry><sphere radius="0.02"/></geometry>'
+        "</collision>"
+    )
+    friction = "" if mu is None else f'<gazebo reference="base"><mu1>{mu}</mu1></gazebo>'
+    text = BODY.format(more=ball) + REAR + DRIVE + friction
+    findings = found(tmp_path, text, CASTER_FRICTION)
+    assert [each.values["link"] for each in findings] == ["base"] * reported
