@@ -58,13 +58,13 @@ def bridged(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros2Bridged]:
     made.close()
 
 
-# How a response names its request: as rmw_cyclonedds does, and as rmw_fastrtps does.
-@pytest.mark.parametrize("mapping", ["cyclone", "enhanced"])
-def test_it_reads_drives_spawns_and_resets(
-    program: Path, bridged: Ros2Bridged, mapping: str
-) -> None:
+def test_it_reads_drives_spawns_and_resets(program: Path, bridged: Ros2Bridged) -> None:
     done = subprocess.run(
-        [program, str(DOMAIN + 2), mapping], capture_output=True, text=True, timeout=400, check=True
+        [program, str(DOMAIN + 2), "cyclone"],
+        capture_output=True,
+        text=True,
+        timeout=400,
+        check=True,
     )
     said = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
     assert said["spawn"][0] == "true", done.stdout
@@ -83,6 +83,7 @@ def test_it_reads_drives_spawns_and_resets(
     assert abs(pose.position[0]) < 0.2
 
 
+# How a response names its request: as rmw_cyclonedds does, and as rmw_fastrtps does.
 @pytest.mark.parametrize("mapping", ["cyclone", "enhanced"])
 def test_it_sends_goals_and_cancels_one(
     program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mapping: str

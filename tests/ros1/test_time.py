@@ -60,7 +60,7 @@ def desk(tmp_path: Path, overlay: object) -> Iterator[Desk]:
         yield desk
 
 
-@pytest.mark.parametrize("speed", [0.5, 1.0, 4.0])
+@pytest.mark.parametrize("speed", [0.5, 4.0])
 def test_transforms_keep_up_with_messages(desk: Desk, tmp_path: Path, speed: float) -> None:
     simulation = desk.terminal()
     program = Path(sys.executable).with_name("cartwheel")
