@@ -31,6 +31,8 @@ AT_TOP_LEVEL = "Define functions at the top level of a module, not as a lambda o
 """The remedy for most values that are `unpicklable`."""
 _END = 5.0
 """Wall time in which a process must end, s."""
+_START = 600.0
+"""Wall time in which a process must start, with the imports of its jobs, s."""
 
 
 def cores() -> int:
@@ -56,8 +58,10 @@ class _Worker(Generic[Job]):
     link: Connection
     jobs: list[Job] = field(default_factory=list)
     """The current job, if there is one."""
+    ready: bool = field(default=False)
+    """Whether the process has started."""
     end: float = field(default=0.0)
-    """Time of `time.monotonic` at which the job must be done."""
+    """Time of `time.monotonic` at which the job must be done, or the process ready."""
 
 
 class Workers(Generic[Job, Result]):
@@ -67,7 +71,7 @@ class Workers(Generic[Job, Result]):
         prepare: See `Prepare`. It and all jobs must be picklable.
         lost: Returns the result of a job whose process has ended or took too long, for a reason.
         count: Number of processes.
-        timeout: Maximum wall time of a job, s.
+        timeout: Maximum wall time of a job, s, without the start of its process.
         name: Name of the processes.
     """
 
@@ -106,16 +110,19 @@ class Workers(Generic[Job, Result]):
             for worker in self._workers[:count]:
                 if not worker.jobs and waiting:
                     worker.jobs.append(waiting.popleft())
-                    worker.end = time.monotonic() + self._timeout
-                    with contextlib.suppress(OSError):  # it has crashed, which `_result` notices
+                    if worker.ready:
+                        worker.end = time.monotonic() + self._timeout
+                    with contextlib.suppress(OSError):  # it has crashed, which `_received` notices
                         worker.link.send(worker.jobs[0])
             busy = {each.link: each for each in self._workers if each.jobs}
             for link in wait(list(busy), _LOOK):
                 assert isinstance(link, Connection)
-                yield self._result(busy[link])
+                yield from self._received(busy[link])
             for worker in busy.values():
                 if worker.jobs and time.monotonic() > worker.end:
-                    yield self._replace(worker, f"it took more than {self._timeout:g} s")
+                    late = f"it took more than {self._timeout:g} s"
+                    unready = f"its process did not start within {_START:g} s"
+                    yield self._replace(worker, late if worker.ready else unready)
 
     def _start(self) -> None:
         number = max([each.number for each in self._workers], default=-1) + 1
@@ -125,17 +132,23 @@ class Workers(Generic[Job, Result]):
         )
         process.start()
         theirs.close()
-        self._workers.append(_Worker(number, process, ours))
+        self._workers.append(_Worker(number, process, ours, end=time.monotonic() + _START))
 
-    def _result(self, worker: _Worker[Job]) -> Result:
+    def _received(self, worker: _Worker[Job]) -> Iterator[Result]:
+        """The result that a process with a job has sent, or nothing if it has become ready."""
         try:
             result: Result = worker.link.recv()
         except (EOFError, OSError):
             worker.process.join(_END)
             status = worker.process.exitcode
-            return self._replace(worker, f"its process ended with status {status}")
+            yield self._replace(worker, f"its process ended with status {status}")
+            return
+        if not worker.ready:
+            worker.ready = True
+            worker.end = time.monotonic() + self._timeout
+            return
         worker.jobs.clear()
-        return result
+        yield result
 
     def _replace(self, worker: _Worker[Job], reason: str) -> Result:
         """The result of a job whose process ended or is too slow. The process is replaced."""
@@ -179,6 +192,7 @@ def _work(link: Connection, prepare: Prepare[Any, Any], number: int) -> None:
     signal.signal(signal.SIGTERM, _interrupt)
     with contextlib.suppress(KeyboardInterrupt, EOFError, OSError):
         do = prepare(number)
+        link.send(None)  # it is ready
         while True:
             job = link.recv()
             link.send(do(job))
