@@ -472,7 +472,10 @@ def test_worlds_that_differ(world, make):
     expected = run(world)
     with cw.World("empty", without="all") as other, raises(STATE_MISMATCH):
         other.restore(state)
-    with cw.World("post") as other:
+    # Both worlds have the name "default" and start with other models.
+    with cw.World("walls") as other, raises(STATE_MISMATCH):
+        other.restore(state)
+    with cw.World("empty") as other:
         # The models of the state replace others.
         other.spawn(make.box("rosbots", (0.1, 0.1, 0.1)))
         other.restore(pickle.loads(pickle.dumps(state)))

@@ -119,6 +119,10 @@ def _check(session: Session, state: State) -> None:
     name, without = session.simulation.world.name, session.simulation.engine.without
     if state._world.name != name:
         raise mismatch(f'the state is of world "{state._world.name}", and this is world "{name}"')
+    furniture = tuple(model.name for model in session.simulation.world.models)
+    if state._furniture != furniture:
+        found = sorted(set(state._furniture) ^ set(furniture)) or furniture
+        raise mismatch(f'the files of the worlds differ in model "{found[0]}"')
     if state._without != tuple(sorted(without)):
         raise mismatch("different physics is omitted")
 

@@ -34,6 +34,7 @@ class State:
         *,
         version: tuple[str, str],
         world: WorldDescription,
+        furniture: tuple[str, ...],
         house: SavedModel,
         models: tuple[SavedModel, ...],
         without: tuple[str, ...],
@@ -46,6 +47,7 @@ class State:
     ) -> None:
         self._version = version
         self._world = world
+        self._furniture = furniture
         self._house = house
         self._models = models
         self._without = without
@@ -110,6 +112,7 @@ def save(session: Session, left_out: tuple[str, ...] = ()) -> State:
     state = State(
         version=version(),
         world=replace(simulation.world, models=()),
+        furniture=tuple(model.name for model in simulation.world.models),
         house=describe(simulation.population.house, Spawned()),
         models=tuple(
             describe(each, session.spawned.get(name, Spawned()))
