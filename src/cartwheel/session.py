@@ -355,20 +355,20 @@ class Session:
     def _check(self, start: int) -> None:
         if not self.strict:
             return
-        for diagnostic in self.simulation.diagnostics[start:]:
-            if (
-                diagnostic.severity != "info"
-                and diagnostic.code not in self.simulation.faults.ignore
-            ):
-                hint = f"{diagnostic.hint} " if diagnostic.hint else ""
-                raise CartwheelError(
-                    diagnostic.message,
-                    code=diagnostic.code,
-                    origin=diagnostic.origin,
-                    hint=f"{hint}{STRICT.given()} makes every warning an error.",
-                    values=diagnostic.values,
-                    mark=diagnostic.mark,
-                )
+        for each in self.simulation.diagnostics[start:]:
+            if each.severity == "info" or each.code in self.simulation.faults.ignore:
+                continue
+            error = CartwheelError(
+                each.message,
+                code=each.code,
+                origin=each.origin,
+                hint=f"{each.hint} {STRICT.given()} makes every warning an error.".lstrip(),
+                values=each.values,
+                mark=each.mark,
+            )
+            if each.details:
+                error.add_note(each.details)
+            raise error
 
     def _schedule_clock(self, rate: float) -> Task:
         return self.simulation.schedule(rate, after=self._publish_clock, topics=[self._clock])

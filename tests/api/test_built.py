@@ -14,7 +14,7 @@ from tests.coded import raises
 from tests.devices.cameras.sensors import pixels_of, sensor, take
 
 import cartwheel as cw
-from cartwheel.codes.command import OPTIONS_CONFLICT
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.codes.world import MODEL_NAME_TAKEN
 from cartwheel.simulation.models import compilations
 
@@ -176,7 +176,7 @@ def test_options_of_the_world_and_of_the_build(built, tmp_path):
 def test_mistakes_in_the_robots():
     with raises(MODEL_NAME_TAKEN, name="rosbots", free="rosbots_1"):
         cw.build("empty", ["rosbots.xacro", "rosbots.xacro"])
-    with pytest.raises(TypeError):
-        cw.build("empty", {"robot": "rosbots.xacro", "height": 2})
-    with pytest.raises(TypeError):
+    with raises(OPTION_INVALID, name="nmae", meant="name"):
+        cw.build("empty", {"robot": "rosbots.xacro", "nmae": "cart"})
+    with raises(OPTION_INVALID, name="robots"):
         cw.build("empty", {"name": "rosbots"})

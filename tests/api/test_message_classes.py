@@ -4,7 +4,13 @@ import pytest
 from tests.coded import raises
 
 import cartwheel as cw
-from cartwheel.codes.graph import FIELD_VALUE_INVALID, MESSAGE_TYPE_UNKNOWN, TOPIC_TYPE_MISMATCH
+from cartwheel.codes.command import OPTIONS_CONFLICT
+from cartwheel.codes.graph import (
+    FIELD_UNKNOWN,
+    FIELD_VALUE_INVALID,
+    MESSAGE_TYPE_UNKNOWN,
+    TOPIC_TYPE_MISMATCH,
+)
 from cartwheel.msgs.geometry_msgs import Twist, Vector3
 from cartwheel.msgs.nav_msgs import Odometry
 from cartwheel.msgs.sensor_msgs import Imu
@@ -70,5 +76,11 @@ def test_a_class_creates_a_topic() -> None:
         publisher = world.advertise("/height", Float64)
         publisher.publish(Float64(2.5))
         assert heights.latest.data == 2.5
-        assert [each.data for each in box.drain()] == [2.5]
+        publisher.publish(data=1.5)
+        publisher.publish({"data": 0.5})
+        assert [each.data for each in box.drain()] == [2.5, 1.5, 0.5]
+        with raises(OPTIONS_CONFLICT):
+            publisher.publish(Float64(2.5), data=1.0)
+        with raises(FIELD_UNKNOWN, field="dta", meant="data"):
+            publisher.publish(dta=1.0)
         assert heights.type == "std_msgs/msg/Float64"

@@ -4,6 +4,7 @@ import dataclasses
 import importlib.metadata
 import signal
 import sys
+import traceback
 
 import pytest
 from tests import launching
@@ -236,6 +237,8 @@ def test_strict_ends_with_the_first_fault(cart, when):
         assert got.value.code is running.PLUGIN_FAILED
         assert got.value.values["cause"] == "ZeroDivisionError"
         assert str(got.value.origin).endswith("cart.urdf:10")
+        shown = "".join(traceback.format_exception(got.value))
+        assert 'raise ZeroDivisionError(f"in {place}")' in shown  # the line of the plugin
 
 
 @pytest.mark.wording

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,10 +10,11 @@ from typing import Any
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import paths, refused, source, xacro_arguments
 from cartwheel.api.world import World
-from cartwheel.codes.command import OPTIONS_CONFLICT
+from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.similar_names import meant, suggestion
 from cartwheel.simulation.models.compilations import SharedCompiler
 
 Robot = str | Path | RobotDescription | Mapping[str, Any]
@@ -145,8 +147,8 @@ def build(
         DescriptionError: A file cannot be used.
         WorldError: A name is used twice, or a model cannot be built.
         PluginError: A plugin cannot be used.
-        CartwheelError: A name in `without` or a code is unknown.
-        TypeError: `World.spawn` does not have an argument of a robot.
+        CartwheelError: A name in `without` or a code is unknown, or `World.spawn` does not have an
+            argument of a robot.
     """
     source(world, "world")
     if not isinstance(world, WorldDescription):
@@ -168,6 +170,9 @@ def build(
     return built
 
 
+_SPAWN_OPTIONS = tuple(inspect.signature(World.spawn).parameters)[1:]
+
+
 def _listed(robots: Robot | Sequence[Robot]) -> Sequence[Robot]:
     if isinstance(robots, str | Path | RobotDescription | Mapping):
         return [robots]
@@ -180,9 +185,17 @@ def _read(robot: Robot, package_path: str | Path | Sequence[str | Path]) -> dict
     """The arguments of `World.spawn` for a robot, with its description instead of its file."""
     given: dict[str, Any] = dict(robot) if isinstance(robot, Mapping) else {"robot": robot}
     given.setdefault("package_path", package_path)
-    file = given.get("robot")
-    if "robot" in given:
-        source(file, "robot")
+    if unknown := [name for name in given if name not in _SPAWN_OPTIONS]:
+        raise CartwheelError(
+            f'World.spawn has no argument "{unknown[0]}"',
+            code=OPTION_INVALID,
+            hint=suggestion(unknown[0], _SPAWN_OPTIONS),
+            values={"name": unknown[0], "meant": meant(unknown[0], _SPAWN_OPTIONS)},
+        )
+    if "robot" not in given:
+        raise refused("robots", 'robots with the key "robot"', robot)
+    file = given["robot"]
+    source(file, "robot")
     if isinstance(file, str | Path):
         given["robot"] = descriptions.load_robot(
             file,

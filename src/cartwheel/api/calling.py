@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from cartwheel.api.arguments import text
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.timing import TIMEOUT, timed_out
-from cartwheel.api.topics import made_message
 from cartwheel.codes.graph import SERVICE_TIMED_OUT
 from cartwheel.codes.world import RUN_NESTED
 from cartwheel.errors import GraphError, SimulationError, UnknownNameError
-from cartwheel.graph import Action, Service
+from cartwheel.graph import Action, Service, made_message
 from cartwheel.graph import Goal as GraphGoal
 from cartwheel.messages import service_classes
 from cartwheel.messages.store import finding_with

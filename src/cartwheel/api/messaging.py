@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, overload
 
 from cartwheel.api.arguments import refused, several, text
 from cartwheel.api.timing import TimedWorld
-from cartwheel.api.topics import Topic, made_message
-from cartwheel.graph import Graph, Mailbox, Publisher, Subscription
+from cartwheel.api.topics import Topic
+from cartwheel.graph import CheckedPublisher, Graph, Mailbox, Subscription, made_message
 from cartwheel.messages.typed import M, Message, name_of
 from cartwheel.simulation.limits import check_size
 
@@ -195,13 +195,13 @@ class MessagingWorld(TimedWorld):
         return self.graph.subscribe(topic, guarded, type_name=full)
 
     @overload
-    def advertise(self, topic: str, type: type[M]) -> Publisher[M]: ...
+    def advertise(self, topic: str, type: type[M]) -> CheckedPublisher[M]: ...
     @overload
-    def advertise(self, topic: str, type: str) -> Publisher[Any]: ...
-    def advertise(self, topic: str, type: type[Message] | str) -> Publisher[Any]:
+    def advertise(self, topic: str, type: str) -> CheckedPublisher[Any]: ...
+    def advertise(self, topic: str, type: type[Message] | str) -> CheckedPublisher[Any]:
         """Advertises a topic, and returns its publisher.
 
-        `Publisher.publish` raises a `GraphError` for a value that is not a message of the type.
+        Its method `publish` accepts the same as `World.publish`, without the name of the topic.
 
         Args:
             topic: Topic name.
@@ -216,7 +216,9 @@ class MessagingWorld(TimedWorld):
         """
         self.check_open()
         full = str(self.message_class(name_of(type)).__msgtype__)
-        return self.graph.advertise(text(topic, "topic"), full, checked=True)
+        publisher = self.graph.advertise(text(topic, "topic"), full, checked=True)
+        assert isinstance(publisher, CheckedPublisher)
+        return publisher
 
     def message_class(self, type: str) -> Any:
         """Returns the class of a message type: a dataclass with the message's fields.

@@ -12,12 +12,11 @@ import numpy as np
 from cartwheel import arrays
 from cartwheel.api.plots import Plot
 from cartwheel.api.timing import TIMEOUT, timed_out
-from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import GraphError, Value
 from cartwheel.geometry import Array
-from cartwheel.graph import checked_message
-from cartwheel.messages import from_dict, from_flat, zero
+from cartwheel.graph import made_message
+from cartwheel.messages import zero
 from cartwheel.messages.typed import M
 from cartwheel.similar_names import meant, suggestion
 from cartwheel.simulation.alarms import Alarm
@@ -351,19 +350,3 @@ class Hold:
         trace: TracebackType | None,
     ) -> None:
         self.stop()
-
-
-def made_message(topic: str, kind: str, message: Any, fields: Mapping[str, Any]) -> Any:
-    """The message that a program gives as a message, a mapping or keyword arguments."""
-    if fields and message is not None:
-        raise GraphError(
-            f"a message and single fields are given: {', '.join(sorted(fields))}",
-            code=OPTIONS_CONFLICT,
-            hint="Pass either a message or its fields.",
-            values={"topic": topic, "fields": tuple(sorted(fields))},
-        )
-    if fields:
-        return from_flat(kind, fields, strict=True)
-    if message is None or isinstance(message, Mapping):
-        return from_dict(kind, message or {}, strict=True)
-    return checked_message(topic, kind, message)

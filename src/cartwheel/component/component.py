@@ -20,6 +20,7 @@ from cartwheel.graph import (
 from cartwheel.graph.reconfigure import OnChange
 from cartwheel.graph.reconfigure import Value as Parameter
 from cartwheel.messages.limits import unfit
+from cartwheel.messages.typed import Kind, name_of
 from cartwheel.simulation import LinkHandle
 from cartwheel.simulation.limits import STRONGEST, number
 
@@ -150,27 +151,27 @@ class Component:
         return self.scope.frame(name)
 
     def advertise(
-        self, topic: str, type_name: str, *, rate: float | None = None, qos: Qos = "default"
+        self, topic: str, type_name: Kind, *, rate: float | None = None, qos: Qos = "default"
     ) -> Publisher:
         """Advertises a topic. The publisher is closed with the component.
 
         Args:
             topic: Name, resolved in the component's scope.
-            type_name: Message type, ``pkg/msg/Name``.
+            type_name: Message type: ``pkg/msg/Name``, or a class of `cartwheel.msgs`.
             rate: Publish rate for listings, Hz.
             qos: Quality of service on ROS 2.
         """
-        self._name_type(type_name)
-        name = self.scope.published(topic, type_name)
+        kind = self._named(type_name)
+        name = self.scope.published(topic, kind)
         publisher = self.graph.advertise(
-            name, type_name, node=self.node, rate=rate, qos=qos, checked=self._foreign
+            name, kind, node=self.node, rate=rate, qos=qos, checked=self._foreign
         )
         self.publishers.append(publisher)
         self.part.topics.add(publisher.topic)
         return self.keep(publisher)
 
     def subscribe(
-        self, topic: str, type_name: str, callback: Callable[[Any], None], *, unset: bool = False
+        self, topic: str, type_name: Kind, callback: Callable[[Any], None], *, unset: bool = False
     ) -> None:
         """Subscribes to a topic. The subscription is closed with the component.
 
@@ -178,13 +179,12 @@ class Component:
 
         Args:
             topic: Name, resolved in the component's scope.
-            type_name: Message type, ``pkg/msg/Name``.
+            type_name: As for `advertise`.
             callback: Receives each message, before the next step.
             unset: Accept NaN and infinity, which some commands use for values that are not set.
         """
-        self._name_type(type_name)
         checked = self.checked(callback, unset=unset)
-        name, kind, receiver = self.scope.subscribed(topic, type_name, checked)
+        name, kind, receiver = self.scope.subscribed(topic, self._named(type_name), checked)
         subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
         self.part.topics.add(subscription.topic)
         owner = self.scope.owner
@@ -208,7 +208,7 @@ class Component:
         Returns:
             Whether the service is offered.
         """
-        self._name_type(type_name)
+        self._named(type_name)
         try:
             service = self.graph.serve(
                 self.resolve(name), type_name, handler, node=self.node, threaded=threaded
@@ -240,13 +240,15 @@ class Component:
         """
         return self.graph.types.message_class(type_name)
 
-    def _name_type(self, type_name: str) -> None:
-        """Looks for the type in packages, also if its package is one that Cartwheel contains.
+    def _named(self, kind: Kind) -> str:
+        """The name of a type, which is also looked for in packages that Cartwheel contains.
 
         Cartwheel's own components use only its own types, for which no files are searched.
         """
+        name = name_of(kind)
         if self._foreign:
-            self.graph.types.named(type_name)
+            self.graph.types.named(name)
+        return name
 
     @property
     def _foreign(self) -> bool:

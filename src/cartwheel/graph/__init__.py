@@ -13,13 +13,14 @@ from cartwheel.graph.topic import (
     TWIST,
     TWIST_STAMPED,
     Callback,
+    CheckedPublisher,
     Publisher,
     Qos,
     Service,
     Subscription,
     TakeValues,
     TopicInfo,
-    checked_message,
+    made_message,
 )
 from cartwheel.graph.transforms import StaticTransforms
 
@@ -30,6 +31,7 @@ __all__ = [
     "ActionListener",
     "ActionTopics",
     "Callback",
+    "CheckedPublisher",
     "Goal",
     "GoalState",
     "Graph",
@@ -49,8 +51,8 @@ __all__ = [
     "TopicInfo",
     "TopicRenaming",
     "check_prefix",
-    "checked_message",
     "choices",
+    "made_message",
     "resolve_frame",
     "resolve_name",
 ]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, Literal
 
 from cartwheel.calls import Post
+from cartwheel.codes.command import OPTIONS_CONFLICT
 from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import GraphError
-from cartwheel.messages import CdrCache, Form, checked, type_name
+from cartwheel.messages import CdrCache, Form, checked, from_dict, from_flat, type_name
 from cartwheel.messages.typed import M
 
 if TYPE_CHECKING:
@@ -216,17 +217,37 @@ class Publisher(Generic[M]):
 class CheckedPublisher(Publisher[M]):
     """A publisher for the code of users. It refuses values that are not messages of its type."""
 
-    def publish(self, message: M) -> None:
+    def publish(self, message: M | Mapping[str, Any] | None = None, **fields: Any) -> None:
         """See `Publisher.publish`.
+
+        Args:
+            message: A message, or its fields by name. None: `fields`.
+            fields: Fields, where ``linear_x`` is the field ``x`` of ``linear``.
 
         Raises:
             GraphError: The value is not a message of the topic's type, or a value in it does not
                 fit its field.
         """
-        message = checked_message(self.topic, self.type, message)
+        made: M = made_message(self.topic, self.type, message, fields)
         # The user may have changed the fields of a message that was published before.
         self._graph.cdr.forget()
-        super().publish(message)
+        super().publish(made)
+
+
+def made_message(topic: str, kind: str, message: Any, fields: Mapping[str, Any]) -> Any:
+    """The message that a program gives as a message, a mapping or keyword arguments."""
+    if fields and message is not None:
+        raise GraphError(
+            f"a message and single fields are given: {', '.join(sorted(fields))}",
+            code=OPTIONS_CONFLICT,
+            hint="Pass either a message or its fields.",
+            values={"topic": topic, "fields": tuple(sorted(fields))},
+        )
+    if fields:
+        return from_flat(kind, fields, strict=True)
+    if message is None or isinstance(message, Mapping):
+        return from_dict(kind, message or {}, strict=True)
+    return checked_message(topic, kind, message)
 
 
 def checked_message(topic: str, kind: str, message: Any) -> Any:

@@ -15,6 +15,9 @@ class Message(Protocol):
     """Type such as ``sensor_msgs/msg/LaserScan``."""
 
 
+Kind = type[Message] | str
+"""A message type as a class of `cartwheel.msgs`, or by its name."""
+
 if TYPE_CHECKING:
     # Type checkers contain this package, which provides the defaults of Python 3.13.
     from typing_extensions import TypeVar

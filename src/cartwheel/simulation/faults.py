@@ -86,7 +86,7 @@ class Faults:
             name = getattr(task.after or task.before, "__qualname__", "a task of the simulation")
             task.forget()
             text = f"{name} failed and is disabled"
-            self._report(fault(text, error, code=world_codes.CALLBACK_FAILED))
+            self._report(fault(text, error, code=world_codes.CALLBACK_FAILED), error)
 
     def disable(self, plugin: object, error: BaseException) -> None:
         """Disables a plugin that raised an error, and reports it; the simulation continues.
@@ -102,17 +102,17 @@ class Faults:
         diagnostic = fault(text, error, place(plugin), code=running.PLUGIN_FAILED, values=values)
         resident.end(plugin)
         self._population.gather_tasks()
-        self._report(diagnostic)
+        self._report(diagnostic, error)
 
-    def _report(self, diagnostic: Diagnostic) -> None:
+    def _report(self, diagnostic: Diagnostic, cause: BaseException) -> None:
         self._engine.report(diagnostic)
         if self.strict and diagnostic.code not in self.ignore:
-            self.defer(
-                PluginError(
-                    diagnostic.message,
-                    code=diagnostic.code,
-                    origin=diagnostic.origin,
-                    hint=f"{STRICT.given()} stops the run at the first error.",
-                    values=diagnostic.values,
-                )
+            raised = PluginError(
+                diagnostic.message,
+                code=diagnostic.code,
+                origin=diagnostic.origin,
+                hint=f"{STRICT.given()} stops the run at the first error.",
+                values=diagnostic.values,
             )
+            raised.__cause__ = cause
+            self.defer(raised)

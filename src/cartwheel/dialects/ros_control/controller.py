@@ -18,6 +18,7 @@ from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.errors import CartwheelError, Code, GraphError, Origin, Severity, Value
 from cartwheel.graph import JointInput, resolve_name
 from cartwheel.messages import message_class
+from cartwheel.messages.typed import Kind, name_of
 
 
 class Controller(Component):
@@ -178,7 +179,7 @@ class Controller(Component):
     def subscribe(
         self,
         topic: str,
-        type_name: str,
+        type_name: Kind,
         callback: Callable[[Any], None],
         *,
         unset: bool = True,
@@ -200,8 +201,8 @@ class Controller(Component):
             elif self.running or always:
                 checked(message)
 
-        topic = self.resolve(topic)
-        self.keep(self.graph.subscribe(topic, receive, type_name=type_name, node=self.node))
+        topic, kind = self.resolve(topic), name_of(type_name)
+        self.keep(self.graph.subscribe(topic, receive, type_name=kind, node=self.node))
         self.part.topics.add(topic)
 
     def accept_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
