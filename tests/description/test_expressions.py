@@ -332,6 +332,7 @@ SMALL_FILES = {
 @pytest.mark.parametrize("name", SMALL_FILES)
 def test_a_small_file_cannot_make_much(name, monkeypatch):
     monkeypatch.setattr("cartwheel.description.xacro.expansion.MAX_ELEMENTS", 5000)
+    monkeypatch.setattr("cartwheel.description.xacro.expansion.MAX_CALLS", 1000)
     with pytest.raises(DescriptionError):
         expanded(SMALL_FILES[name])
 

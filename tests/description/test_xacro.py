@@ -14,7 +14,7 @@ from cartwheel.codes import files
 from cartwheel.description import load_text
 from cartwheel.description.elements import xml
 from cartwheel.description.files.packages import Packages
-from cartwheel.description.xacro import expand
+from cartwheel.description.xacro import expand, expansion
 from cartwheel.errors import DescriptionError
 from cartwheel.options import xacro_argument
 
@@ -293,7 +293,8 @@ def test_errors_within_macros_show_the_calls(folder):
     assert error.origin.stack == ("robot.xacro:3 xacro:inner", "robot.xacro:8 xacro:outer")
 
 
-def test_macros_that_grow_without_bound_end(folder):
+def test_macros_that_grow_without_bound_end(folder, monkeypatch):
+    monkeypatch.setattr(expansion, "MAX_ELEMENTS", 20_000)
     doubling = "".join(
         f'<xacro:macro name="m{n}"><xacro:m{n - 1}/><xacro:m{n - 1}/></xacro:macro>'
         for n in range(1, 40)
@@ -305,14 +306,15 @@ def test_macros_that_grow_without_bound_end(folder):
 
 
 @pytest.mark.parametrize("call", ["<xacro:m{}/>", '<xacro:call macro="m{}"/>'])
-def test_macro_calls_are_bounded(folder, call):
+def test_macro_calls_are_bounded(folder, call, monkeypatch):
+    monkeypatch.setattr(expansion, "MAX_CALLS", 1000)
     each = "".join(
         f'<xacro:macro name="m{n}">{call.format(n - 1) * 2}</xacro:macro>\n' for n in range(1, 40)
     )
     write("robot.xacro", f'<xacro:macro name="m0"/>\n{each}<xacro:m39/>')
     error = failure()
     assert error.code is files.EXPANSION_TOO_LARGE and error.origin.file == "robot.xacro"
-    assert (error.values["kind"], error.values["most"]) == ("calls", 10_000)
+    assert (error.values["kind"], error.values["most"]) == ("calls", 1000)
     assert re.fullmatch(r"xacro:m\d+", error.values["tag"])
     assert error.hint
     assert len(error.origin.stack) == 6

@@ -16,8 +16,13 @@ PACKAGES = (
 )
 PARTS = 4
 """Tests of a package, each of a part of its robots."""
-SHORT = {"large_model.urdf.xacro": (0.1, 0.05), "turtlebot3_waffle.urdf.xacro": (0.35, 0.1)}
-"""Robots with many links or large images, and the times for which they are simulated, s."""
+TIMES = (0.5, 0.25)
+"""Seconds until a world is saved, and after: all commands are given. The slowest sensors do not
+publish; `test_robots` looks at these."""
+SHORT = {"turtlebot3_waffle.urdf.xacro": (0.35, 0.1)}
+"""The same of robots with large images."""
+AS_ANOTHER = {"large_model.urdf.xacro"}
+"""A chain of 1,200 links, of the same macros as smaller_large_model.urdf.xacro with 40."""
 
 pytestmark = pytest.mark.skipif(not PACKAGES, reason=f"no robots of others in {CORPUS}")
 
@@ -31,12 +36,16 @@ def robots():
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("package", PACKAGES or ["none"])
 def test_each_robot_of_a_package_continues(package, part, robots, elsewhere):
-    of_package = [each for each in robots if each.relative_to(CORPUS).parts[0] == package]
+    of_package = [
+        each
+        for each in robots
+        if each.relative_to(CORPUS).parts[0] == package and each.name not in AS_ANOTHER
+    ]
     assert of_package
     left_out, simulated = {}, 0
     for file in of_package[part::PARTS]:
         try:
-            left_out[file] = compare(file, elsewhere, SHORT.get(file.name, (1.0, 0.5)))
+            left_out[file] = compare(file, elsewhere, SHORT.get(file.name, TIMES))
             simulated += 1
         except cw.CartwheelError as error:
             error.add_note(f"in {file}")

@@ -95,7 +95,7 @@ def test_a_flat_box_floats_at_its_draught(water, surface):
         size="2 2 0.25",
         z=surface,
     )
-    world.run(20.0)
+    world.run(6.0)
     assert boat.pose.z == pytest.approx(surface + 0.25 / 2 - 0.0625, abs=1e-4)
 
 
@@ -129,7 +129,7 @@ def test_a_low_centre_of_mass_rights_a_tilted_body(water):
         at="<pose>0 0 -0.1 0 0 0</pose>",
         roll=0.5,
     )
-    world.run(30.0)
+    world.run(8.0)
     roll, pitch, _ = boat.pose.rpy
     assert (roll, pitch) == pytest.approx((0.0, 0.0), abs=0.01)
 
@@ -149,11 +149,11 @@ def test_the_thrust_balances_the_damping(water, tags, speed):
         UNIFORM.format(""),
         HYDRO.format(tags + STRAIGHT),
         PROPELLER.format(""),
-        mass=10,
-        size="1 1 0.01",
+        mass=2,
+        size="1 1 0.002",
     )
     world.publish("/model/boat/joint/shaft/cmd_thrust", {"data": 20.0})
-    world.run(20.0)
+    world.run(5.0)
     assert boat.velocity.linear[0] == pytest.approx(speed, rel=0.002)
 
 
@@ -367,9 +367,9 @@ def test_a_body_between_two_fluids_floats_on_the_denser_one(water):
         "<density_change><above_depth>0</above_depth><density>800</density></density_change>"
         "</graded_buoyancy>"
     )
-    damped = HYDRO.format("<zW>-500</zW><kP>-300</kP><mQ>-300</mQ>")
+    damped = HYDRO.format("<zW>-4000</zW><kP>-300</kP><mQ>-300</mQ>")
     world, boat = water(layers, damped, mass=900 * 2 * 2 * 0.2, i=100, size="2 2 0.2", z=0.05)
-    world.run(30.0)
+    world.run(6.0)
     assert boat.pose.z == pytest.approx(0.0, abs=1e-3)
 
 

@@ -27,9 +27,11 @@ def choose_driver_parts(root: Node) -> None:
     Args:
         root: The expanded robot.
     """
-    stated = [node for node in root.children if SPARE not in node.attributes]
+    stated = _names([node for node in root.children if SPARE not in node.attributes])
     root.children = [
-        node for node in root.children if node in stated or not _names([node]) & _names(stated)
+        node
+        for node in root.children
+        if SPARE not in node.attributes or not _names([node]) & stated
     ]
     marked = [node for node in root.children if node.attributes.get(MARK)]
     own = [node for node in root.children if not node.attributes.get(MARK)]

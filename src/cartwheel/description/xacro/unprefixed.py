@@ -61,11 +61,12 @@ def call_prefixed(element: Any, macros: Any, within: Iterable[str]) -> bool:
         Whether it is a call. Otherwise nothing has changed.
     """
     tag = element.tagName
-    inside_of = {re.split(r"[:.]", call)[-1] for call in within}
-    if tag in _OTHERS or tag in inside_of or ":" in tag:
+    if tag in _OTHERS or ":" in tag:
         return False
     try:
         macro = macros[tag]
+        if any(tag == re.split(r"[:.]", call)[-1] for call in within):
+            return False
         given = set(element.attributes.keys())
         needed = {name for name in macro.params if name not in macro.defaultmap}
     except (KeyError, AttributeError):
