@@ -3,7 +3,7 @@
 import pytest
 
 import cartwheel
-from cartwheel.codes.robot import CASTER_FRICTION, STEERING_REVERSED
+from cartwheel.codes.robot import CASTER_FRICTION, PLANAR_FRICTION, STEERING_REVERSED
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
 WHEEL = (
@@ -101,3 +101,28 @@ def test_a_sphere_of_the_body_beside_the_wheels_is_a_caster(tmp_path, z, mu, rep
     text = BODY.format(more=ball) + REAR + DRIVE + friction
     findings = found(tmp_path, text, CASTER_FRICTION)
     assert [each.values["link"] for each in findings] == ["base"] * reported
+
+
+MOVE = '<gazebo><plugin name="move" filename="libgazebo_ros_planar_move.so"/></gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("parts", "mu", "reported"),
+    [
+        (BODY.format(more=""), None, ["base"]),
+        (BODY.format(more=""), 0.05, []),
+        # It stands on wheels that roll.
+        (BODY.format(more="") + REAR, None, []),
+        (BODY.format(more="") + REAR.replace("continuous", "fixed"), None, ["left", "right"]),
+    ],
+)
+def test_a_robot_that_is_moved_over_the_ground_is_braked_by_its_friction(
+    tmp_path, parts, mu, reported
+):
+    friction = "" if mu is None else f'<gazebo reference="base"><mu1>{mu}</mu1></gazebo>'
+    findings = found(tmp_path, parts + MOVE + friction, PLANAR_FRICTION)
+    assert [each.values["link"] for each in findings] == reported
+
+
+def test_friction_brakes_nothing_without_a_plugin_that_moves_the_robot(tmp_path):
+    assert found(tmp_path, BODY.format(more=""), PLANAR_FRICTION) == []

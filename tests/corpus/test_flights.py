@@ -53,6 +53,37 @@ def test_a_quadrotor_whose_thrust_is_not_centred_takes_off_before_it_tips_over(t
     assert verdict.good, verdict.faults
 
 
+def turned(rotor, roll, pitch):
+    return rotor.replace('<origin xyz="', f'<origin rpy="{roll} {pitch} 0" xyz="', 1)
+
+
+def test_propellers_that_push_down_do_not_turn(tmp_path):
+    """All six at the same speed push in no direction."""
+    rotors = [ROTOR.format(i=i, x=x, y=0.0, way="ccw") for i, x in enumerate((0.1, -0.1))]
+    rotors += [
+        turned(ROTOR.format(i=i, x=0.0, y=0.1, way="ccw"), roll, pitch)
+        for i, (roll, pitch) in enumerate(
+            ((3.14159, 0), (3.14159, 0), (1.5708, 0), (-1.5708, 0)), start=2
+        )
+    ]
+    verdict = tried(tmp_path, BODY.format(mass=0.5), *rotors)
+    (flight,) = verdict.flights
+    assert flight.motors == 2
+    assert verdict.good, verdict.faults
+
+
+def test_an_aeroplane_moves_in_the_direction_of_its_thrust(tmp_path):
+    rotor = turned(ROTOR.format(i=0, x=0.2, y=0.0, way="cw"), 0, 1.5708)
+    smooth = '<gazebo reference="body"><mu1>0.1</mu1><mu2>0.1</mu2></gazebo>'
+    verdict = tried(tmp_path, BODY.format(mass=1.0), rotor, smooth)
+    (flight,) = verdict.flights
+    assert flight.motors == 1
+    # The way along x that 8.5e-6 N s²/rad² times the speed's square gives 1 kg against friction.
+    force = 8.5e-6 * flight.command**2 - 0.1 * 9.8
+    assert flight.rose == pytest.approx(force / 2, rel=0.15)
+    assert verdict.good, verdict.faults
+
+
 def test_a_quadrotor_takes_off_at_a_duty_cycle(tmp_path):
     verdict = tried(tmp_path, BODY.format(mass=1.5), PROPULSION.format(tags=""))
     (flight,) = verdict.flights

@@ -16,6 +16,7 @@ from cartwheel.codes.robot import (
     DUPLICATE_NAME,
     INERTIA_GEOMETRY_MISMATCH,
     JOINTS_UNDRIVEN,
+    PLANAR_FRICTION,
     UNBALANCED,
     WHEEL_AXIS_MISALIGNED,
     WHEEL_DIAMETER_MISMATCH,
@@ -155,6 +156,20 @@ def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
     assert _of_drive([publisher, axis], -1.0, turning=False) is axis
     assert _of_drive([publisher], -1.0, turning=False) is None
     assert _of_drive([drive, axis], -1.0, turning=False) is drive
+
+
+def test_the_friction_of_a_body_explains_why_it_moves_slowly_over_the_ground(tried):
+    move = (
+        '<gazebo><plugin name="move" filename="libgazebo_ros_planar_move.so">{0}</plugin></gazebo>'
+    )
+    body = BOX.format(name="base", at="0 0 0", size="0.6 0.4 0.1")
+    smooth = '<gazebo reference="base"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
+    assert tried(body, move.format(""), smooth).good
+    slow = PLANAR_FRICTION.diagnostic("slides", severity="info")
+    assert _of_drive([slow], 0.9, turning=True) is slow
+    assert _of_drive([slow], 0.6, turning=False) is slow
+    assert _of_drive([slow], 1.2, turning=True) is None
+    assert _of_drive([slow], -0.9, turning=False) is None
 
 
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):

@@ -192,6 +192,12 @@ STEERING_REVERSED = Code(
     "warning",
     "the axis of a steering joint points down, so the robot steers to the wrong side",
 )
+PLANAR_FRICTION = Code(
+    "CW248",
+    "planar-friction",
+    "info",
+    "a robot that a plugin moves over the ground is braked by friction",
+)
 LIMIT_UNREACHABLE = Code(
     "CW247",
     "limit-unreachable",

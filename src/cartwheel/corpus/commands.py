@@ -1,4 +1,4 @@
-"""Commands to single joints by velocity or effort, and to the propellers of an aircraft."""
+"""Commands to single joints by velocity or effort."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from typing import Any
 from cartwheel.api import Model, World
 from cartwheel.corpus.motion import degree, positions, resistance
 from cartwheel.corpus.thrusters import thruster_topics
-from cartwheel.corpus.verdict import RISEN, Flight, Spin
+from cartwheel.corpus.verdict import Spin
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.dialects.catalogue import plugin_named, short_name
+from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.gz.joint_controller import (
     JointController,
     JointVelocityParameters,
@@ -27,16 +27,6 @@ from cartwheel.graph import TopicInfo
 
 _GZ_ACTUATORS = "actuator_msgs/msg/Actuators"
 _FLOAT, _FLOATS = "std_msgs/msg/Float64", "std_msgs/msg/Float64MultiArray"
-_ACTUATORS = {
-    "mav_msgs/msg/Actuators": "angular_velocities",
-    _GZ_ACTUATORS: "velocity",
-    "hector_uav_msgs/msg/MotorPWM": "pwm",
-}
-"""Fields with the propellers' speeds, or duty cycles, by message type."""
-_DUTY = 255
-"""The duty cycle of a motor at its full voltage."""
-_PROPELLERS = 4
-"""Number of propellers of a plugin for all of them."""
 _VELOCITY, _FAST = 0.5, 20.0
 """rad/s or m/s; the second for joints whose controllers' gains are too small for the first."""
 _FASTER = 5.0
@@ -50,16 +40,6 @@ _SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
 """s."""
 _GLIMPSE, _MOVES = 0.1, 1e-5
 """A shorter time of pushing, s, and the minimum speed in it, rad/s or m/s."""
-_STEPS = 20
-"""Number of propeller speeds to try."""
-_CLIMBING = 1.0
-"""Time at each propeller speed, s."""
-_LOOKING = 0.1
-"""Interval at which the height is measured, s."""
-_FASTEST = 838.0
-"""rad/s; the default of gz-sim's motor model."""
-_MOTOR = re.compile(r"motor_model|multicopter-motor")
-_MOTORS = re.compile(r"quadrotor_propulsion")
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,43 +167,6 @@ def _spinning(
                 effort=False,
                 sag=_sag(world, model, name, gains.get(name, 0.0)),
             )
-
-
-def flights(world: World, model: Model, robot: RobotDescription) -> Iterator[Flight]:
-    """Tries increasing speeds of all propellers, each from standstill, until the aircraft rises.
-
-    Nothing stabilises it, so it tips over if the thrust hardly exceeds its weight for a while.
-    """
-    tags = [tag for tag in robot.plugins if _MOTOR.search(short_name(tag.filename))]
-    together = [tag for tag in robot.plugins if _MOTORS.search(short_name(tag.filename))]
-    motors = len(tags) or _PROPELLERS * len(together)
-    if not motors:
-        return
-    stated = [tag.element.find("maxRotVelocity") for tag in tags]
-    fastest = max([float(each.text) for each in stated if each is not None], default=_FASTEST)
-    for info in world.graph.topics():
-        field = _ACTUATORS.get(info.type)
-        if field is None or not info.subscribers:
-            continue
-        speed = rose = 0.0
-        for step in range(1, _STEPS + 1):
-            speed = fastest * step / _STEPS if field != "pwm" else _DUTY * step // _STEPS
-            rose = _risen(world, model, info.name, {field: [speed] * motors})
-            if rose >= RISEN:
-                break
-        yield Flight(topic=info.name, motors=motors, command=speed, rose=rose)
-
-
-def _risen(world: World, model: Model, topic: str, command: Mapping[str, Any]) -> float:
-    """Largest increase in height after a command from standstill, m."""
-    world.reset()
-    world.run(0.5)
-    height, rose = model.pose.z, 0.0
-    world.publish(topic, command)
-    for _ in range(round(_CLIMBING / _LOOKING)):
-        world.run(_LOOKING)
-        rose = max(rose, model.pose.z - height)
-    return rose
 
 
 def _actuated(info: TopicInfo, robot: RobotDescription) -> dict[str, int]:

@@ -238,9 +238,12 @@ def _of_drive(
         expected = [1.0, *(factor for _, factor in factors.values())]
         if min(expected) < ratio < max(expected):
             return next(iter(factors.values()))[0]
-    # A caster may also brake a base that drives straight ahead.
-    brakes = 1.0 - _BRAKED < ratio < 1.0
-    codes = _TURNING if turning else _DRIVING | {robot.CASTER_FRICTION} if brakes else _DRIVING
+    codes = _TURNING if turning else _DRIVING
+    if 0.0 < ratio < 1.0:
+        codes |= {robot.PLANAR_FRICTION}
+    if 1.0 - _BRAKED < ratio < 1.0:
+        # A caster may also brake a base that drives straight ahead.
+        codes |= {robot.CASTER_FRICTION}
     return _first(each for each in found if each.code in codes and not _only_measures(each))
 
 

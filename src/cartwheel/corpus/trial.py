@@ -16,6 +16,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.corpus import commands, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
+from cartwheel.corpus.flights import flights
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
@@ -220,7 +221,7 @@ def _moved(
         )
         verdict = replace(verdict, drives=tuple(bases))
         yield verdict
-        verdict = replace(verdict, flights=tuple(commands.flights(world, model, robot)))
+        verdict = replace(verdict, flights=tuple(flights(world, model, robot)))
         yield verdict
     if _lies(verdict):
         return

@@ -160,7 +160,7 @@ class Flight:
     """Speed of the propellers at which it rose, rad/s; otherwise the highest speed that was
     tried."""
     rose: float
-    """Increase in height, m."""
+    """Increase in height, or the way in the direction of thrust if no propeller lifts, m."""
 
     @property
     def flies(self) -> bool:

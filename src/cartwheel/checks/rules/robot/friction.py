@@ -14,6 +14,8 @@ from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
 from cartwheel.description.model import Collision, Link, Sphere
 from cartwheel.description.solids import solid_of
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.classic.drives.planar_move import PlanarMove
 from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01
@@ -84,6 +86,38 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 origin=collision.origin,
                 hint="Move the sphere to a link of its own, on a fixed joint, and set <mu1> and "
                 "<mu2> of this link to 0.",
+            )
+
+
+@rule(robot_codes.PLANAR_FRICTION)
+def planar_friction(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        movers = [
+            tag for tag in robot.description.plugins if plugin_named(tag.filename) is PlanarMove
+        ]
+        heights = {
+            link.name: height
+            for link in robot.description.links
+            if link.collisions and (height := lowest(robot, link.name)) is not None
+        }
+        if not movers or not heights or not subject.is_urdf or _names_nothing(subject):
+            continue
+        ground = min(heights.values())
+        for name, height in heights.items():
+            holder = robot.inbound.get(robot.rigid_root(name))
+            if height - ground > _LEVEL or (holder is not None and holder.type == "continuous"):
+                continue
+            mu = robot.links[name].collisions[0].surface.mu1
+            if mu is not None and mu <= _LOW:
+                continue
+            yield robot_codes.PLANAR_FRICTION.diagnostic(
+                message=f'link "{name}" slides on the ground when "{movers[0].filename}" moves the '
+                f"robot, and its friction coefficient is "
+                f"{'1, the default' if mu is None else f'{mu:g}'}",
+                values={"link": name, "friction": mu},
+                origin=robot.links[name].collisions[0].origin,
+                instead=f'<gazebo reference="{name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>',
+                hint="Add these tags to the robot, or change the existing values.",
             )
 
 
