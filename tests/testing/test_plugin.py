@@ -230,8 +230,12 @@ def test_an_unknown_option_of_a_mark_is_an_error(pytester_run):
 
 
 def test_a_wrong_mark_shows_only_the_error(pytester_run):
-    for mark in ('robot("no_such.urdf")', 'world("no_such")', "seed(-1)", "cartwheel(strikt=True)"):
-        done = pytester_run(f"import pytest\n@pytest.mark.{mark}\ndef test_it(world): pass\n")
-        assert done.returncode == 1 and "1 error" in done.stdout and "CW" in done.stdout
-        assert "bench.py" not in done.stdout and "Traceback" not in done.stdout
-        assert len(done.stdout.splitlines()) < 25
+    marks = ('robot("no_such.urdf")', 'world("no_such")', "seed(-1)", "cartwheel(strikt=True)")
+    tests = [f"@pytest.mark.{mark}\ndef test_it(world): pass\n" for mark in marks]
+    tests = [each.replace("test_it", f"test_{index}") for index, each in enumerate(tests)]
+    done = pytester_run("import pytest\n" + "".join(tests))
+    assert done.returncode == 1 and "4 errors" in done.stdout
+    _, *errors = done.stdout.partition("short test summary")[0].split("ERROR at setup of test_")
+    assert len(errors) == len(marks) and all("CW" in each for each in errors)
+    assert "bench.py" not in done.stdout and "Traceback" not in done.stdout
+    assert all(len(each.splitlines()) < 20 for each in errors)
