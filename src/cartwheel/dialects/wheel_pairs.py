@@ -108,7 +108,6 @@ def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> N
                 robot.WHEELS_SWAPPED,
                 f'the left wheel ("{pair.left}") is to the right of the right wheel '
                 f'("{pair.right}"), so the robot turns the wrong way, as in Gazebo',
-                severity="info",
                 values={"left": pair.left, "right": pair.right},
             )
             return
