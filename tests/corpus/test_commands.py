@@ -101,10 +101,11 @@ def test_a_weak_velocity_controller_is_tested_at_a_higher_speed(tmp_path):
     assert verdict.good, verdict.faults
 
 
-def test_a_trajectory_sets_the_joints_of_a_plugin_without_forces(tmp_path):
+@pytest.mark.parametrize("rate", [0, 2])
+def test_a_trajectory_sets_the_joints_of_a_plugin_without_forces(tmp_path, rate):
     plugin = (
         '<gazebo><plugin name="pose" filename="libgazebo_ros_joint_pose_trajectory.so">'
-        "<topicName>set_pose</topicName></plugin></gazebo>"
+        f"<topicName>set_pose</topicName><updateRate>{rate}</updateRate></plugin></gazebo>"
     )
     arm = link("arm", "base", kind="revolute", axis="0 1 0", at="0 0 0.2")
     verdict = tried(tmp_path, BASE.format(mass=5), arm, plugin)

@@ -12,11 +12,13 @@ from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.classic.mechanisms.joint_pose_trajectory import JointPoseTrajectory
 
 _TYPE = "trajectory_msgs/msg/JointTrajectory"
+_WAITING = 1.0
+"""Time for the plugin to set the positions at its own rate, s."""
 _MOVABLE = ("revolute", "continuous", "prismatic")
 
 
 def posed(world: World, model: Model, robot: RobotDescription) -> Iterator[Reach]:
-    """Commands each such plugin and measures where the joints are when the trajectory ends.
+    """Commands each such plugin and measures how close the joints come to their positions.
 
     Nothing holds the joints afterwards.
     """
@@ -41,12 +43,18 @@ def posed(world: World, model: Model, robot: RobotDescription) -> Iterator[Reach
                 "points": [{"positions": list(targets.values()), "time_from_start": {"sec": 0}}],
             },
         )
-        world.run(step)
+        nearest = {name: model.joint(name) for name in targets}
+        for _ in range(round(_WAITING / step)):
+            world.run(step)
+            for name, target in targets.items():
+                position = model.joint(name)
+                if abs(position - target) < abs(nearest[name] - target):
+                    nearest[name] = position
         for name, target in targets.items():
             yield Reach(
                 controller=short_name(tags[0].filename),
                 joint=name,
                 target=target,
-                reached=model.joint(name),
+                reached=nearest[name],
                 angular=joints[name].type != "prismatic",
             )
