@@ -25,7 +25,7 @@ def start_without(program, numbers, *arguments):
     )
 
 
-@pytest.mark.parametrize("numbers", [(0,), (1,), (2,), (0, 1, 2)])
+@pytest.mark.parametrize("numbers", [(1,), (0, 1, 2)])
 def test_missing_streams_are_nobodys(program, numbers):
     done = start_without(program, numbers, *RUN, "--record", "a.mcap")
     assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr

@@ -141,8 +141,12 @@ PATIENCE_MS = 240_000
 CALM = """
 window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 250);
 window.cancelAnimationFrame = clearTimeout;
+const made = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, options) {
+  return made.call(this, kind, kind.startsWith("webgl") ? {...options, antialias: false} : options);
+};
 """
-"""Draws at most 4 images a second: without a GPU, more would take all of a processor."""
+"""Draws at most 4 images a second, without antialiasing: without a GPU, more takes a processor."""
 
 
 def new_page(browser):
