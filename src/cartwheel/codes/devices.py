@@ -258,3 +258,9 @@ PORT_USED_TWICE = Code(
     "error",
     "two vehicles use the same port for their flight controllers",
 )
+HARDWARE_UNKNOWN = Code(
+    "CW483",
+    "hardware-unknown",
+    "error",
+    "a hardware interface is not in the package that its name states",
+)

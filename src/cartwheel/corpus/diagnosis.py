@@ -46,6 +46,7 @@ _CONTROL = frozenset(
         devices.CONTROLLERS_FILE_WITHOUT_CONTROLLERS,
         devices.CONTROLLERS_FILE_ARGUMENT,
         devices.CONTROL_WITHOUT_JOINTS,
+        devices.HARDWARE_UNKNOWN,
         running.CONTROLLER_NOT_STARTED,
     }
 )

@@ -2,7 +2,15 @@
 
 import pytest
 from tests.coded import coded
-from tests.dialects.ros_control.arms import ROS1, beam, robot, transmission
+from tests.dialects.ros_control.arms import (
+    ROS1,
+    beam,
+    robot,
+    ros2_joint,
+    ros2_plugin,
+    ros2_system,
+    transmission,
+)
 
 from cartwheel.codes import devices, running
 
@@ -131,3 +139,44 @@ def test_a_plugin_that_a_maker_derived_runs_controllers_and_is_told(bench):
     made.world.graph.post = lambda function: function()
     assert load(made, "one")
     assert coded(made.world, devices.HARDWARE_NOT_SIMULATED)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("gazebo_ros_control/RobotHWSim", devices.HARDWARE_UNKNOWN),
+        ("own_robot/RobotHWSim", devices.HARDWARE_NOT_SIMULATED),
+        ("gazebo_ros_control/DefaultRobotHWSim", None),
+    ],
+)
+def test_hardware_that_its_package_does_not_contain_is_an_error(bench, name, code):
+    control = ROS1.replace("</plugin>", f"<robotSimType>{name}</robotSimType></plugin>")
+    assert control != ROS1
+    made = bench(robot(beam("beam", "world") + transmission("beam_joint", "Position"), control))
+    found = [
+        each
+        for each in made.world.diagnostics
+        if each.code in (devices.HARDWARE_UNKNOWN, devices.HARDWARE_NOT_SIMULATED)
+    ]
+    assert [each.code for each in found] == ([] if code is None else [code])
+    assert all(each.values["hardware"] == name for each in found)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("gz_ros2_control/GazeboSystem", devices.HARDWARE_UNKNOWN),
+        ("own_robot/Hardware", devices.HARDWARE_NOT_SIMULATED),
+        ("ign_ros2_control/IgnitionSystem", None),
+    ],
+)
+def test_hardware_of_ros2_that_its_package_does_not_contain_is_an_error(bench, name, code):
+    system = ros2_system(ros2_joint("beam_joint", "position"))
+    system = system.replace("gz_ros2_control/GazeboSimSystem", name)
+    made = bench(robot(beam("beam", "world") + system, ros2_plugin()))
+    found = [
+        each
+        for each in made.world.diagnostics
+        if each.code in (devices.HARDWARE_UNKNOWN, devices.HARDWARE_NOT_SIMULATED)
+    ]
+    assert [each.code for each in found] == ([] if code is None else [code])

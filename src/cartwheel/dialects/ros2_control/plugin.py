@@ -181,7 +181,18 @@ class Ros2Control(ControlPlugin):
 
     def _check_system(self, system: Element) -> None:
         name = hardware_of(system)
-        if name and name not in SYSTEMS:
+        own = {each.partition("/")[0]: each for each in SYSTEMS}
+        package = name.partition("/")[0] if name else ""
+        if package in own and name not in SYSTEMS:
+            self.warn(
+                devices.HARDWARE_UNKNOWN,
+                f'<hardware>: the package "{package}" does not contain "{name}", so {own[package]} '
+                "is used; Gazebo would start no controller",
+                severity="error",
+                at=system.origin,
+                values={"hardware": name, "meant": own[package]},
+            )
+        elif name and name not in SYSTEMS:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
                 f'the hardware "{name}" of <ros2_control name="{system.attribute("name") or ""}"> '

@@ -77,7 +77,16 @@ class RosControl(ControlPlugin):
         part = self.part
         plain = config.sim_type.rpartition("::")[2] in _PLAIN
         steered = config.sim_type == steer_bot.SIM_TYPE
-        if not plain and not steered:
+        if config.sim_type.strip().startswith("gazebo_ros_control/") and not plain:
+            self.warn(
+                devices.HARDWARE_UNKNOWN,
+                f'<robotSimType>: the package "gazebo_ros_control" does not contain '
+                f'"{config.sim_type.strip()}", so DefaultRobotHWSim is used; Gazebo would start no '
+                "controller",
+                severity="error",
+                values={"hardware": config.sim_type.strip(), "meant": _PLAIN[0]},
+            )
+        elif not plain and not steered:
             self.warn(
                 devices.HARDWARE_NOT_SIMULATED,
                 f'<robotSimType> "{config.sim_type}" is not simulated, so joints are driven as '
