@@ -70,9 +70,11 @@ class Form:
         """Creates the message with the given values."""
         names: dict[str, Any] = {"header": header, "stamp": stamp}
         assert self._leaves
-        made = self._expression(self.template, "", names)
+        headers: dict[str, str] = {}
+        made = self._expression(self.template, "", names, headers)
+        lines = [f"{local} = {each}" for each, local in headers.items()]
         created: Callable[..., Any] = _function(
-            "message", self._arguments(), (f"return {made}",), names
+            "message", self._arguments(), (*lines, f"return {made}"), names
         )
         return created
 
@@ -126,8 +128,18 @@ class Form:
     def _arguments(self) -> list[str]:
         return [f"a{index}" for index in range(len(self._paths))]
 
-    def _expression(self, value: Any, path: str, names: dict[str, Any]) -> str:
-        """The expression for a part of the message; adds the global names that it uses."""
+    def _expression(
+        self, value: Any, path: str, names: dict[str, Any], headers: dict[str, str]
+    ) -> str:
+        """The expression for a part of the message.
+
+        Args:
+            value: This part of the template.
+            path: Its path in the message.
+            names: Receives the global names that the expression uses.
+            headers: Receives the local names of headers by their expressions. Parts with the same
+                time and frame share a header.
+        """
         index = self._argument.get(path)
         kind = getattr(value, "__msgtype__", None)
         if index is not None:
@@ -138,13 +150,17 @@ class Form:
         if not any(each.startswith(within) for each in self._argument):
             return _named(names, value)
         if kind is None:
-            parts = [self._expression(each, f"{within}{i}", names) for i, each in enumerate(value)]
+            parts = [
+                self._expression(each, f"{within}{i}", names, headers)
+                for i, each in enumerate(value)
+            ]
             return f"[{', '.join(parts)}]"
         if kind == _HEADER and f"{within}stamp" in self._argument:
-            frame = self._expression(value.frame_id, f"{within}frame_id", names)
-            return f"header(a{self._argument[f'{within}stamp']}, {frame})"
+            frame = self._expression(value.frame_id, f"{within}frame_id", names, headers)
+            made = f"header(a{self._argument[f'{within}stamp']}, {frame})"
+            return headers.setdefault(made, f"h{len(headers)}")
         parts = [
-            self._expression(getattr(value, field.name), f"{within}{field.name}", names)
+            self._expression(getattr(value, field.name), f"{within}{field.name}", names, headers)
             for field in fields(kind)
         ]
         return f"{_named(names, message_class(kind))}({', '.join(parts)})"
@@ -235,7 +251,11 @@ def _numbers(value: Any, path: str) -> list[str]:
 
 
 def _named(names: dict[str, Any], value: Any) -> str:
-    """The global name of a constant value."""
+    """The global name of a constant value. Equal texts, such as frames, have the same name."""
+    if isinstance(value, str):
+        for name, known in names.items():
+            if isinstance(known, str) and known == value:
+                return name
     name = f"c{len(names)}"
     names[name] = value
     return name

@@ -11,6 +11,7 @@ from cartwheel.devices.drives.commanded_joint import CommandedJoint, Wheel
 from cartwheel.devices.drives.drive import Drive, DriveConfig
 from cartwheel.devices.drives.kinematics import rim_speeds
 from cartwheel.devices.drives.limiter import NO_LIMITS, Limiter, Limits
+from cartwheel.devices.drives.odometry import planar_motion
 from cartwheel.devices.drives.reckoning import DeadReckoning, Motion
 from cartwheel.devices.ramp import ramp
 
@@ -112,7 +113,9 @@ class DifferentialDrive(Drive):
         self._is_limited = config.drive is None or not (
             config.linear == config.angular == NO_LIMITS
         )
-        self._can_idle = config.odometry == "ground truth" and not self._is_limited
+        self._is_true = config.odometry == "ground truth"
+        """Whether the odometry contains the pose in the world."""
+        self._can_idle = self._is_true and not self._is_limited
         self.reckoning = DeadReckoning() if reckoning is None else reckoning
         self._rest()
         if config.drive is not None:
@@ -137,7 +140,7 @@ class DifferentialDrive(Drive):
 
     def update(self, seconds: float) -> None:
         self.actuate(seconds)
-        if self._config.odometry != "ground truth":
+        if not self._is_true:
             self.measure(seconds)
 
     def can_idle(self) -> bool:
@@ -213,9 +216,7 @@ class DifferentialDrive(Drive):
         self.reckoning.go(forward, turn, seconds)
 
     def motion(self) -> Motion:
-        if self._config.odometry == "ground truth":
-            return super().motion()
-        return self.reckoning.motion()
+        return planar_motion(self._base) if self._is_true else self.reckoning.motion()
 
     def _rest(self) -> None:
         self._command = self._limited = (0.0, 0.0)

@@ -139,10 +139,9 @@ class Odometry(Component):
         # The hottest path of all messages.
         tf, odometry = self._tf, self._odometry
         if tf is not None and tf.wanted:
-            values = [] if self._child is None else [time_ns, *self._child.place(place, turn)]
-            if self._joints is not None:
-                values += self._joints.values(time_ns)
-            tf.publish_values(self._tf_form, tuple(values))
+            base = () if self._child is None else (time_ns, *self._child.place(place, turn))
+            joints = () if self._joints is None else self._joints.values(time_ns)
+            tf.publish_values(self._tf_form, (*base, *joints))
         if odometry is not None and odometry.wanted:
             odometry.publish_values(
                 self._form,
