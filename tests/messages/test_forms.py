@@ -105,6 +105,8 @@ def test_messages_of_a_list_with_a_common_time() -> None:
     )
     made = form.message(5, (1.0, 2.0, 3.0))
     assert [each.header.stamp.nanosec for each in made.transforms] == [5, 5]
+    assert made.transforms[0].header is made.transforms[1].header
+    assert [each.child_frame_id for each in made.transforms] == ["left", "right wheel"]
     assert [each.transform.translation.x for each in made.transforms] == [0.0, 1.0]
     assert form.encode((5, (1.0, 2.0, 3.0))) == encode_cdr(made)
     assert form.encode_ros1((5, (1.0, 2.0, 3.0))) == encode_ros1(made)

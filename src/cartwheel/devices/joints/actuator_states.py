@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +12,8 @@ import numpy as np
 from cartwheel.component import Component, Scope
 from cartwheel.devices.joints.actuator import JointActuator
 from cartwheel.devices.periodic import Periodic
-from cartwheel.messages import header, message_class
+from cartwheel.geometry import Array
+from cartwheel.messages import Form, message_class, zero
 from cartwheel.messages.store import TWIN
 
 _STATES = "sensor_msgs/msg/JointState"
@@ -61,7 +62,11 @@ class ActuatorStates(Component):
         self._names = [*config.names, *config.others]
         self.periodic = Periodic(config.rate)
         """Determines when the states are due. Until then, `update` need not be called."""
-        self._JointState = message_class(_STATES)
+        fields = ["header.stamp", "position", "velocity", "effort"]
+        self._form = Form(self._template, *fields)
+        count = len(config.kinds) + len(config.others)
+        values = [f"interface_values.{index}.values" for index in range(count)]
+        self._dynamic_form = Form(self._dynamic_template, "header.stamp", *values)
 
     def start(self, time_ns: int) -> None:
         """Publishes at the rate from now on."""
@@ -74,35 +79,40 @@ class ActuatorStates(Component):
         dynamic = self._dynamic is not None and self._dynamic.wanted
         if not (self._publisher.wanted or dynamic):
             return
-        config = self._config
-        head = header(time_ns, config.frame)
         if self._publisher.wanted:
-            others = config.others.values()
-            columns = [
-                np.array([*(value(each, source) for each in self._joints), *constants])
-                for source, constants in zip(
-                    config.sources, zip(*others, strict=True) if others else [()] * 3, strict=True
-                )
-            ]
-            self._publisher.publish(self._JointState(head, self._names, *columns))
+            self._publisher.publish_values(self._form, (time_ns, *self._columns()))
         if self._dynamic is not None and self._dynamic.wanted:
-            self._dynamic.publish(self._dynamic_message(head))
+            self._dynamic.publish_values(self._dynamic_form, (time_ns, *self._rows()))
 
-    def _dynamic_message(self, head: Any) -> Any:
-        states = [
-            (list(kinds), [value(joint, kind) for kind in kinds])
-            for joint, kinds in zip(self._joints, self._config.kinds, strict=True)
-        ]
-        states += [(list(_ALL), list(values)) for values in self._config.others.values()]
+    def _columns(self) -> Iterator[Array]:
+        """Positions, velocities and efforts."""
+        others = self._config.others.values()
+        constants = zip(*others, strict=True) if others else [()] * 3
+        for source, more in zip(self._config.sources, constants, strict=True):
+            yield np.array([*(value(each, source) for each in self._joints), *more])
+
+    def _rows(self) -> Iterator[Array]:
+        """The interfaces of each joint on the dynamic topic."""
+        for joint, kinds in zip(self._joints, self._config.kinds, strict=True):
+            yield np.array([value(joint, kind) for kind in kinds])
+        for values in self._config.others.values():
+            yield np.array(values)
+
+    def _template(self) -> Any:
+        template, still = zero(_STATES), np.zeros(len(self._names))
+        template.header.frame_id, template.name = self._config.frame, self._names
+        template.position = template.velocity = template.effort = still
+        return template
+
+    def _dynamic_template(self) -> Any:
+        template, config = zero(_DYNAMIC), self._config
+        template.header.frame_id, template.joint_names = config.frame, self._names
         InterfaceValue = message_class(f"control_msgs{TWIN}/msg/InterfaceValue")
-        return message_class(_DYNAMIC)(
-            header=head,
-            joint_names=self._names,
-            interface_values=[
-                InterfaceValue(interface_names=kinds, values=np.array(values))
-                for kinds, values in states
-            ],
-        )
+        template.interface_values = [
+            InterfaceValue(interface_names=list(kinds), values=np.zeros(len(kinds)))
+            for kinds in (*config.kinds, *[_ALL] * len(config.others))
+        ]
+        return template
 
 
 def value(joint: JointActuator, kind: str) -> float:

@@ -15,6 +15,7 @@ from tests.dialects.ros_control.arms import (
 )
 
 from cartwheel.codes import devices
+from cartwheel.messages import encode_cdr
 
 TYPE = "joint_state_broadcaster/JointStateBroadcaster"
 UPRIGHT = "0 0 1"
@@ -36,7 +37,9 @@ def told(bench, tmp_path):
         made.publish("/c/commands", "std_msgs/msg/Float64MultiArray", data=[0.4])
         box = made.box(topic)
         made.world.run(1.0)
-        return box.drain()[-1], made
+        messages = box.drain()
+        box.close()
+        return messages[-1], made
 
     return make
 
@@ -51,6 +54,19 @@ def test_all_interfaces_are_told_by_name(told):
     assert list(extra.values) == [0.0, 0.0, 0.0]
     assert message.header.frame_id == "base_link"
     assert made.warnings == []
+
+
+@pytest.mark.parametrize("topic", ["/joint_states", "/dynamic_joint_states"])
+def test_recorders_receive_the_bytes_of_the_same_message(told, topic):
+    message, made = told(topic, extra_joints=["wheel"])
+    taken = []
+    made.world.graph.subscribe(topic, print, take_values=lambda *given: taken.append(given))
+    made.world.run(0.1)
+    form, values = taken[-1]
+    same = form.message(*values)
+    assert form.encode(values) == encode_cdr(same)
+    assert same.header.frame_id == message.header.frame_id
+    assert len(encode_cdr(same)) == len(encode_cdr(message))  # the same names and lengths
 
 
 def test_joints_and_interfaces_are_chosen_together(told):
