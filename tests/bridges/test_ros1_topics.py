@@ -83,6 +83,9 @@ def cart(master: Master) -> Iterator[Master]:
     """A master with a cart that was started by the command."""
     with simulation(master):
         registered(master, "/odom")
+        # Services are registered after topics.
+        expected = {"/imu/service", "/gazebo/spawn_urdf_model", "/gazebo/reset_world"}
+        wait_for(lambda: expected <= set(master.state()[2]), "the services")
         yield master
 
 
