@@ -50,6 +50,9 @@ def test_rpy_turns_about_x_then_y_then_z(roll, pitch, yaw):
 @given(ANGLE, PITCH, ANGLE)
 def test_rpy_comes_back(roll, pitch, yaw):
     found = g.rpy_from_quat(g.quat_from_rpy(roll, pitch, yaw))
+    pose = g.Pose.from_xyz_rpy((1, 2, 3), (roll, pitch, yaw))
+    assert (pose.roll, pose.pitch) == found[:2]
+    assert math.remainder(pose.yaw - yaw, 2 * math.pi) == pytest.approx(0, abs=1e-9)
     for angle, expected in zip(found, (roll, pitch, yaw), strict=True):
         assert math.remainder(angle - expected, 2 * math.pi) == pytest.approx(0, abs=1e-9)
 

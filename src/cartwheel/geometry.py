@@ -266,6 +266,16 @@ class Pose:
         return rpy_from_quat(self.orientation)
 
     @property
+    def roll(self) -> float:
+        """Rotation about the fixed x axis in radians, the first of `rpy`."""
+        return self.rpy[0]
+
+    @property
+    def pitch(self) -> float:
+        """Rotation about the fixed y axis in radians, within ±π/2."""
+        return self.rpy[1]
+
+    @property
     def yaw(self) -> float:
         """Heading in radians."""
         return yaw_of(self.orientation)

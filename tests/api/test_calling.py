@@ -82,8 +82,9 @@ def test_an_arm_follows_a_trajectory(tmp_path: Path, ros: int) -> None:
     with cw.World("empty") as world:
         model = arm(world, tmp_path, ros)
         assert FOLLOW in world.actions
+        assert FOLLOW in model.actions
         world.run(0.5)
-        goal = world.send_goal(FOLLOW, trajectory=trajectory((1.0, [0.5, -0.3])))
+        goal = model.send_goal(FOLLOW[1:], trajectory=trajectory((1.0, [0.5, -0.3])))
         assert goal.status == "active"
         assert not goal.done
         result = goal.result(timeout=5.0)

@@ -207,6 +207,7 @@ def test_joints_that_follow_others(make):
         ground=None,
     )
     joints = world.model("hand").joints
+    assert [joint.type for joint in map(joints.__getitem__, joints.names)] == ["revolute"] * 2
     joints.positions["one"] = 0.2
     assert joints.positions["two"] == pytest.approx(-0.3)
     joints.velocities["one"] = 0.5

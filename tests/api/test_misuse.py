@@ -58,7 +58,7 @@ def test_a_message_of_another_type_is_refused_at_once(make, rosbots):
     assert caught.value.values["given"] == "std_msgs/msg/String"
 
 
-@pytest.mark.parametrize("value", ["hi", 3, None, from_dict("std_msgs/msg/String", {})])
+@pytest.mark.parametrize("value", ["hi", 3, from_dict("std_msgs/msg/String", {})])
 def test_a_publisher_refuses_what_is_no_message_of_its_type(value, make):
     world = make.world()
     publisher = world.advertise("/level", "std_msgs/Float32")

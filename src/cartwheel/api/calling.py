@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
-from cartwheel.api.arguments import text
+from cartwheel.api.arguments import refused, text
+from cartwheel.api.exchange.serving import ProgramHandler, ServiceServer
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.codes.graph import SERVICE_TIMED_OUT
@@ -17,7 +18,8 @@ from cartwheel.errors import GraphError, SimulationError, UnknownNameError
 from cartwheel.graph import Action, Service, made_message
 from cartwheel.graph import Goal as GraphGoal
 from cartwheel.messages import service_classes
-from cartwheel.messages.store import finding_with
+from cartwheel.messages.store import finding_with, service_name
+from cartwheel.messages.typed import M, Message, name_of
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import duration_ns
@@ -83,7 +85,10 @@ class CallingWorld(MessagingWorld):
             if not inside:
                 simulation.drain_queued()
             if not offered.threaded:
-                return _checked(offered, offered.handler(made))
+                handler = offered.handler
+                if isinstance(handler, ProgramHandler):
+                    return handler.respond(made)
+                return _checked(offered, handler(made))
             if inside:
                 raise SimulationError(
                     f'a callback calls the service "{service}", which requires the world to wait',
@@ -114,6 +119,47 @@ class CallingWorld(MessagingWorld):
                 )
         simulation.drain_queued()
         return _checked(service, future.result())
+
+    @overload
+    def serve(self, name: str, type: type[M], handler: Callable[[M], object]) -> ServiceServer: ...
+    @overload
+    def serve(self, name: str, type: str, handler: Callable[[Any], object]) -> ServiceServer: ...
+    def serve(
+        self, name: str, type: type[Message] | str, handler: Callable[[Any], object]
+    ) -> ServiceServer:
+        """Offers a service, also to ROS and other connections.
+
+        Calls of other programs are handled between two steps of `run`. If the handler raises an
+        exception there, the caller gets an error, and `run` raises the exception after the current
+        step. An exception in a `call` of the same program is raised by `call`.
+
+        Args:
+            name: Service name.
+            type: A name such as ``std_srvs/srv/SetBool``, also of a type that a package of the
+                workspace defines, or the class of the requests, such as ``SetBool_Request``.
+            handler: Receives a request, and returns a response or a mapping of its fields. Omitted
+                fields have their defaults. It may return None if the response has no fields.
+
+        Returns:
+            The service, whose `close` withdraws it.
+
+        Raises:
+            UnknownNameError: The type does not exist.
+            SimulationError: The world is closed.
+            GraphError: The name is already in use or invalid, or the definition of the type is
+                invalid.
+        """
+        self.check_open()
+        text(name, "name")
+        if not callable(handler):
+            raise refused("handler", "a function", handler)
+        kind = service_name(name_of(type).removesuffix("_Request"))
+        types, faults = self.session.types, self.session.simulation.faults
+        types.named(kind)
+        with finding_with(types):
+            made = ProgramHandler(name, kind, handler, types, faults.defer)
+        service = self.graph.serve(name, kind, made, node="World.serve")
+        return ServiceServer(self.graph, service)
 
     def serve_gazebo(self) -> None:
         """Provides the services and topics of Gazebo, such as ``/gazebo/set_model_state``.

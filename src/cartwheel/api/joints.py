@@ -13,7 +13,7 @@ from cartwheel.api.handles import Handle, Sealed
 from cartwheel.api.properties.inertials import missing
 from cartwheel.api.values import array, invalid, scalar
 from cartwheel.description.model import Joint as Description
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.model import JointType, RobotDescription
 from cartwheel.geometry import Array
 
 if TYPE_CHECKING:
@@ -252,6 +252,11 @@ class Joint(Handle):
     @property
     def _identity(self) -> tuple[Joints, str]:
         return self._joints, self.name
+
+    @property
+    def type(self) -> JointType:
+        """Type as in URDF, such as ``revolute``, ``continuous`` or ``prismatic``."""
+        return self._described.type
 
     @property
     def position(self) -> float:

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast, overload
+from typing import TYPE_CHECKING
 
 from cartwheel.api.arguments import text
-from cartwheel.api.handles import Handle
+from cartwheel.api.exchange.model_messages import MessagingModel
 from cartwheel.api.joints import Joints
 from cartwheel.api.links import Link
 from cartwheel.api.motion import Twist
 from cartwheel.api.values import Vector, instance, vector
 from cartwheel.geometry import Pose
-from cartwheel.graph.names import resolve_name
-from cartwheel.messages.typed import M, Message
 
 if TYPE_CHECKING:
-    from cartwheel.api.topics import Topic
     from cartwheel.api.world import World
 
 _NONE: Vector = (0.0, 0.0, 0.0)
 
 
-class Model(Handle):
+class Model(MessagingModel):
     """A handle to a model in a world.
 
     Two handles are equal if they belong to the same world and have the same name.
@@ -163,17 +160,17 @@ class Model(Handle):
         return Joints(self._world, self.name)
 
     @property
-    def namespace(self) -> str:
-        """Namespace of the model's topics and services, with a leading ``/``."""
-        with self._world.lock:
-            return "/" + self._world.session.simulation.namespace(self.name).strip("/")
+    def cameras(self) -> tuple[str, ...]:
+        """Names of the cameras of the model's sensors, such as ``rosbots::camera1``.
 
-    @property
-    def topics(self) -> tuple[str, ...]:
-        """Names of the topics of the model's devices and plugins, sorted."""
+        `cartwheel.dataset.Dataset` accepts them.
+
+        Raises:
+            UnknownNameError: The model does not exist any more.
+        """
         with self._world.lock:
-            own = self._world.session.simulation.topics(self.name)
-            return tuple(name for name in self._world.topics if name in own)
+            mounts = self._world.session.simulation.truth.cameras(self.name)
+            return tuple(f"{self.name}::{mount.name}" for mount in mounts)
 
     def joint(self, name: str) -> float:
         """Position of a joint, rad or m. For its other values, use ``joints[name]``.
@@ -184,28 +181,7 @@ class Model(Handle):
         with self._world.lock:
             return self._world.session.simulation.joint_position(self.name, text(name, "name"))
 
-    # -- messages and the end
-
-    @overload
-    def topic(self, name: str, type: type[M], *, keep: int | None = None) -> Topic[M]: ...
-    @overload
-    def topic(
-        self, name: str, type: str | None = None, *, keep: int | None = None
-    ) -> Topic[Any]: ...
-    def topic(
-        self, name: str, type: type[Message] | str | None = None, *, keep: int | None = None
-    ) -> Topic[Any]:
-        """`World.topic`, where a name without a leading ``/`` is in the model's namespace."""
-        full = self._resolved(name)
-        # The overloads of `World.topic` know either a class or a name.
-        return self._world.topic(full, cast("str | None", type), keep=keep)
-
-    def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
-        """`World.publish`, where a name without a leading ``/`` is in the model's namespace."""
-        self._world.publish(self._resolved(topic), message, **fields)
-
-    def _resolved(self, topic: str) -> str:
-        return resolve_name(text(topic, "topic"), self.namespace)
+    # -- the end
 
     def delete(self) -> None:
         """Removes the model from the world."""

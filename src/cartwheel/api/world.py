@@ -196,6 +196,12 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         return self.session.simulation.models
 
     @property
+    def cameras(self) -> tuple[str, ...]:
+        """Names of the cameras of all models, such as ``rosbots::camera1``; see `Model.cameras`."""
+        with self.lock:
+            return tuple(each for name in self.models for each in Model(self, name).cameras)
+
+    @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Diagnostics reported so far."""
         return tuple(each for each in self.session.diagnostics if each.code not in self._ignored)

@@ -224,6 +224,7 @@ class Component:
                     values={"name": self.resolve(name)},
                 )
             return False
+        self.part.services.add(service.name)
         self._items.append(service)
         self._open.callback(self.graph.withdraw, service)
         return True
@@ -324,6 +325,7 @@ class Component:
                 values={"name": full},
             )
             return None
+        self.part.services.add(server.service)
         return self.keep(server)
 
     def warn(

@@ -55,6 +55,7 @@ class ActionServer:
             on_cancel=on_cancel,
         )
         component.keep(self._action)
+        part.actions.add(self._action.name)
         self._topics: ActionTopics | None = None
         if f"control_msgs/msg/{kind}Goal" in store().types:
             self._topics = ActionTopics(component.graph, self._action)

@@ -169,6 +169,7 @@ class Plugin(Component, Generic[C]):
             on_cancel=on_cancel,
         )
         self.keep(action)
+        part.actions.add(action.name)
         # ROS 1 clients find the server by its status.
         topics = self.keep(ActionTopics(self.graph, action))
         part.schedule(STATUS_RATE, after=topics.publish_status)

@@ -105,6 +105,8 @@ class ReconfigureServer:
                 node=node,
             )
             opened.callback(graph.withdraw, service)
+            self.service: str = service.name
+            """Name of the service that sets the parameters."""
             self._descriptions = self._advertise("parameter_descriptions", "ConfigDescription")
             opened.callback(self._descriptions.close)
             self._updates = self._advertise("parameter_updates", "Config")

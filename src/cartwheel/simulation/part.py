@@ -61,6 +61,10 @@ class Part(MotorRequests):
         """Plugins and their handles."""
         self.topics: set[str] = set()
         """Names of the topics that plugins of the model have advertised or subscribed to."""
+        self.services: set[str] = set()
+        """Names of the services that plugins of the model have offered."""
+        self.actions: set[str] = set()
+        """Names of the actions that plugins of the model have offered."""
         self.tuned: list[tuple[str, Tuned]] = []
         """Joints and their PID controllers."""
         self.on_seed: list[Callable[[], None]] = []

@@ -256,6 +256,7 @@ class Controller(Component):
     ) -> None:
         graph = self.graph
         service = graph.serve(name, type_name, handler, node=self.node, threaded=threaded)
+        self.part.services.add(service.name)
         self._items.append(service)
         self._open.callback(graph.withdraw, service)
 

@@ -150,6 +150,22 @@ class Models(Run):
         """
         return frozenset(self._population.resident(name).part.topics)
 
+    def services(self, name: str) -> frozenset[str]:
+        """Names of the services that a model's plugins have offered.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        return frozenset(self._population.resident(name).part.services)
+
+    def actions(self, name: str) -> frozenset[str]:
+        """Names of the actions that a model's plugins have offered.
+
+        Raises:
+            UnknownNameError: The model does not exist.
+        """
+        return frozenset(self._population.resident(name).part.actions)
+
     def frame_prefix(self, name: str) -> str:
         """The prefix of a model's frames, as set at spawn.
 

@@ -1,0 +1,1 @@
+"""Services of a program, and the messages of a model."""

@@ -1,0 +1,127 @@
+"""Topics, services and actions of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast, overload
+
+from cartwheel.api.arguments import text
+from cartwheel.api.handles import Handle
+from cartwheel.api.timing import TIMEOUT
+from cartwheel.graph import Mailbox, Subscription, resolve_name
+from cartwheel.messages.typed import M, Message
+
+if TYPE_CHECKING:
+    from cartwheel.api.calling import Goal
+    from cartwheel.api.exchange.serving import ServiceServer
+    from cartwheel.api.topics import Topic
+    from cartwheel.api.world import World
+
+
+class MessagingModel(Handle):
+    """The part of `Model` that exchanges messages.
+
+    Its methods are those of `World`, where a name without a leading ``/`` is in the namespace of
+    the model.
+    """
+
+    __slots__ = ()
+    _world: World
+    name: str
+
+    @property
+    def namespace(self) -> str:
+        """Namespace of the model's topics and services, with a leading ``/``."""
+        with self._world.lock:
+            return "/" + self._world.session.simulation.namespace(self.name).strip("/")
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Names of the topics of the model's devices and plugins, sorted."""
+        with self._world.lock:
+            own = self._world.session.simulation.topics(self.name)
+            return tuple(name for name in self._world.topics if name in own)
+
+    @property
+    def services(self) -> tuple[str, ...]:
+        """Names of the services of the model's devices and plugins, sorted."""
+        with self._world.lock:
+            own = self._world.session.simulation.services(self.name)
+            return tuple(name for name in self._world.services if name in own)
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Names of the actions of the model's devices and plugins, sorted."""
+        with self._world.lock:
+            own = self._world.session.simulation.actions(self.name)
+            return tuple(name for name in self._world.actions if name in own)
+
+    @overload
+    def topic(self, name: str, type: type[M], *, keep: int | None = None) -> Topic[M]: ...
+    @overload
+    def topic(
+        self, name: str, type: str | None = None, *, keep: int | None = None
+    ) -> Topic[Any]: ...
+    def topic(
+        self, name: str, type: type[Message] | str | None = None, *, keep: int | None = None
+    ) -> Topic[Any]:
+        """`World.topic`, where a name without a leading ``/`` is in the model's namespace."""
+        full = self._resolved(name)
+        # The overloads of `World.topic` know either a class or a name.
+        return self._world.topic(full, cast("str | None", type), keep=keep)
+
+    def publish(self, topic: str, message: Any = None, **fields: Any) -> None:
+        """`World.publish`, where a name without a leading ``/`` is in the model's namespace."""
+        self._world.publish(self._resolved(topic), message, **fields)
+
+    @overload
+    def subscribe(
+        self, topic: str, callback: Callable[[M], object], *, type: type[M]
+    ) -> Subscription: ...
+    @overload
+    def subscribe(
+        self, topic: str, callback: Callable[[Any], object], *, type: str | None = None
+    ) -> Subscription: ...
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callable[[Any], object],
+        *,
+        type: type[Message] | str | None = None,
+    ) -> Subscription:
+        """`World.subscribe`, where a name without a leading ``/`` is in the model's namespace."""
+        return self._world.subscribe(self._resolved(topic), callback, type=cast("str | None", type))
+
+    @overload
+    def mailbox(self, topic: str, type: type[M], *, size: int = 1000) -> Mailbox[M]: ...
+    @overload
+    def mailbox(self, topic: str, type: str | None = None, *, size: int = 1000) -> Mailbox[Any]: ...
+    def mailbox(
+        self, topic: str, type: type[Message] | str | None = None, *, size: int = 1000
+    ) -> Mailbox[Any]:
+        """`World.mailbox`, where a name without a leading ``/`` is in the model's namespace."""
+        return self._world.mailbox(self._resolved(topic), cast("str | None", type), size=size)
+
+    def call(
+        self, service: str, request: Any = None, *, timeout: float = TIMEOUT, **fields: Any
+    ) -> Any:
+        """`World.call`, where a name without a leading ``/`` is in the model's namespace."""
+        full = self._resolved(service, "service")
+        return self._world.call(full, request, timeout=timeout, **fields)
+
+    @overload
+    def serve(self, name: str, type: type[M], handler: Callable[[M], object]) -> ServiceServer: ...
+    @overload
+    def serve(self, name: str, type: str, handler: Callable[[Any], object]) -> ServiceServer: ...
+    def serve(
+        self, name: str, type: type[Message] | str, handler: Callable[[Any], object]
+    ) -> ServiceServer:
+        """`World.serve`, where a name without a leading ``/`` is in the model's namespace."""
+        return self._world.serve(self._resolved(name, "name"), cast("str", type), handler)
+
+    def send_goal(self, action: str, goal: Any = None, **fields: Any) -> Goal:
+        """`World.send_goal`, where a name without a leading ``/`` is in the model's namespace."""
+        return self._world.send_goal(self._resolved(action, "action"), goal, **fields)
+
+    def _resolved(self, name: str, argument: str = "topic") -> str:
+        return resolve_name(text(name, argument), self.namespace)
