@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Literal, Protocol
 
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, CONTROLLERS_NOT_NAMED
-from cartwheel.component import Shared
+from cartwheel.component import Shared, TopicSharing
 from cartwheel.description.files.package_files import SimulationPackages
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
@@ -145,8 +145,8 @@ class Session:
         self.graph.post = self.simulation.post
         self.graph.post_read = self.simulation.post_read
         self.types.report = self.simulation.report
-        for diagnostic in early:
-            self.simulation.report(diagnostic)
+        for each in early:
+            self.simulation.report(each)
         self.graph.on_demand = self.simulation.note_subscribers
         self.graph.on_error = self._subscriber_failed
         self.simulation.faults.strict, self.simulation.faults.ignore = strict, ignore
@@ -157,6 +157,7 @@ class Session:
         self._clock_task = self._schedule_clock(CLOCK_RATE)
         self.descriptions: Descriptions | None = None
         """What publishes the descriptions of the robots, while something needs them."""
+        self._sharing = TopicSharing(self.graph, self.simulation)
         self._check(0)
 
     def spawn(
@@ -283,14 +284,14 @@ class Session:
         if self._spawning:
             yield
             return
-        simulation = self.simulation
+        simulation, self._spawning = self.simulation, True
         before, known = len(simulation.diagnostics), simulation.models
-        self._spawning = True
         try:
             with simulation.spawning():
                 yield
         finally:
             self._spawning = False
+        self._sharing.report()
         try:
             self._check(before)
         except CartwheelError:
@@ -300,8 +301,7 @@ class Session:
     def report_unbridged(self) -> None:
         """Reports missing topics listed in ros_gz_bridge files. Call it on the owner's thread."""
         before = len(self.simulation.diagnostics)
-        names = {topic.name for topic in self.graph.topics()}
-        for fault in self.shared.renaming.faults(names):
+        for fault in self.shared.renaming.faults({topic.name for topic in self.graph.topics()}):
             self.simulation.engine.report(fault)
         self._check(before)
 

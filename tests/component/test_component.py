@@ -29,7 +29,11 @@ def graph():
 @pytest.fixture
 def scope(graph):
     return Scope(
-        part=SimpleNamespace(topics=set()), shared=Shared(graph), node="n", title="t", origin=None
+        part=SimpleNamespace(published=set(), subscribed=set(), services=set()),
+        shared=Shared(graph),
+        node="n",
+        title="t",
+        origin=None,
     )
 
 

@@ -116,3 +116,6 @@ ARRAY_INVALID = Code(
     "the data of a message cannot be converted to an array",
 )
 ACTION_UNKNOWN = Code("CW734", "action-unknown", "error", "an action does not exist")
+TOPICS_SHARED = Code(
+    "CW735", "topics-shared", "warning", "two models publish on or follow the same topics"
+)

@@ -2,5 +2,6 @@
 
 from cartwheel.component.component import Closable, Component, is_connection
 from cartwheel.component.scope import Scope, Shared
+from cartwheel.component.sharing import TopicSharing
 
-__all__ = ["Closable", "Component", "Scope", "Shared", "is_connection"]
+__all__ = ["Closable", "Component", "Scope", "Shared", "TopicSharing", "is_connection"]

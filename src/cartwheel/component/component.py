@@ -167,7 +167,7 @@ class Component:
             name, kind, node=self.node, rate=rate, qos=qos, checked=self._foreign
         )
         self.publishers.append(publisher)
-        self.part.topics.add(publisher.topic)
+        self.part.published.add(publisher.topic)
         return self.keep(publisher)
 
     def subscribe(
@@ -186,7 +186,7 @@ class Component:
         checked = self.checked(callback, unset=unset)
         name, kind, receiver = self.scope.subscribed(topic, self._named(type_name), checked)
         subscription = self.graph.subscribe(name, receiver, type_name=kind, node=self.node)
-        self.part.topics.add(subscription.topic)
+        self.part.subscribed.add(subscription.topic)
         owner = self.scope.owner
         if owner is not None:
             subscription.on_error = lambda _, error: self.part.fail(owner, error)

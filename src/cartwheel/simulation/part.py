@@ -59,8 +59,10 @@ class Part(MotorRequests):
         """Prefix of all frames, as ROS 1's tf_prefix."""
         self.owned: list[tuple[object, list[Handle | RayHandle]]] = []
         """Plugins and their handles."""
-        self.topics: set[str] = set()
-        """Names of the topics that plugins of the model have advertised or subscribed to."""
+        self.published: set[str] = set()
+        """Names of the topics that plugins of the model have advertised."""
+        self.subscribed: set[str] = set()
+        """Names of the topics that plugins of the model have subscribed to."""
         self.services: set[str] = set()
         """Names of the services that plugins of the model have offered."""
         self.actions: set[str] = set()

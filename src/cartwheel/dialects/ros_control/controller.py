@@ -203,7 +203,7 @@ class Controller(Component):
 
         topic, kind = self.resolve(topic), name_of(type_name)
         self.keep(self.graph.subscribe(topic, receive, type_name=kind, node=self.node))
-        self.part.topics.add(topic)
+        self.part.subscribed.add(topic)
 
     def accept_positions(self, put: Callable[[Mapping[str, float], float], None]) -> None:
         """Accepts manual joint positions while the controller runs; see `JointInput`."""

@@ -148,7 +148,8 @@ class Models(Run):
         Raises:
             UnknownNameError: The model does not exist.
         """
-        return frozenset(self._population.resident(name).part.topics)
+        part = self._population.resident(name).part
+        return frozenset(part.published | part.subscribed)
 
     def services(self, name: str) -> frozenset[str]:
         """Names of the services that a model's plugins have offered.
