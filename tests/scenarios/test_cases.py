@@ -8,8 +8,10 @@ from tests.coded import raises
 from cartwheel.codes.command import SCENARIO_EXPRESSION, SCENARIO_INVALID
 from cartwheel.scenarios import cases_of, digests
 from cartwheel.scenarios.cases import resolved
-from cartwheel.scenarios.expressions import ExpressionFaultError, evaluate
+from cartwheel.scenarios.expectations import Expression
+from cartwheel.scenarios.expressions import CONDITION_NAMES, ExpressionFaultError, evaluate
 
+CART = "robots: [{robot: rosbots.xacro, name: cart}]\n"
 EXPECT = "expect: [{moves: cart}]\n"
 
 
@@ -172,3 +174,33 @@ def test_a_condition_of_a_stranger_is_refused_or_read_like_other_expressions(sce
             cases_of(loaded)
     else:
         assert len(cases_of(loaded)) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "tme > 3",
+        "time > 3 and xx('cart') > 1",
+        "max([speed for each in range(3)]) > 1",
+        "time > 1 if yaw('cart') else poses",
+    ],
+)
+@pytest.mark.parametrize(
+    "place", ["steps: [{until: {%s}}]\nexpect: [{moves: cart}]", "expect: [{%s}]"]
+)
+def test_unknown_names_are_found_before_a_case_runs(scenario, text, place):
+    loaded = scenario(CART + place % f'expression: "{text}"')
+    with raises(SCENARIO_EXPRESSION, expression=text) as caught:
+        cases_of(loaded)
+    assert caught.value.origin.line == 2
+
+
+def test_names_of_conditions_are_those_that_exist():
+    condition = Expression("time > 1")
+    names = condition._names_of(None)
+    assert {*names, "time"} == CONDITION_NAMES
+
+
+def test_names_that_an_expression_binds_are_known(scenario):
+    text = "sum([each * pi for each in range(3)]) > 1 and sqrt(time) > 0 and True"
+    assert cases_of(scenario(f'{CART}expect: [{{expression: "{text}"}}]'))

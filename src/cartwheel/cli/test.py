@@ -79,7 +79,9 @@ def test(  # noqa: PLR0917 - typer passes them by name
     allow_launch: Annotated[
         bool,
         help.option(
-            "--allow-launch", "Allow scenarios to start programs. Use it only for files you trust."
+            "--allow-launch",
+            "Allow scenarios to start programs and execute plugin files. Use it only for files you "
+            "trust.",
         ),
     ] = False,
     output: Annotated[
@@ -108,6 +110,13 @@ def test(  # noqa: PLR0917 - typer passes them by name
         bool,
         help.option("--schema", "Print the JSON Schema of scenarios, for editors.", help.REPORT),
     ] = False,
+    plugin: Annotated[
+        list[Path] | None,
+        help.option(
+            "--plugin FILE",
+            "Execute this Python file and use the plugins that it defines. Can be repeated.",
+        ),
+    ] = None,
     package_path: arguments.PackagePath = None,
 ) -> None:
     """Run scenarios with robots and check expectations.
@@ -139,6 +148,7 @@ def test(  # noqa: PLR0917 - typer passes them by name
             junit=junit,
             json=json,
             package_path=tuple(package_path or ()),
+            plugins=tuple(plugin or ()),
         )
     )
     if status:

@@ -105,7 +105,7 @@ LAUNCH_NOT_ALLOWED = Code(
     "CW039",
     "launch-not-allowed",
     "error",
-    "a scenario starts a program, which requires permission",
+    "a scenario starts a program or executes a plugin file, which requires permission",
 )
 LAUNCH_FAILED = Code(
     "CW040",

@@ -145,9 +145,18 @@ def place_of(scenario: Scenario, name: str) -> str | Path:
 
 
 def digests(
-    scenario: Scenario, cases: Sequence[Case], package_path: Sequence[Path] = ()
+    scenario: Scenario,
+    cases: Sequence[Case],
+    package_path: Sequence[Path] = (),
+    plugins: Sequence[Path] = (),
 ) -> Iterator[Case]:
     """The cases with their digests. Expands the descriptions of all robots.
+
+    Args:
+        scenario: The scenario.
+        cases: Its cases.
+        package_path: Folders that are searched for packages.
+        plugins: Plugin files in addition to those of the scenario.
 
     Raises:
         DescriptionError: The file of a world or robot cannot be used.
@@ -177,6 +186,9 @@ def digests(
                 with contextlib.suppress(CartwheelError):
                     files.append(of_description(each["spawn"], each.get("arguments", {})))
         others += value.get("launch", {}).get("command", ())[:1]
+        others += value.get("plugins", ())
+        if plugins:
+            files.append([prints.of_file(each) for each in plugins])
         files.append([prints.of_file(Path(place_of(scenario, each))) for each in others])
         whole = [cartwheel.__version__, case.id, case.seed, parts, files]
         data = json.dumps(whole, sort_keys=True, default=str).encode(errors="surrogatepass")

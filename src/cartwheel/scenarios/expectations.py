@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from cartwheel.codes.command import SCENARIO_EXPRESSION, SCENARIO_INVALID
 from cartwheel.errors import CartwheelError
-from cartwheel.scenarios.expressions import ExpressionFaultError, evaluate, function
+from cartwheel.scenarios.expressions import NAME_HINT, ExpressionFaultError, evaluate, function
 from cartwheel.testing.conditions import (
     Condition,
     JointAt,
@@ -68,7 +68,7 @@ class Expression(Condition):
             raise CartwheelError(
                 f'the expression "{self.text}" cannot be evaluated: {error.reason}',
                 code=SCENARIO_EXPRESSION,
-                hint=f"{error.hint} Write parameters of the scenario as ${{name}}.".strip()
+                hint=f"{error.hint} {NAME_HINT}".strip()
                 if "is not defined" in error.reason
                 else error.hint,
                 values={"expression": self.text},

@@ -12,7 +12,7 @@ from typing import Any
 
 from cartwheel.codes.command import SCENARIO_EXPRESSION
 from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator, Function
-from cartwheel.description.expressions.syntax import compiled
+from cartwheel.description.expressions.syntax import compiled, free_names
 from cartwheel.errors import CartwheelError, Pickled
 from cartwheel.scenarios.document import Document, Key
 from cartwheel.similar_names import suggestion
@@ -21,6 +21,14 @@ _SECONDS = 0.5
 """Maximum CPU time of an expression, s."""
 _WHOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAMES: dict[str, Any] = {**BUILTINS, **MATH}
+CONDITION_NAMES = frozenset(
+    {
+        *("count", "distance", "field", "joint", "pitch", "roll"),
+        *("tilt", "time", "x", "y", "yaw", "z"),
+    }
+)
+"""What the expression of a condition can use in addition to Python's and math's functions."""
+NAME_HINT = "Write parameters of the scenario as ${name}."
 
 
 class _NoTable:
@@ -106,10 +114,11 @@ def substituted(document: Document, value: Any, names: Mapping[str, Any], key: K
 
 
 def check_conditions(document: Document, value: Any, key: Key) -> None:
-    """Checks the syntax of all conditions with the key ``expression`` in a part of a scenario.
+    """Checks the syntax and names of all conditions with the key ``expression`` in a part of a
+    scenario.
 
     Raises:
-        ScenarioError: An expression is not one.
+        ScenarioError: An expression is not one, or uses a name that does not exist.
     """
     if isinstance(value, list):
         for index, each in enumerate(value):
@@ -126,7 +135,12 @@ def _check_syntax(document: Document, text: str, key: Key) -> None:
     hint = ""
     try:
         compiled(text.strip())
-        return
+        known = {*_NAMES, *CONDITION_NAMES}
+        unknown = next((each for each in free_names(text.strip()) if each not in known), None)
+        if unknown is None:
+            return
+        reason = f'"{unknown}" is not defined'
+        hint = f"{suggestion(unknown, CONDITION_NAMES)} {NAME_HINT}"
     except SyntaxError as error:
         reason = error.msg
     except CartwheelError as error:

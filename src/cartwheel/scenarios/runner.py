@@ -44,6 +44,8 @@ class Options:
     folder: Path
     """Receives pictures and recordings."""
     package_path: tuple[Path, ...] = ()
+    plugins: tuple[Path, ...] = ()
+    """Python files that define plugins, for all scenarios."""
     record: Kept = "failures"
     pictures: Kept = "failures"
     allow_launch: bool = False
@@ -168,6 +170,14 @@ class Runner:
                 )
             own = self._own_network(stack, launch, connections)
             stack.enter_context(_environment(own))
+        if value.get("plugins") and not options.allow_launch:
+            raise CartwheelError(
+                f'the scenario executes the plugin file "{value["plugins"][0]}"',
+                code=LAUNCH_NOT_ALLOWED,
+                origin=scenario.document.origin(("plugins",)),
+                hint="If you trust the scenario, add --allow-launch.",
+                values={"command": value["plugins"][0]},
+            )
         world = stack.enter_context(
             self._build(scenario, value).world(seed=case.seed, **connections)
         )
@@ -247,7 +257,10 @@ class Runner:
         from cartwheel.api import build
 
         world, robots = value.get("world", "empty"), value.get("robots", ())
-        files = json.dumps([str(scenario.file), world, [each["robot"] for each in robots]])
+        # Those of the command line are the same for all cases.
+        plugins = value.get("plugins", ())
+        named = [each["robot"] for each in robots]
+        files = json.dumps([str(scenario.file), world, named, list(plugins)])
 
         def built(fixed: frozenset[int]) -> Built:
             given = [
@@ -260,6 +273,10 @@ class Runner:
                     place_of(scenario, world),
                     [_spawned(scenario, robot) for robot in given],
                     package_path=self._options.package_path,
+                    plugins=[
+                        *self._options.plugins,
+                        *(place_of(scenario, each) for each in plugins),
+                    ],
                     lenient=True,
                 )
                 while len(self._built) > _MOST_BUILT:

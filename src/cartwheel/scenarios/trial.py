@@ -167,7 +167,9 @@ class Trial:
         if not watch.met and not self.decided:
             condition = watch.condition
             raise StepFailedError(
-                f"{condition.expected} within {timeout:g} s", condition.actual, condition.values
+                f"{condition.expected}, after at most {timeout:g} s",
+                condition.actual,
+                condition.values,
             )
 
     def _unmet(self, key: Key, watch: Watch) -> None:

@@ -17,6 +17,7 @@ from cartwheel.cli import interrupts
 from cartwheel.cli.console import is_terminal, note, paint, printable, say
 from cartwheel.cli.writing import writing
 from cartwheel.codes.command import NO_CASES, OPTION_INVALID, OPTIONS_CONFLICT, USAGE
+from cartwheel.codes.devices import PLUGIN_FILE_INVALID
 from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.jobs import cores
 from cartwheel.scenarios import (
@@ -66,6 +67,7 @@ class Request:
     junit: Path | None
     json: bool
     package_path: tuple[Path, ...]
+    plugins: tuple[Path, ...]
 
 
 def print_schema() -> None:
@@ -86,6 +88,13 @@ def test(request: Request) -> int:
         raise CartwheelError(
             "a scenario is missing", code=USAGE, hint="Pass a scenario file, or a folder with them."
         )
+    for file in request.plugins:
+        if not file.is_file():
+            raise CartwheelError(
+                f'the plugin file "{file}" does not exist',
+                code=PLUGIN_FILE_INVALID,
+                values={"path": str(file)},
+            )
     scenarios = [load_scenario(file) for file in _found(request.files)]
     cases = _unique(_selected(request, scenarios))
     if request.listed:
@@ -171,7 +180,7 @@ def _digested(request: Request, scenarios: Sequence[Scenario], cases: Sequence[C
     return [
         case
         for index, each in by_scenario.items()
-        for case in digests(scenarios[index], each, request.package_path)
+        for case in digests(scenarios[index], each, request.package_path, request.plugins)
     ]
 
 
@@ -179,6 +188,7 @@ def _options(request: Request) -> Options:
     return Options(
         folder=request.output,
         package_path=request.package_path,
+        plugins=request.plugins,
         record=cast(Any, request.record),
         pictures=cast(Any, request.pictures),
         allow_launch=request.allow_launch,
@@ -266,8 +276,10 @@ def _show(request: Request, outcomes: Sequence[Outcome], count: int) -> None:
     if len(failed) > _MOST_SHOWN:
         say(f"and {len(failed) - _MOST_SHOWN} more failed cases")
     missing = count - len(outcomes)
+    errors = sum(each.status == "error" for each in failed)
     parts = [f"{len(outcomes) - len(failed)} passed"]
-    parts += [f"{len(failed)} failed"] if failed else []
+    parts += [f"{len(failed) - errors} failed"] if len(failed) > errors else []
+    parts += [f"{errors} error{'s' if errors > 1 else ''}"] if errors else []
     parts += [f"{missing} not run"] if missing else []
     say(paint(", ".join(parts), "red" if failed else "green"))
     if not request.view:

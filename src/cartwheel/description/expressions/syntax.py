@@ -54,6 +54,10 @@ def _kept(text: str) -> _Code:
 
 
 def _compiled(text: str) -> _Code:
+    return _code(_parsed(text), 0)
+
+
+def _parsed(text: str) -> ast.expr:
     if len(text) > MAX_LENGTH:
         raise ExpressionError(
             f"the expression is longer than {MAX_LENGTH} characters",
@@ -69,7 +73,21 @@ def _compiled(text: str) -> _Code:
         raise ExpressionError(
             "the expression is nested too deeply", values={"kind": "nesting"}
         ) from None
-    return _code(cast("ast.Expression", tree).body, 0)
+    return cast("ast.Expression", tree).body
+
+
+def free_names(text: str) -> list[str]:
+    """The names that an expression uses, and does not define itself, in their order.
+
+    Raises:
+        ExpressionError: The expression is not allowed.
+        SyntaxError: The text is not an expression.
+    """
+    nodes = list(ast.walk(_parsed(text)))
+    names = [each for each in nodes if isinstance(each, ast.Name)]
+    bound = {each.id for each in names if isinstance(each.ctx, ast.Store)}
+    bound |= {each.arg for each in nodes if isinstance(each, ast.arg)}
+    return [each.id for each in names if each.id not in bound]
 
 
 def _code(node: ast.expr, depth: int) -> _Code:
