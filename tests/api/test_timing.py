@@ -174,6 +174,7 @@ def test_bad_times_are_refused(bad: Any) -> None:
                 lambda: world.run_until(lambda: False, period=bad),
                 lambda: world.topic("/clock").hold(rate=bad),
             ]
+        uses.append(lambda: world.run_until(lambda: False, period=0))
         for use in uses:
             with raises(NUMBER_OUT_OF_RANGE):
                 use()

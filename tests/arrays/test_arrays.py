@@ -453,3 +453,28 @@ def test_no_message_and_one_of_another_type(convert):
         with raises(ARRAY_INVALID) as caught:
             convert(wrong)
         assert str(caught.value.values["expected"]).startswith("sensor_msgs/")
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize(
+    ("field", "expected"),
+    [
+        ("polygon", "Write polygon.points."),
+        (
+            "polygon.points",
+            "Write polygon.points[0].x, polygon.points[0].y, polygon.points[0].z.",
+        ),
+        (
+            "polygon.points[0]",
+            "Write polygon.points[0].x, polygon.points[0].y, polygon.points[0].z.",
+        ),
+        ("header", "Write header.stamp."),
+        ("header.frame_id", None),
+    ],
+)
+def test_a_field_with_messages_states_the_numbers_in_them(field: str, expected: str | None) -> None:
+    made = from_dict("geometry_msgs/PolygonStamped", {"polygon": {"points": [{"x": 2.0}]}})
+    with raises(FIELD_UNKNOWN, field=field) as caught:
+        arrays.values([made], field)
+    assert caught.value.hint == expected
+    assert arrays.values([made], "polygon.points[0].x").tolist() == [2.0]

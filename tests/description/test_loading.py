@@ -226,3 +226,19 @@ def test_a_world_is_named_as_gazebos_users_name_it(tmp_path, monkeypatch):
 def test_a_world_is_suggested_by_its_name():
     with raises(files.FILE_MISSING, meant="walls"):
         load_world("wals")
+
+
+@pytest.mark.wording
+def test_an_unknown_world_lists_the_worlds(folder):
+    with raises(files.FILE_MISSING, name="zzzzz") as caught:
+        load_world("zzzzz")
+    listed = caught.value.hint.removeprefix("Bundled worlds: ").removesuffix(".").split(", ")
+    assert {"empty", "walls", "post"} <= set(listed)
+    for name in listed:
+        assert load_world(name).name
+    with raises(files.FILE_MISSING, meant="walls") as caught:
+        load_world("wallz")
+    assert "walls" in caught.value.hint
+    with raises(files.FILE_MISSING) as caught:
+        load_world("nowhere/zzzzz.world")
+    assert "Bundled" not in (caught.value.hint or "")

@@ -183,3 +183,19 @@ def test_a_type_that_was_removed_can_be_defined_anew() -> None:
     classes.update({"x/msg/X": New})
     definitions["x/msg/X"] = ([], [("b", number)])
     assert classes["x/msg/X"](b=2).b == 2
+
+
+def test_a_message_is_shown_as_python_code() -> None:
+    point = message_class("geometry_msgs/msg/Point")(1.0, 2.0, 3.0)
+    assert repr(point) == "Point(x=1.0, y=2.0, z=3.0)"
+    pose = message_class("geometry_msgs/msg/Pose")(position=point)
+    assert repr(pose).startswith("Pose(position=Point(x=1.0, y=2.0, z=3.0), orientation=Quatern")
+    assert repr(message_class("std_srvs/srv/SetBool_Response")(True, "on")) == (
+        "SetBool_Response(success=True, message='on')"
+    )
+    assert repr(message_class("std_srvs/srv/Empty_Response")()) == "Empty_Response()"
+
+
+def test_all_messages_can_be_shown() -> None:
+    for name in bundled_types():
+        assert repr(zero(name)).startswith(f"{name.rpartition('/')[2]}(")

@@ -60,3 +60,14 @@ def test_importing_cartwheel_does_not_import_the_modules() -> None:
     code = "import cartwheel, sys; cartwheel.World; print('cartwheel.msgs' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stdout.strip() == "False", done.stderr
+
+
+def test_a_class_of_the_other_ros_version_states_its_module() -> None:
+    with pytest.raises(ImportError) as caught:
+        _ = importlib.import_module("cartwheel.msgs.control_msgs").FollowJointTrajectory_Result
+    assert caught.value.name == "cartwheel.msgs.control_msgs"
+    with pytest.raises(ImportError):
+        _ = importlib.import_module("cartwheel.msgs.control_msgs_ros2").FollowJointTrajectoryGoal
+    for package in ("control_msgs", "control_msgs_ros2", "nav_msgs"):
+        with pytest.raises(AttributeError):
+            _ = importlib.import_module(f"cartwheel.msgs.{package}").FollowJointTrajectry

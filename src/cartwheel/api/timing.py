@@ -112,6 +112,13 @@ class TimedWorld(RunningWorld):
         """Runs until a condition holds, or `stop`. Returns False after the timeout."""
         limit = duration_ns(timeout, "the timeout in s")
         pause = None if period is None else duration_ns(period, "the period in s")
+        if pause == 0:
+            raise CartwheelError(
+                f"the period in s must be above 0 (got {period:g})",
+                code=NUMBER_OUT_OF_RANGE,
+                hint="None evaluates the condition after each step.",
+                values={"name": "the period in s", "value": float(period or 0.0)},
+            )
         with self._run() as simulation, self._driver.interruptible() as interruption:
             held = self._run_until(simulation, holds, limit, pause, speed)
         interruption.raise_pressed()

@@ -15,6 +15,8 @@ from cartwheel.errors import GraphError
 from cartwheel.similar_names import meant, suggestion
 
 _PART = re.compile(r"([A-Za-z]\w*)((?:\[\d{1,9}\])*)")
+_LISTED = 5
+"""Number of fields that a hint names."""
 _INDEX = re.compile(r"\d+")
 
 
@@ -107,7 +109,20 @@ def _value(message: Any, field: str, steps: list[str | int]) -> float | Array:
         numbers = np.asarray(value)
         if numbers.ndim == 1 and (numbers.dtype.kind in "biuf" or not numbers.size):
             return numbers.astype(float)
-    raise _unknown(f'the field "{field}" is not a number or an array of numbers', field)
+    raise _unknown(
+        f'the field "{field}" is not a number or an array of numbers', field, _inner(value, field)
+    )
+
+
+def _inner(value: Any, field: str) -> str | None:
+    """The hint for a field whose value contains messages."""
+    if not isinstance(value, str | bytes) and hasattr(value, "__len__"):
+        if not len(value) or not hasattr(value[0], "__msgtype__"):
+            return f"Numbers of an array of messages are named so: {field}[0].name."
+        value, field = value[0], f"{field}[0]"
+    fields = getattr(value, "__dataclass_fields__", ())
+    names = [name for name in fields if not isinstance(getattr(value, name), str | bytes)]
+    return f"Write {', '.join(f'{field}.{name}' for name in names[:_LISTED])}." if names else None
 
 
 def _not_in(value: Any, step: str, known: list[str], field: str) -> GraphError:
@@ -120,5 +135,5 @@ def _not_in(value: Any, step: str, known: list[str], field: str) -> GraphError:
     )
 
 
-def _unknown(message: str, field: str) -> GraphError:
-    return GraphError(message, code=FIELD_UNKNOWN, values={"field": field})
+def _unknown(message: str, field: str, hint: str | None = None) -> GraphError:
+    return GraphError(message, code=FIELD_UNKNOWN, hint=hint, values={"field": field})

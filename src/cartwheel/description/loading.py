@@ -9,13 +9,14 @@ from pathlib import Path
 from cartwheel.codes import files as codes
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.xml import Node
-from cartwheel.description.files.named_files import find_description
+from cartwheel.description.files.named_files import bundled_worlds, find_description
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.files.readable_files import Reach
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.received_text import refuse_xacro, require_files
 from cartwheel.description.xml_text import write_xml
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
+from cartwheel.similar_names import meant
 
 _OTHER_KINDS = {
     "launch": ("a launch file", "Pass the description that the launch file loads."),
@@ -93,7 +94,12 @@ def load_world(
     package_path: Sequence[Path] = (),
 ) -> WorldDescription:
     """Reads a file like `load`; it must describe a world."""
-    found = load(path, arguments=arguments, package_path=package_path)
+    try:
+        found = load(path, arguments=arguments, package_path=package_path)
+    except DescriptionError as error:
+        if error.code is codes.FILE_MISSING and error.values.get("name") == str(path):
+            _suggest_world(error, Path(path))
+        raise
     if isinstance(found, RobotDescription):
         raise DescriptionError(
             f'the file describes the model "{found.name}", not a world',
@@ -103,6 +109,18 @@ def load_world(
             hint='Spawn the model into a world, such as the built-in world "empty".',
         )
     return found
+
+
+def _suggest_world(error: DescriptionError, path: Path) -> None:
+    """Suggests a bundled world instead of a bundled robot or model for a name without a folder."""
+    named = str(error.values.get("meant", ""))
+    if len(path.parts) != 1 or Path(named or "?").is_file():
+        return
+    worlds = bundled_worlds()
+    near = meant(path.name, worlds)
+    if near or not named:
+        error.values = {**error.values, "meant": near}
+        error.hint = f'Did you mean "{near}"?' if near else f"Bundled worlds: {', '.join(worlds)}."
 
 
 def load_text(

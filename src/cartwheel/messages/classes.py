@@ -90,7 +90,7 @@ def _convert(
     }
     # rosbags appends "_" to the names of keywords.
     if any(keyword.iskeyword(name.removesuffix("_")) for name in fields):
-        given.__eq__ = _equal
+        given.__eq__, given.__repr__ = _equal, _shown
         return given
     kept = {
         name: value
@@ -107,6 +107,7 @@ def _convert(
             "__dataclass_fields__": fields,
             "__eq__": _equal,
             "__ne__": _different,
+            "__repr__": _shown,
         },
         module=module,
         eq=False,
@@ -120,6 +121,13 @@ def _equal(self: Any, other: Any) -> Any:
         return NotImplemented
     names = self.__dataclass_fields__
     return all(_alike(getattr(self, name), getattr(other, name)) for name in names)
+
+
+def _shown(self: Any) -> str:
+    """A message as Python code, with the name of its class in `cartwheel.msgs`."""
+    names = (name for name in self.__dataclass_fields__ if name != FILLER)
+    fields = ", ".join(f"{name}={getattr(self, name)!r}" for name in names)
+    return f"{self.__msgtype__.rpartition('/')[2]}({fields})"
 
 
 def _different(self: Any, other: Any) -> Any:

@@ -89,6 +89,11 @@ def _spawnable_names() -> list[str]:
     return sorted(names - _IN_EVERY_WORLD)
 
 
+def bundled_worlds() -> list[str]:
+    """Names of the built-in worlds."""
+    return sorted(path.stem for path in shipped_descriptions() if path.suffix == ".world")
+
+
 def _is_complete(path: Path) -> bool:
     """Whether a file describes a robot, a model or a world; xacro parts have no name."""
     try:
