@@ -78,7 +78,14 @@ def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "run", ["world.run(0.2)", "threading.Thread(target=world.spin, daemon=True).start()"]
+    "run",
+    [
+        "world.run(0.2)",
+        "threading.Thread(target=world.spin, daemon=True).start()",
+        "threading.Thread(target=lambda: [world.run(0.05) for _ in range(10**6)], "
+        "daemon=True).start()",
+    ],
+    ids=["run", "spin", "runs"],
 )
 def test_a_program_that_leaves_its_cameras_open_ends_silently(tmp_path: Path, run: str) -> None:
     """Also if Python's exit handler for `weakref.finalize` is older than that of OpenGL."""

@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Literal, Self
 
 from cartwheel.api.values import scalar
+from cartwheel.assembly import at_exit
 from cartwheel.assembly.driver import Driver, uninterrupted
 from cartwheel.assembly.turn import Turn
 from cartwheel.assembly.turns import Turns
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 
 _LOOK = 0.05
 """Interval of wall time in which `RunningWorld.wait_for_browser` looks for browsers, s."""
+
+
+_PATIENCE = 5.0
+"""Maximum wall time for a run on another thread to end when the process exits, s."""
 
 
 class RunningWorld:
@@ -60,7 +65,7 @@ class RunningWorld:
         self._connections: Connections | None = None
         self._runner: int | None = None
         """The thread of the current run; None if there is none."""
-        self._closing = False
+        self._closing = self._ends_at_exit = False
         session.simulation.drain()  # this thread is the owner
         if connections is not None and plan is not None:
             with self.lock:
@@ -211,6 +216,11 @@ class RunningWorld:
                 self._connections.update()
         self._runner = thread
         if outer is None:
+            if thread != threading.main_thread().ident and threading.current_thread().daemon:
+                # Otherwise it would run while libraries end what it uses, such as OpenGL.
+                at_exit.close_at_exit(self)
+                self._ends_at_exit = True
+                at_exit.end_thread_if_exiting()
             self._driver.begin()
         return outer
 
@@ -222,12 +232,22 @@ class RunningWorld:
         finally:
             self._runner = outer
             if outer is None:
+                if self._ends_at_exit:
+                    self._ends_at_exit = False
+                    at_exit.forget(self)
                 self._driver.end()
                 if self._closing:
                     self._end()
                 if self._connections is not None:
                     self._connections.update()
                     self._driver.pacer.show()
+
+    def close_at_exit(self) -> None:
+        """Ends a run of a daemon thread at the end of the process, which does not wait for it."""
+        self.session.simulation.stop()
+        # The thread, which may begin the next run, then waits forever.
+        if self.lock.acquire_within(_PATIENCE) and not at_exit.only_daemons_are_left():
+            self.lock.release()
 
     # -- connections
 

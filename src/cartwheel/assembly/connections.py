@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 import threading
@@ -11,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cartwheel.assembly import at_exit
 from cartwheel.assembly.assembly import Assembly
 from cartwheel.assembly.attendant import Attendant
 from cartwheel.assembly.driver import Driver
@@ -32,8 +32,6 @@ NODE = "gazebo"
 FOXGLOVE_PORT = 8765
 VIEWER_PORT = 8080
 """The first port to try."""
-_LOOK = 0.2
-"""Interval in s at which the end of the main thread is checked."""
 _PATIENCE = 5.0
 """Maximum wall time in s for a run on another thread to end when the process exits."""
 
@@ -63,7 +61,7 @@ class Connections:
         self.closed = False
         self._owner: weakref.ref[object] | None = None
         keep_object(self)
-        _close_at_exit(self)
+        at_exit.close_at_exit(self)
 
     @property
     def forked(self) -> bool:
@@ -166,7 +164,7 @@ class Connections:
             try:
                 self.assembly.close()
             finally:
-                _open.discard(self)
+                at_exit.forget(self)
                 self._owner = None
                 if self._attendant is not None:
                     self._attendant.close()
@@ -207,52 +205,6 @@ class _ReportingObserver(Observer):
     def _report(self, diagnostic: Diagnostic) -> None:
         if self.session is not None:
             self.session.simulation.report(diagnostic)
-
-
-_open: set[Connections] = set()
-"""Connections to close at the end of the process."""
-_closer: threading.Thread | None = None
-_starting = threading.Lock()
-
-
-def _close_at_exit(connections: Connections) -> None:
-    """Closes the connections at the end of the process, unless they were closed before."""
-    global _closer
-    with _starting:
-        _open.add(connections)
-        if _closer is None or not _closer.is_alive():
-            _closer = threading.Thread(target=_close_all, name="closer")
-            _closer.start()
-
-
-def _after_fork() -> None:
-    """The parent closes its connections. Another thread may have held the lock."""
-    global _closer, _starting
-    _open.clear()
-    _closer = None
-    _starting = threading.Lock()
-
-
-os.register_at_fork(after_in_child=_after_fork)
-
-
-def _close_all() -> None:
-    """Waits for the end of the main thread.
-
-    The interpreter waits for this thread before it calls the functions of `atexit`, with which
-    libraries end servers and rendering contexts that are still in use.
-    """
-    global _closer
-    while True:
-        threading.main_thread().join(_LOOK)
-        with _starting:
-            if not _open:
-                _closer = None
-                return
-        if not threading.main_thread().is_alive():
-            for connections in list(_open):
-                with contextlib.suppress(Exception):
-                    connections.close_at_exit()
 
 
 def _files(session: Session) -> Iterable[str]:

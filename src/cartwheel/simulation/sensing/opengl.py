@@ -91,14 +91,15 @@ class OffscreenContext:
         Raises:
             ForkedError: This process was forked after the context was created.
         """
-        if self._gl is None:
+        if _Process.forked:
             raise ForkedError
         with self._lock:
-            self._gl.make_current()
+            gl = self._gl
+            gl.make_current()
             try:
                 yield
             finally:
-                _make_none_current(self._gl)
+                _make_none_current(gl)
 
     def release(self, drawing: Any) -> None:
         """Frees an `MjrContext` that belongs to this context."""
