@@ -10,16 +10,7 @@ from cartwheel.errors import Diagnostic
 from cartwheel.graph import Graph
 from cartwheel.simulation import Part, Simulation
 
-_COMMON = frozenset(
-    {
-        "diagnostic_msgs/msg/DiagnosticArray",
-        "rcl_interfaces/msg/Log",
-        "rcl_interfaces/msg/ParameterEvent",
-        "rosgraph_msgs/msg/Clock",
-        "rosgraph_msgs/msg/Log",
-        "tf2_msgs/msg/TFMessage",
-    }
-)
+_COMMON = frozenset({"Clock", "DiagnosticArray", "Log", "ParameterEvent", "TFMessage"})
 """Types of topics that all robots share in ROS. Their messages name the robot or the frame."""
 _JOINTS = "sensor_msgs/msg/JointState"
 """The messages name the joints, so robots whose joints have different names can share it."""
@@ -81,7 +72,7 @@ def shared_topics(
             for topic in sorted(topics):
                 # A topic that was closed again has no type.
                 kind = types.get(topic, "")
-                if not kind or kind in _COMMON:
+                if not kind or kind.rpartition("/")[2] in _COMMON:
                     continue
                 other = first.setdefault((topic, publishes), name)
                 if other == name or name not in added:

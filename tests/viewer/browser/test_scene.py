@@ -54,7 +54,6 @@ def test_the_cart_is_blue_and_the_post_red(page):
 def test_the_post_is_drawn_where_it_stands(page, arena):
     """Every corner of the picture's red lies where the eight corners of the post project to."""
     close_notes(page)
-    picture = screenshot(page)
     box = page.locator("canvas[data-engine]").bounding_box()
     post = arena.pose("post")
     corners = [
@@ -63,18 +62,26 @@ def test_the_post_is_drawn_where_it_stands(page, arena):
         for y in (-0.1, 0.1)
         for z in (0.0, 1.0)
     ]
-    red = picture[:, :, RED]
-    is_red = (red > 90) & (red > 2.2 * picture[:, :, 1:].max(axis=2))
-    # The cart's lights are red as well, further to the left.
-    is_red[:, : int(min(x for x, _ in corners)) - 30] = is_red[:, RIGHT:] = False
-    rows, columns = is_red.nonzero()
-    assert abs(columns.min() - min(x for x, _ in corners)) < 6
-    assert abs(columns.max() - max(x for x, _ in corners)) < 6
-    assert abs(rows.min() - min(y for _, y in corners)) < 6
+
+    def is_there():
+        picture = screenshot(page)
+        red = picture[:, :, RED]
+        is_red = (red > 90) & (red > 2.2 * picture[:, :, 1:].max(axis=2))
+        # The cart's lights are red as well, further to the left.
+        is_red[:, : int(min(x for x, _ in corners)) - 30] = is_red[:, RIGHT:] = False
+        rows, columns = is_red.nonzero()
+        return (
+            rows.size > 0
+            and abs(columns.min() - min(x for x, _ in corners)) < 6
+            and abs(columns.max() - max(x for x, _ in corners)) < 6
+            and abs(rows.min() - min(y for _, y in corners)) < 6
+        )
+
+    eventually(is_there, what="the post at its place")
 
 
 def test_links_follow_the_simulation(page, arena):
-    before = colours(page)[0]
+    before = eventually(lambda: colours(page)[0], what="the post")
     arena.ask(lambda: arena.simulation.set_pose("post", Pose((0.0, 60.0, 0.0))))
     eventually(lambda: colours(page)[0] < 0.1 * before, what="the post to leave the picture")
 
