@@ -144,7 +144,7 @@ def test_rviz_shows_the_cart_and_its_image(desk: Desk, shell: Terminal) -> None:
         white = (scene.min(axis=2) > 250).sum()
         return bool(cart > 1500 and white < cart / 4 and panel.std() > 15)
 
-    assert eventually(seen, 90.0), f"see {desk.folder / 'screen.png'}"
+    assert eventually(seen, 240.0), f"see {desk.folder / 'screen.png'}"
     if pictures := os.environ.get("CARTWHEEL_PICTURES"):
         Image.open(desk.folder / "screen.png").crop((0, 0, 1200, 846)).save(
             Path(pictures) / "rviz.png", optimize=True
