@@ -19,7 +19,7 @@ from cartwheel.graph import Action, Service, made_message
 from cartwheel.graph import Goal as GraphGoal
 from cartwheel.messages import service_classes
 from cartwheel.messages.store import finding_with, service_name
-from cartwheel.messages.typed import M, Message, name_of
+from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import duration_ns
@@ -124,9 +124,7 @@ class CallingWorld(MessagingWorld):
     def serve(self, name: str, type: type[M], handler: Callable[[M], object]) -> ServiceServer: ...
     @overload
     def serve(self, name: str, type: str, handler: Callable[[Any], object]) -> ServiceServer: ...
-    def serve(
-        self, name: str, type: type[Message] | str, handler: Callable[[Any], object]
-    ) -> ServiceServer:
+    def serve(self, name: str, type: Kind, handler: Callable[[Any], object]) -> ServiceServer:
         """Offers a service, also to ROS and other connections.
 
         Calls of other programs are handled between two steps of `run`. If the handler raises an

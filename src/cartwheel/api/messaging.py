@@ -14,7 +14,7 @@ from cartwheel.api.arguments import refused, several, text
 from cartwheel.api.timing import TimedWorld
 from cartwheel.api.topics import Topic
 from cartwheel.graph import CheckedPublisher, Graph, Mailbox, Subscription, made_message
-from cartwheel.messages.typed import M, Message, name_of
+from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
@@ -59,9 +59,7 @@ class MessagingWorld(TimedWorld):
     def topic(
         self, name: str, type: str | None = None, *, keep: int | None = None
     ) -> Topic[Any]: ...
-    def topic(
-        self, name: str, type: type[Message] | str | None = None, *, keep: int | None = None
-    ) -> Topic[Any]:
+    def topic(self, name: str, type: Kind | None = None, *, keep: int | None = None) -> Topic[Any]:
         """Subscribes to a topic, and returns an object with its messages.
 
         With a class of `cartwheel.msgs` as `type`, the messages have this class for type checkers:
@@ -104,7 +102,7 @@ class MessagingWorld(TimedWorld):
             found.keep(keep)
         return found
 
-    def _full_name(self, kind: type[Message] | str | None) -> str | None:
+    def _full_name(self, kind: Kind | None) -> str | None:
         """The name of a type that a program gives; None if it gives none."""
         return None if kind is None else str(self.message_class(name_of(kind)).__msgtype__)
 
@@ -157,7 +155,7 @@ class MessagingWorld(TimedWorld):
         topic: str,
         callback: Callable[[Any], object],
         *,
-        type: type[Message] | str | None = None,
+        type: Kind | None = None,
     ) -> Subscription:
         """Calls `callback` with each message during `run`.
 
@@ -198,7 +196,7 @@ class MessagingWorld(TimedWorld):
     def advertise(self, topic: str, type: type[M]) -> CheckedPublisher[M]: ...
     @overload
     def advertise(self, topic: str, type: str) -> CheckedPublisher[Any]: ...
-    def advertise(self, topic: str, type: type[Message] | str) -> CheckedPublisher[Any]:
+    def advertise(self, topic: str, type: Kind) -> CheckedPublisher[Any]:
         """Advertises a topic, and returns its publisher.
 
         Its method `publish` accepts the same as `World.publish`, without the name of the topic.
@@ -236,9 +234,7 @@ class MessagingWorld(TimedWorld):
     def mailbox(self, topic: str, type: type[M], *, size: int = 1000) -> Mailbox[M]: ...
     @overload
     def mailbox(self, topic: str, type: str | None = None, *, size: int = 1000) -> Mailbox[Any]: ...
-    def mailbox(
-        self, topic: str, type: type[Message] | str | None = None, *, size: int = 1000
-    ) -> Mailbox[Any]:
+    def mailbox(self, topic: str, type: Kind | None = None, *, size: int = 1000) -> Mailbox[Any]:
         """Buffers the topic's messages, to be read after `run`.
 
         `get` waits only if a different thread runs the world, by default for at most 30 s. In the

@@ -31,10 +31,6 @@ _LOOK = 0.05
 """Interval of wall time in which `RunningWorld.wait_for_browser` looks for browsers, s."""
 
 
-_PATIENCE = 5.0
-"""Maximum wall time for a run on another thread to end when the process exits, s."""
-
-
 class RunningWorld:
     """The part of `World` that runs and connects a session.
 
@@ -246,7 +242,7 @@ class RunningWorld:
         """Ends a run of a daemon thread at the end of the process, which does not wait for it."""
         self.session.simulation.stop()
         # The thread, which may begin the next run, then waits forever.
-        if self.lock.acquire_within(_PATIENCE) and not at_exit.only_daemons_are_left():
+        if self.lock.acquire_within(at_exit.PATIENCE) and not at_exit.only_daemons_are_left():
             self.lock.release()
 
     # -- connections

@@ -9,6 +9,8 @@ from typing import Protocol
 
 _LOOK = 0.2
 """Interval in s at which the end of the main thread is checked."""
+PATIENCE = 5.0
+"""Maximum wall time for a run on another thread to end when the process exits, s."""
 
 
 class Ending(Protocol):

@@ -32,8 +32,6 @@ NODE = "gazebo"
 FOXGLOVE_PORT = 8765
 VIEWER_PORT = 8080
 """The first port to try."""
-_PATIENCE = 5.0
-"""Maximum wall time in s for a run on another thread to end when the process exits."""
 
 
 class Connections:
@@ -174,7 +172,7 @@ class Connections:
         entered = False
         if self._turns is not None:
             self.assembly.session.simulation.stop()
-            entered = self._turns.acquire_within(_PATIENCE)
+            entered = self._turns.acquire_within(at_exit.PATIENCE)
         try:
             self.close()
         finally:

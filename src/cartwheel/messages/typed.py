@@ -30,7 +30,7 @@ else:
     M = TypeVar("M", bound=Message)
 
 
-def name_of(kind: type[Message] | str) -> str:
+def name_of(kind: Kind) -> str:
     """The name of a message type that a program gives as a class or by its name.
 
     Raises:

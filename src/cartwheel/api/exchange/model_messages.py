@@ -9,7 +9,7 @@ from cartwheel.api.arguments import text
 from cartwheel.api.handles import Handle
 from cartwheel.api.timing import TIMEOUT
 from cartwheel.graph import Mailbox, Subscription, resolve_name
-from cartwheel.messages.typed import M, Message
+from cartwheel.messages.typed import Kind, M
 
 if TYPE_CHECKING:
     from cartwheel.api.calling import Goal
@@ -62,9 +62,7 @@ class MessagingModel(Handle):
     def topic(
         self, name: str, type: str | None = None, *, keep: int | None = None
     ) -> Topic[Any]: ...
-    def topic(
-        self, name: str, type: type[Message] | str | None = None, *, keep: int | None = None
-    ) -> Topic[Any]:
+    def topic(self, name: str, type: Kind | None = None, *, keep: int | None = None) -> Topic[Any]:
         """`World.topic`, where a name without a leading ``/`` is in the model's namespace."""
         full = self._resolved(name)
         # The overloads of `World.topic` know either a class or a name.
@@ -87,7 +85,7 @@ class MessagingModel(Handle):
         topic: str,
         callback: Callable[[Any], object],
         *,
-        type: type[Message] | str | None = None,
+        type: Kind | None = None,
     ) -> Subscription:
         """`World.subscribe`, where a name without a leading ``/`` is in the model's namespace."""
         return self._world.subscribe(self._resolved(topic), callback, type=cast("str | None", type))
@@ -96,9 +94,7 @@ class MessagingModel(Handle):
     def mailbox(self, topic: str, type: type[M], *, size: int = 1000) -> Mailbox[M]: ...
     @overload
     def mailbox(self, topic: str, type: str | None = None, *, size: int = 1000) -> Mailbox[Any]: ...
-    def mailbox(
-        self, topic: str, type: type[Message] | str | None = None, *, size: int = 1000
-    ) -> Mailbox[Any]:
+    def mailbox(self, topic: str, type: Kind | None = None, *, size: int = 1000) -> Mailbox[Any]:
         """`World.mailbox`, where a name without a leading ``/`` is in the model's namespace."""
         return self._world.mailbox(self._resolved(topic), cast("str | None", type), size=size)
 
@@ -113,9 +109,7 @@ class MessagingModel(Handle):
     def serve(self, name: str, type: type[M], handler: Callable[[M], object]) -> ServiceServer: ...
     @overload
     def serve(self, name: str, type: str, handler: Callable[[Any], object]) -> ServiceServer: ...
-    def serve(
-        self, name: str, type: type[Message] | str, handler: Callable[[Any], object]
-    ) -> ServiceServer:
+    def serve(self, name: str, type: Kind, handler: Callable[[Any], object]) -> ServiceServer:
         """`World.serve`, where a name without a leading ``/`` is in the model's namespace."""
         return self._world.serve(self._resolved(name, "name"), cast("str", type), handler)
 

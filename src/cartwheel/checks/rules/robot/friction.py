@@ -63,13 +63,13 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             collision = link.collisions[0]
             mu = collision.surface.mu1
-            if (mu is not None and mu <= _LOW) or _names_nothing(subject):
+            if not _brakes(mu) or _names_nothing(subject):
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
             yield robot_codes.CASTER_FRICTION.diagnostic(
                 message=f'the caster "{link.name}" cannot '
                 f"{'swivel, so it slides when the robot turns' if rolls else 'roll'}, and its "
-                f"friction coefficient is {'1, the default' if mu is None else f'{mu:g}'}",
+                f"friction coefficient is {_shown(mu)}",
                 values={"link": link.name, "friction": mu},
                 origin=collision.origin,
                 instead=text,
@@ -77,11 +77,11 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
             )
         for link, collision in _fixed_balls(robot, wheels):
             mu = collision.surface.mu1
-            if (mu is not None and mu <= _LOW) or _names_nothing(subject):
+            if not _brakes(mu) or _names_nothing(subject):
                 continue
             yield robot_codes.CASTER_FRICTION.diagnostic(
                 message=f'the sphere of link "{link.name}" is a caster that cannot roll, and its '
-                f"friction coefficient is {'1, the default' if mu is None else f'{mu:g}'}",
+                f"friction coefficient is {_shown(mu)}",
                 values={"link": link.name, "friction": mu},
                 origin=collision.origin,
                 hint="Move the sphere to a link of its own, on a fixed joint, and set <mu1> and "
@@ -108,12 +108,11 @@ def planar_friction(subject: Subject) -> Iterator[Diagnostic]:
             if height - ground > _LEVEL or (holder is not None and holder.type == "continuous"):
                 continue
             mu = robot.links[name].collisions[0].surface.mu1
-            if mu is not None and mu <= _LOW:
+            if not _brakes(mu):
                 continue
             yield robot_codes.PLANAR_FRICTION.diagnostic(
                 message=f'link "{name}" slides on the ground when "{movers[0].filename}" moves the '
-                f"robot, and its friction coefficient is "
-                f"{'1, the default' if mu is None else f'{mu:g}'}",
+                f"robot, and its friction coefficient is {_shown(mu)}",
                 values={"link": name, "friction": mu},
                 origin=robot.links[name].collisions[0].origin,
                 instead=f'<gazebo reference="{name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>',
@@ -123,17 +122,17 @@ def planar_friction(subject: Subject) -> Iterator[Diagnostic]:
 
 def _fixed_balls(robot: Robot, wheels: set[str]) -> Iterator[tuple[Link, Collision]]:
     """Spheres of links that are not casters by name, on which a robot stands beside its wheels."""
-    bottoms = [h for name in wheels if (h := lowest(robot, name)) is not None]
+    ground = _ground(robot, wheels)
     trunks = {robot.rigid_root(robot.joints[joint.name].parent) for joint in wheel_joints(robot)}
     for link in robot.description.links:
         if "caster" in link.name.lower() or robot.rigid_root(link.name) not in trunks:
             continue
         for collision in link.collisions:
             solid = solid_of(collision, link.name) if isinstance(collision.shape, Sphere) else None
-            if solid is None or not bottoms or link.name not in robot.placed:
+            if solid is None or ground is None or link.name not in robot.placed:
                 continue
             height = float(solid.placed(robot.links[link.name].pose)[:, 2].min())
-            if abs(height - min(bottoms)) < _LEVEL:
+            if abs(height - ground) < _LEVEL:
                 yield link, collision
 
 
@@ -156,6 +155,20 @@ def _surface_node(robot: Robot, link: str, tag: str) -> Node | None:
 
 
 def _touches_ground(robot: Robot, link: Link, wheels: set[str]) -> bool:
-    height = lowest(robot, link.name)
-    bottoms = [h for name in wheels if (h := lowest(robot, name)) is not None]
-    return height is not None and bool(bottoms) and abs(height - min(bottoms)) < _LEVEL
+    height, ground = lowest(robot, link.name), _ground(robot, wheels)
+    return height is not None and ground is not None and abs(height - ground) < _LEVEL
+
+
+def _ground(robot: Robot, wheels: set[str]) -> float | None:
+    """The height of the ground below the wheels, m; None if no wheel has a shape."""
+    bottoms = (lowest(robot, name) for name in wheels)
+    return min((each for each in bottoms if each is not None), default=None)
+
+
+def _brakes(mu: float | None) -> bool:
+    """Whether a part with this friction coefficient brakes a robot that it slides under."""
+    return mu is None or mu > _LOW
+
+
+def _shown(mu: float | None) -> str:
+    return "1, the default" if mu is None else f"{mu:g}"
