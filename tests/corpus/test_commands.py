@@ -46,6 +46,17 @@ def test_joints_are_commanded_by_their_numbers_in_actuators_messages(tmp_path):
     assert verdict.good, verdict.faults
 
 
+def test_an_index_that_no_message_can_have_takes_no_memory(tmp_path):
+    plugin = (
+        '<gazebo><plugin name="gz::sim::systems::JointController" '
+        'filename="gz-sim-joint-controller-system"><joint_name>left_joint</joint_name>'
+        "<use_actuator_msg>true</use_actuator_msg>"
+        "<actuator_number>2147483647</actuator_number></plugin></gazebo>"
+    )
+    parts = link("left", "base", place="0 0.1 0.2")
+    assert tried(tmp_path, BASE.format(mass=5), parts, plugin).spins == ()
+
+
 def test_an_effort_is_measured_before_the_rest_of_the_arm_falls(tmp_path):
     """The torque for the light wrist is a thousandth of those by which the arm falls."""
     parts = link("upper", "base", kind="revolute", axis="0 1 0", at="0 0 0.3", mass=3, i=0.05)

@@ -106,3 +106,12 @@ def test_unsupported_hardware_without_joints_is_why_nothing_moves(tmp_path):
     assert fault.source == "unknown"
     assert verdict.should_move
     assert not verdict.moves
+
+
+@pytest.mark.parametrize("number", ["2147483647", "\u00b2"])
+def test_an_index_that_no_message_can_have_takes_no_memory(tmp_path, number):
+    rotor = ROTOR.format(i=0, x=0, y=0, way="ccw").replace(
+        "<motorNumber>0</motorNumber>", f"<motorNumber>{number}</motorNumber>"
+    )
+    verdict = tried(tmp_path, BODY.format(mass=0.5), rotor)
+    assert not any(flight.flies for flight in verdict.flights)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cartwheel.api import Model, World
+from cartwheel.corpus.flights import MOST_ACTUATORS
 from cartwheel.corpus.motion import degree, positions, resistance
 from cartwheel.corpus.thrusters import thruster_topics
 from cartwheel.corpus.verdict import Spin
@@ -179,7 +180,7 @@ def _actuated(info: TopicInfo, robot: RobotDescription) -> dict[str, int]:
             config, _ = read(JointVelocityParameters, tag.element)
             number = actuator_of(config)
             topic = (config.topic or config.sub_topic).strip() or "actuators"
-            if number is not None and info.name.endswith(topic):
+            if number is not None and number < MOST_ACTUATORS and info.name.endswith(topic):
                 found |= dict.fromkeys((name.strip() for name in config.joints), number)
     return found
 

@@ -31,6 +31,10 @@ _CLIMBING = 1.0
 """Time at each propeller speed, s."""
 _LOOKING = 0.1
 """Interval at which the height is measured, s."""
+MOST_ACTUATORS = 1000
+"""Number of values in a message of type Actuators. Files may state larger indices, for which the
+message would not fit into memory.
+"""
 _FASTEST = 838.0
 """rad/s; the default of gz-sim's motor model."""
 _LIFTS = 0.3
@@ -84,7 +88,8 @@ def _thrusts(robot: RobotDescription, tags: Sequence[PluginTag]) -> dict[int, Ve
         )
         pose = poses.get(link)
         thrust = _UP if pose is None else rotate(pose.orientation, _UP)
-        found[int(number) if number.isdigit() else index] = thrust
+        is_index = number.isdecimal() and len(number) < 10 and int(number) < MOST_ACTUATORS
+        found[int(number) if is_index else index] = thrust
     return found
 
 
