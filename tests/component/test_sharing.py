@@ -49,7 +49,7 @@ def test_two_robots_without_namespaces_are_reported_once() -> None:
         world.spawn(CART, name="right", y=2.0)
         (one,) = found(world)
         assert (one["model"], one["other"]) == ("right", "left")
-        assert one["followed"] == ("/part2_cmr/cmd_vel",)
+        assert one["subscribed"] == ("/part2_cmr/cmd_vel",)
         assert {"/odom", "/imu/data", "/joint_states"} <= set(one["published"])
         assert not {"/tf", "/clock"} & set(one["published"])
         assert [each.severity for each in coded(world, TOPICS_SHARED)] == ["warning"]
@@ -99,7 +99,7 @@ def test_models_of_a_world_are_compared() -> None:
     with cw.World(f'<sdf version="1.6"><world name="pair">{models}</world></sdf>') as world:
         (each,) = found(world)
         assert (each["model"], each["other"]) == ("two", "one")
-        assert (each["published"], each["followed"]) == ((), ("/cmd_vel",))
+        assert (each["published"], each["subscribed"]) == ((), ("/cmd_vel",))
 
 
 def test_joint_states_may_be_shared_by_robots_with_different_joints() -> None:
@@ -128,7 +128,7 @@ def test_a_model_may_follow_another_one() -> None:
     parts["other"] = parts["follower"]
     ((name, other, warning),) = shared_topics(parts, ["other"], graph)
     assert (name, other) == ("other", "follower")
-    assert warning.values["followed"] == ("/target",)
+    assert warning.values["subscribed"] == ("/target",)
     assert list(shared_topics(parts, ["follower"], graph)) == []
 
 

@@ -117,5 +117,5 @@ ARRAY_INVALID = Code(
 )
 ACTION_UNKNOWN = Code("CW734", "action-unknown", "error", "an action does not exist")
 TOPICS_SHARED = Code(
-    "CW735", "topics-shared", "warning", "two models publish on or follow the same topics"
+    "CW735", "topics-shared", "warning", "two models publish on or subscribe to the same topics"
 )

@@ -89,10 +89,10 @@ def _same_joints(one: Part, other: Part) -> bool:
 
 
 def _warning(name: str, other: str, roles: Mapping[bool, list[str]], part: Part) -> Diagnostic:
-    published, followed = roles.get(True, []), roles.get(False, [])
+    published, subscribed = roles.get(True, []), roles.get(False, [])
     done = [
         f"{verb} {_listed(topics)}"
-        for verb, topics in (("publish on", published), ("follow", followed))
+        for verb, topics in (("publish on", published), ("subscribe to", subscribed))
         if topics
     ]
     return TOPICS_SHARED.diagnostic(
@@ -105,7 +105,7 @@ def _warning(name: str, other: str, roles: Mapping[bool, list[str]], part: Part)
             "model": name,
             "other": other,
             "published": tuple(published),
-            "followed": tuple(followed),
+            "subscribed": tuple(subscribed),
         },
     )
 

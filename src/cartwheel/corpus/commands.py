@@ -58,10 +58,10 @@ class _Input:
             return {"data": values[0]}
         if self.info.type == _FLOATS:
             return {"data": list(values)}
-        said = [0.0] * (1 + max(self.numbers.values()))
+        velocities = [0.0] * (1 + max(self.numbers.values()))
         for name, value in zip(self.joints, values, strict=True):
-            said[self.numbers[name]] = value
-        return {"velocity": said}
+            velocities[self.numbers[name]] = value
+        return {"velocity": velocities}
 
 
 def spins(

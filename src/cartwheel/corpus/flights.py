@@ -70,8 +70,8 @@ def flights(world: World, model: Model, robot: RobotDescription) -> Iterator[Fli
         speed = rose = 0.0
         for step in range(1, _STEPS + 1):
             speed = fastest * step / _STEPS if field != "pwm" else _DUTY * step // _STEPS
-            said = [speed if n in turning else type(speed)(0) for n in range(max(thrusts) + 1)]
-            rose = _moved(world, model, info.name, {field: said}, way)
+            speeds = [speed if n in turning else type(speed)(0) for n in range(max(thrusts) + 1)]
+            rose = _moved(world, model, info.name, {field: speeds}, way)
             if rose >= RISEN:
                 break
         yield Flight(topic=info.name, motors=len(turning), command=speed, rose=rose)

@@ -170,8 +170,8 @@ def test_two_of_one_name_are_told_once_each(make):
     world = make.world()
     for name in ("one", "two"):
         world.session.spawn(make.sdf(sensor(name=name, plugin=ROS1)))
-    told = [d.code for d in world.diagnostics if d.severity == "warning"]
-    assert told == [running.SERVICE_TAKEN, TOPICS_SHARED]
+    found = [d.code for d in world.diagnostics if d.severity == "warning"]
+    assert found == [running.SERVICE_TAKEN, TOPICS_SHARED]
     box = world.mailbox("/eye/image_raw", size=100)
     world.run(1.0)
     assert len(box.drain()) == 62
