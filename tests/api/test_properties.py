@@ -163,6 +163,42 @@ def test_a_sleeping_body_falls_up(make, uncompiled):
     assert world.model("box").velocity.linear[2] == pytest.approx(1.0, abs=0.03)
 
 
+# -- restitution
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.8])
+def test_a_ball_bounces_with_its_new_restitution(make, restitution):
+    """It rebounds to e² times its height, less or more the distance of one step."""
+    ball = make.sdf(
+        """<model name="ball"><pose>0 0 0.55 0 0 0</pose><link name="link"><inertial><mass>1</mass>
+        <inertia><ixx>0.001</ixx><iyy>0.001</iyy><izz>0.001</izz></inertia></inertial>
+        <collision name="c"><geometry><sphere><radius>0.05</radius></sphere></geometry></collision>
+        </link></model>"""
+    )
+    world = make.world(ball, step=0.001)
+    links = [world.model("ball").link("link"), world.model("ground_plane").link("link")]
+    assert [link.restitution for link in links] == [0.0, 0.0]
+    for link in links:
+        link.restitution = restitution
+    assert [link.restitution for link in links] == [restitution, restitution]
+    fall = math.sqrt(2 * 0.5 / G)
+    world.run(fall + restitution * fall)
+    expected = 0.05 + 0.5 * restitution**2
+    assert world.model("ball").pose.z == pytest.approx(expected, abs=math.sqrt(2 * G * 0.5) * 0.001)
+    links[0].restitution = 0.0
+    world.run(3.0)
+    # One surface without restitution is enough to lie still.
+    assert abs(world.model("ball").velocity.linear[2]) < 1e-3
+
+
+@pytest.mark.parametrize("wrong", [-0.1, 1.1, math.nan])
+def test_a_restitution_that_no_surface_has(box, wrong):
+    _, _, link = box
+    with raises(VALUE_INVALID):
+        link.restitution = wrong
+    assert link.restitution == 0.0
+
+
 # -- friction
 
 

@@ -67,6 +67,11 @@ def test_what_falls_comes_back_to_e_squared_of_its_height(restitution, step, sha
     assert second == pytest.approx(restitution**4 * height, abs=2 * slack)
 
 
+def test_the_lower_threshold_of_two_surfaces_counts():
+    with scene(body("b", 0, 0.55, surface(0.8, 0.1, 1.0)), floor=surface(0.8, None, 1.0)) as world:
+        assert max(peaks(world, "b", 1.0)) == pytest.approx(0.64 * 0.5, abs=0.004)
+
+
 def test_of_two_surfaces_the_smaller_restitution_counts():
     with scene(
         body("a", 0, 0.55, surface(0.9, 0.01, 1.0)),

@@ -171,6 +171,10 @@ class Material:
         return self.diffuse
 
 
+NO_BOUNCE = 1e5
+"""m/s; SDF's default of a bounce threshold, which no impact reaches."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Surface:
     """Contact parameters as in Gazebo's ODE; None if not stated."""
@@ -200,7 +204,7 @@ class Surface:
     max_contacts: int | None = None
     restitution: float | None = None
     bounce_threshold: float | None = None
-    """m/s; slower impacts do not bounce."""
+    """m/s; slower impacts do not bounce. None is `NO_BOUNCE`."""
     collide_bitmask: int | None = None
     """32 bits: the categories that it collides with."""
     category_bitmask: int | None = None

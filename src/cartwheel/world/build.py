@@ -172,11 +172,10 @@ def _built(
     added = [*bodies.added, *rules.added]
     if "chain-drag" not in without:
         added += _drag(spec, model, entries)
-    bounces = (contact.bounce(surface.name, surface.surface) for surface in surfaces)
     return Build(
         model=model,
         alignments=rules.alignments,
-        bounces=tuple(each for each in bounces if each is not None),
+        bounces=contact.bounces_of(surfaces),
         surfaces=surfaces,
         joined=frozenset(joined),
         added=tuple(added),

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import mujoco
 
-from cartwheel.description.model import Surface
+from cartwheel.description.model import NO_BOUNCE, Surface
 from cartwheel.errors import Origin
 from cartwheel.geometry import Vec3
 from cartwheel.world.additions import Added, Addition
@@ -56,8 +56,6 @@ hop, also if the load on the wheels of both sides differs.
 """
 TORSION = 0.005
 """m; MuJoCo's default, which contacts with three dimensions do not use."""
-NO_BOUNCE = 1e5
-"""m/s; SDF's default threshold, which is never reached."""
 ALL_BITS = 0xFFFF
 """SDF's default for both bitmasks."""
 FRICTION_IMPEDANCE_RATIO = 100.0
@@ -165,11 +163,21 @@ def floor_area(kind: mujoco.mjtGeom, size: Sequence[float]) -> float:
 
 
 def bounce(geom: str, surface: Surface) -> Bounce | None:
-    """The restitution of a surface; None without one, or without a threshold, as in Gazebo."""
+    """The restitution of a surface; None without one."""
     restitution, threshold = surface.restitution, surface.bounce_threshold
-    if not restitution or threshold is None or threshold >= NO_BOUNCE:
+    if not restitution:
         return None
+    # As in Gazebo, the threshold of the other surface can be lower.
+    threshold = NO_BOUNCE if threshold is None else threshold
     return Bounce(geom=geom, restitution=min(restitution, 1.0), threshold=threshold)
+
+
+def bounces_of(surfaces: Iterable[BuiltSurface]) -> tuple[Bounce, ...]:
+    """The surfaces with restitution; none if no impact of them can bounce."""
+    found = [bounce(each.name, each.surface) for each in surfaces]
+    bounces = tuple(each for each in found if each is not None)
+    reachable = any(each.threshold < NO_BOUNCE for each in bounces)
+    return bounces if reachable else ()
 
 
 def friction(surface: Surface) -> tuple[float, float, float]:

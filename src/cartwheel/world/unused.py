@@ -8,7 +8,7 @@ from pathlib import Path
 from cartwheel.codes import tags
 from cartwheel.codes import world as world_codes
 from cartwheel.description.meshes import known_size, load_mesh, standing_parts
-from cartwheel.description.model import Joint, Mesh, RobotDescription
+from cartwheel.description.model import NO_BOUNCE, Joint, Mesh, RobotDescription
 from cartwheel.description.paint import paint_of
 from cartwheel.errors import Diagnostic, Origin
 from cartwheel.world import contact
@@ -52,8 +52,10 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
                 # Gazebo writes 0 for "not set".
                 if getattr(surface, field):
                     note(field, collision.origin, why)
-            if surface.restitution and contact.bounce("", surface) is None:
-                why = "no impact reaches its <threshold>, which is 100000 m/s by default"
+            bounce = contact.bounce("", surface)
+            if bounce is not None and bounce.threshold >= NO_BOUNCE:
+                why = "no impact reaches its <threshold>, which is 100000 m/s by default, unless "
+                why += "the other surface states a lower one"
                 note("restitution", collision.origin, why)
             if (surface.restitution or 0.0) > 1:
                 note("a restitution above 1", collision.origin, "an impact cannot add energy")
