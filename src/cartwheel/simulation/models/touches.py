@@ -77,26 +77,30 @@ class Touches:
             self._model, self._copy, self._copied = engine.model, None, b""
             self._names = _names(engine.model, entries)
         model, data = engine.model, self._data()
-        found = []
-        for index in np.flatnonzero(data.contact.efc_address >= 0).tolist() if data.ncon else ():
-            contact = data.contact[index]
-            six = np.zeros(6)
-            mujoco.mj_contactForce(model, data, index, six)
-            # The rows of the frame are the normal and two tangents. The normal points from the
-            # first geom to the second, and the force acts on the second.
-            frame = contact.frame.reshape(3, 3)
-            one, two = contact.geom.tolist()
-            found.append(
-                Touch(
-                    first=self._names[one],
-                    second=self._names[two],
-                    point=_vector(contact.pos),
-                    normal=_vector(-frame[0]),
-                    depth=-float(contact.dist),
-                    force=_vector(-(frame.T @ six[:3])),
-                )
+        if not data.ncon:
+            return []
+        contacts = data.contact
+        active = np.flatnonzero(contacts.efc_address >= 0)
+        # The rows of a frame are the normal and two tangents. The normal points from the first geom
+        # to the second, and the force acts on the second.
+        frames = contacts.frame[active].reshape(-1, 3, 3)
+        local = np.zeros((len(active), 6))
+        for index, wrench in zip(active.tolist(), local, strict=True):
+            mujoco.mj_contactForce(model, data, index, wrench)
+        forces = -np.einsum("ijk,ij->ik", frames, local[:, :3])
+        columns = (contacts.pos[active], -frames[:, 0], -contacts.dist[active], forces)
+        values = zip(*(each.tolist() for each in (contacts.geom[active], *columns)), strict=True)
+        return [
+            Touch(
+                first=self._names[one],
+                second=self._names[two],
+                point=tuple(point),
+                normal=tuple(normal),
+                depth=depth,
+                force=tuple(force),
             )
-        return found
+            for (one, two), point, normal, depth, force in values
+        ]
 
     def _data(self) -> Any:
         """Data after a forward pass of the current state, in which no body sleeps."""
@@ -129,8 +133,3 @@ def _names(model: Any, entries: Sequence[ModelEntry]) -> list[tuple[str, str, st
     }
     names = (mujoco.mj_id2name(model, _GEOM, index) or "" for index in range(model.ngeom))
     return [known.get(collision_of(name), ("", "", name)) for name in names]
-
-
-def _vector(array: Any) -> Vec3:
-    x, y, z = array.tolist()
-    return x, y, z
