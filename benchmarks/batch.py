@@ -50,7 +50,7 @@ def figures(effort: Effort) -> Iterator[Figure]:
         )  # fmt: skip
     with (
         Batch(built, _WORLDS, act=act, obs=poses, period=_PERIOD, workers=0) as here,
-        Batch(built, _WORLDS, act=act, obs=poses, period=_PERIOD, workers=2) as batch,
+        Batch(built, _WORLDS, act=act, obs=poses, period=_PERIOD, workers=1) as batch,
     ):
         found = _measured(here, batch, effort, wall=True)
     yield Figure(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 
 import numpy as np
@@ -28,8 +29,8 @@ def as_many_as_time(world: cw.World) -> list[float]:
 
 
 def dying(world: cw.World) -> list[float]:
-    """Ends its process once the cart has moved."""
-    if world.model("rosbots").pose.x > 0.01:
+    """Ends its process once the cart has moved, unless it is that of the tests."""
+    if multiprocessing.parent_process() and world.model("rosbots").pose.x > 0.01:
         os._exit(3)
     return [0.0]
 

@@ -214,3 +214,21 @@ def test_processes_end_with_the_batch(built):
         made.step(ACTIONS[0])
     with raises(BATCH_INVALID), batch(built, workers=1) as other:
         other.world(0)
+
+
+def test_an_interrupted_step_leaves_no_answer_for_the_next(built, monkeypatch):
+    with batch(built, workers=0) as made:
+        expected = [made.reset(), made.step(ACTIONS[0]), made.step(ACTIONS[1])]
+    with batch(built, workers=1) as made:
+        made.reset()
+
+        def interrupted() -> None:
+            raise KeyboardInterrupt
+
+        process = made._processes[0]
+        with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
+            patched.setattr(process, "answer", interrupted)
+            made.step(ACTIONS[0])
+        found = made.step(ACTIONS[1])
+        for name, value in expected[2].items():
+            assert np.array_equal(found[name], value), name

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -39,7 +41,8 @@ class Batch:
         seed: Seed of the first world.
         vary: Called with the world and a random generator after each reset, to change masses,
             poses or lights.
-        workers: Number of processes; 0 runs all worlds in this one. By default one for each core.
+        workers: Number of other processes. This one runs a share of the worlds as well, and all
+            of them with 0. By default one fewer than there are cores.
         start_method: How processes are started, as in `multiprocessing`. With ``spawn``, a script
             must make the batch below ``if __name__ == "__main__":``, and functions must be those of
             a module.
@@ -87,26 +90,24 @@ class Batch:
         self._plan = Plan.of(act, obs, period=period, vary=vary)
         self.n = n
         self.seed = seed
-        count = min(n, cores() if workers is None else workers)
+        count = min(n - 1, cores() - 1 if workers is None else workers)
         if count < 0:
             raise invalid(f"the number of processes must be at least 0 (got {count})", "workers")
         seeds = [seed + index for index in range(n)]
         self._closed = False
         self._here: Lanes | None = None
         self._processes: list[Process] = []
-        self._edges: list[int] = [0, n]
-        if count == 0 or (workers is None and n == 1):
-            self._here = Lanes(built, self._plan, seeds, on_device)
-            return
-        if start_method != "fork" and (reason := unpicklable(self._plan)):
+        self._edges = np.linspace(0, n, count + 2).astype(int).tolist()
+        """The first world of each process, from this one on, and the number of worlds."""
+        if count and start_method != "fork" and (reason := unpicklable(self._plan)):
             error = invalid(f"obs or vary cannot be passed to processes: {reason}", "workers")
             error.hint = f"{AT_TOP_LEVEL}, or pass workers=0."
             raise error
-        self._edges = np.linspace(0, n, count + 1).astype(int).tolist()
         try:
-            for first, last in zip(self._edges, self._edges[1:], strict=False):
+            for first, last in itertools.pairwise(self._edges[1:]):
                 own = seeds[first:last]
                 self._processes.append(Process(built, self._plan, own, start_method, on_device))
+            self._here = Lanes(built, self._plan, seeds[: self._edges[1]], on_device)
         except BaseException:
             self.close()
             raise
@@ -134,8 +135,8 @@ class Batch:
             CartwheelError: It is in another process, or does not exist.
         """
         (chosen,) = self._chosen([index])
-        if self._here is None:
-            raise invalid("the worlds are in other processes: use workers=0", "workers")
+        if self._here is None or self._processes:
+            raise invalid("worlds are in other processes: use workers=0", "workers")
         return self._here.lanes[chosen].world
 
     def reset(
@@ -212,16 +213,18 @@ class Batch:
             chosen: Indices of the worlds.
             part_of: The argument for some of the chosen worlds.
         """
-        if self._here is not None:
-            found: Values = getattr(self._here, name)(chosen, part_of(list(range(len(chosen)))))
-            return found
-        asked = []
-        for index, process in enumerate(self._processes):
-            first, last = self._edges[index], self._edges[index + 1]
+        asked: list[tuple[Callable[[], Values], list[int]]] = []
+        for index, (first, last) in enumerate(itertools.pairwise(self._edges)):
             rows = [row for row, world in enumerate(chosen) if first <= world < last]
-            if rows:
-                process.ask(name, [chosen[row] - first for row in rows], part_of(rows))
-                asked.append((process, rows))
+            if not rows:
+                continue
+            arguments = [chosen[row] - first for row in rows], part_of(rows)
+            if index == 0:
+                asked.append((functools.partial(getattr(self._here, name), *arguments), rows))
+            else:
+                process = self._processes[index - 1]
+                process.ask(name, *arguments)
+                asked.append((process.answer, rows))
         return _joined(asked, len(chosen))
 
     def close(self) -> None:
@@ -234,14 +237,16 @@ class Batch:
         self._processes.clear()
 
 
-def _joined(asked: Sequence[tuple[Process, list[int]]], count: int) -> Values:
+def _joined(asked: Sequence[tuple[Callable[[], Values], list[int]]], count: int) -> Values:
     """The answers of the processes in the order of the worlds."""
+    if len(asked) == 1:
+        return asked[0][0]()
     answers: list[tuple[list[int], Values]] = []
-    failure: CartwheelError | None = None
-    for process, rows in asked:
+    failure: Exception | None = None
+    for answer, rows in asked:
         try:
-            answers.append((rows, process.answer()))
-        except CartwheelError as error:
+            answers.append((rows, answer()))
+        except Exception as error:  # noqa: BLE001 - raised below, after all have answered
             failure = failure or error
     if failure is not None:
         raise failure

@@ -98,6 +98,7 @@ class Process:
     ) -> None:
         context: Any = multiprocessing.get_context(method)
         self._link, theirs = context.Pipe()
+        self._calls = 0
         self._process: Any = context.Process(
             target=_work, args=(theirs, built, plan, seeds, device), name="cartwheel-batch",
             daemon=True,
@@ -107,8 +108,9 @@ class Process:
 
     def ask(self, name: str, *arguments: Any) -> None:
         """Calls a method of `Lanes`; `answer` returns the result."""
+        self._calls += 1
         with contextlib.suppress(OSError):  # it has ended, which `answer` reports
-            self._link.send((name, arguments))
+            self._link.send((self._calls, name, arguments))
 
     def answer(self) -> Any:
         """The result of the call.
@@ -117,7 +119,9 @@ class Process:
             CartwheelError: The call raised it, or the process has ended.
         """
         try:
-            error, result = self._link.recv()
+            number = 0
+            while number != self._calls:  # an interrupted caller did not wait for the others
+                number, error, result = self._link.recv()
         except (EOFError, OSError):
             self._process.join(_END)
             status = self._process.exitcode
@@ -149,18 +153,19 @@ def _work(
     with contextlib.suppress(EOFError, OSError):
         try:
             lanes = Lanes(built, plan, seeds, device)
-        except Exception as error:  # noqa: BLE001 - the first answer reports it
-            link.recv()
-            link.send((_picklable(error), None))
+        except Exception as error:  # noqa: BLE001 - each answer reports it
+            failure = _picklable(error)
+            while (call := link.recv()) is not None:
+                link.send((call[0], failure, None))
             return
         with contextlib.closing(lanes):
             while (call := link.recv()) is not None:
-                name, arguments = call
-                answer: tuple[CartwheelError | None, Any]
+                number, name, arguments = call
+                answer: tuple[int, CartwheelError | None, Any]
                 try:
-                    answer = (None, getattr(lanes, name)(*arguments))
+                    answer = (number, None, getattr(lanes, name)(*arguments))
                 except Exception as error:  # noqa: BLE001 - the parent process raises it
-                    answer = (_picklable(error), None)
+                    answer = (number, _picklable(error), None)
                 link.send(answer)
 
 
