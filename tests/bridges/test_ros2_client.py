@@ -60,7 +60,7 @@ def bridged(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros2Bridged]:
 
 def test_it_reads_drives_spawns_and_resets(program: Path, bridged: Ros2Bridged) -> None:
     done = subprocess.run(
-        [program, str(DOMAIN + 2), "cyclone"],
+        [program, "cart", str(DOMAIN + 2), "cyclone"],
         capture_output=True,
         text=True,
         timeout=400,
@@ -92,7 +92,7 @@ def test_it_sends_goals_and_cancels_one(
     bridged = Ros2Bridged(robot=False, prepare=spawn_arm(tmp_path))
     try:
         done = subprocess.run(
-            [program.with_name("grip"), str(DOMAIN + 6), mapping],
+            [program, "grip", str(DOMAIN + 6), mapping],
             capture_output=True,
             text=True,
             timeout=160,

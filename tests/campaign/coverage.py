@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import ast
 import builtins
+import hashlib
 import importlib.abc
 import importlib.machinery
 import importlib.util
+import marshal
+import os
 import sys
 import zlib
 from collections.abc import Sequence
@@ -21,6 +24,8 @@ import numpy as np
 
 _NAME = "__campaign_hits__"
 _MOST = 1 << 17
+_THIS = sys.version.encode() + Path(__file__).read_bytes()
+"""What the compiled modules depend on, apart from their sources."""
 
 
 class Coverage:
@@ -29,9 +34,10 @@ class Coverage:
     Args:
         package: Its name.
         file: Keeps what was reached from one process to the next.
+        compiled: A folder for the compiled modules, which all processes of a campaign share.
     """
 
-    def __init__(self, package: str, file: Path) -> None:
+    def __init__(self, package: str, file: Path, compiled: Path) -> None:
         self._file = file
         self._hits = bytearray(_MOST)
         self._now = np.frombuffer(self._hits, dtype=np.uint8)
@@ -39,7 +45,8 @@ class Coverage:
         if file.exists():
             self._seen = np.frombuffer(file.read_bytes(), dtype=np.uint8).copy()
         setattr(builtins, _NAME, self._hits)
-        sys.meta_path.insert(0, _Finder(package))
+        compiled.mkdir(exist_ok=True)
+        sys.meta_path.insert(0, _Finder(package, compiled))
 
     def is_new(self) -> bool:
         """Whether a block was reached for the first time since the last call."""
@@ -60,8 +67,9 @@ class Coverage:
 
 
 class _Finder(importlib.abc.MetaPathFinder):
-    def __init__(self, package: str) -> None:
+    def __init__(self, package: str, compiled: Path) -> None:
         self._package = package
+        self._compiled = compiled
 
     def find_spec(
         self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -70,14 +78,32 @@ class _Finder(importlib.abc.MetaPathFinder):
             return None
         spec = importlib.machinery.PathFinder.find_spec(name, path, target)
         if spec is not None and isinstance(spec.loader, importlib.machinery.SourceFileLoader):
-            spec.loader = _Loader(spec.loader.name, spec.loader.path)
+            spec.loader = _Loader(spec.loader.name, spec.loader.path, self._compiled)
         return spec
 
 
 class _Loader(importlib.machinery.SourceFileLoader):
+    def __init__(self, fullname: str, path: str, compiled: Path) -> None:
+        super().__init__(fullname, path)
+        self._compiled = compiled
+
     def get_code(self, fullname: str) -> CodeType:
-        """Compiled anew, so that no file with counters in it is left behind."""
-        return self.source_to_code(self.get_data(self.path), self.path)
+        """Compiled apart from Python's cache, where no code with counters may be left behind."""
+        data = self.get_data(self.path)
+        kept = (
+            self._compiled
+            / hashlib.sha256(b"\0".join((_THIS, self.path.encode(), data))).hexdigest()
+        )
+        if kept.exists():
+            code = marshal.loads(kept.read_bytes())
+            assert isinstance(code, CodeType)
+            return code
+        made = self.source_to_code(data, self.path)
+        # Another process may be writing the same, or be killed meanwhile.
+        new = kept.with_suffix(f".{os.getpid()}")
+        new.write_bytes(marshal.dumps(made))
+        new.replace(kept)
+        return made
 
     def source_to_code(self, data: bytes, path: str) -> CodeType:  # type: ignore[override]
         tree = ast.parse(data, path)
@@ -100,7 +126,16 @@ def _is_docstring(statement: ast.stmt) -> bool:
 
 def _mark(place: str, near: ast.stmt) -> ast.stmt:
     """The number is the place's hash, so that it stays the same whatever is imported first."""
-    made = ast.parse(f"{_NAME}[{zlib.crc32(place.encode()) % _MOST}] = 1").body[0]
+    made = ast.Assign(
+        [
+            ast.Subscript(
+                ast.Name(_NAME, ast.Load()),
+                ast.Constant(zlib.crc32(place.encode()) % _MOST),
+                ast.Store(),
+            )
+        ],
+        ast.Constant(1),
+    )
     for node in ast.walk(made):
         ast.copy_location(node, near)
     return made

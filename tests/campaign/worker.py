@@ -64,7 +64,7 @@ class _Worker:
         self._task = task
         self._room = room
         self._output = output
-        self._coverage = Coverage("cartwheel", room / "seen")
+        self._coverage = Coverage("cartwheel", room / "seen", room.parent / "compiled")
         from tests.campaign.registry import load
 
         self._target = load(task["target"])

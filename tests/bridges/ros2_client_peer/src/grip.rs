@@ -1,6 +1,7 @@
 //! A client of an action, made with ros2-client: sends a goal to a gripper and waits for its end, then
 //! sends another and cancels it. Prints one line for each thing that it has seen; the test judges.
-use futures::StreamExt;
+use crate::waiting::{self, pause, within};
+use futures::{executor::block_on, StreamExt};
 use ros2_client::{
     action::ActionClientQosPolicies, builtin_interfaces::Time, ActionTypeName, Context, ContextOptions, Message,
     Name, NodeName, NodeOptions, QosProfile, ServiceMapping,
@@ -23,23 +24,10 @@ struct Outcome {
 impl Message for Goal {}
 impl Message for Outcome {}
 
-async fn within<T>(seconds: u64, future: impl std::future::Future<Output = T>) -> Option<T> {
-    smol::future::or(async { Some(future.await) }, async {
-        smol::Timer::after(Duration::from_secs(seconds)).await;
-        None
-    })
-    .await
-}
-
-fn main() {
-    let domain = std::env::args().nth(1).and_then(|s| s.parse().ok()).unwrap_or(0);
-    let mapping = match std::env::args().nth(2).as_deref() {
-        Some("enhanced") => ServiceMapping::Enhanced,
-        _ => ServiceMapping::Cyclone,
-    };
+pub fn run(domain: u16, mapping: ServiceMapping) {
     let context = Context::with_options(ContextOptions::new().domain_id(domain)).unwrap();
     let mut node = context.new_node(NodeName::new("/", "hand_client").unwrap(), NodeOptions::new()).unwrap();
-    smol::spawn(node.spinner().unwrap().spin()).detach();
+    waiting::spawn(node.spinner().unwrap().spin());
     let qos = QosProfile::publisher_default();
     let client = node
         .create_action_client::<Goal, Outcome, Outcome>(
@@ -55,9 +43,9 @@ fn main() {
             },
         )
         .unwrap();
-    smol::block_on(async {
+    block_on(async {
         // A call before both sides know each other is lost in ROS 2.
-        smol::Timer::after(Duration::from_secs(4)).await;
+        pause(Duration::from_secs(4)).await;
         let sent = within(20, client.async_send_goal(Goal { position: 0.3, max_effort: 0.0 })).await;
         let Some(Ok((id, answer))) = sent else {
             println!("goal failed {sent:?}");
@@ -96,5 +84,4 @@ fn main() {
             other => println!("second failed {other:?}"),
         }
     });
-    std::process::exit(0);
 }
