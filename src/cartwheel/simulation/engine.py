@@ -13,9 +13,9 @@ from cartwheel.errors import Diagnostic, SimulationError
 from cartwheel.geometry import Array, Pose, Vec3, from_wxyz, quat_conjugate, rotate, to_wxyz
 from cartwheel.simulation.carried_state import STATE_SIZES, carry_over
 from cartwheel.simulation.clock import Task, Topic, to_ns
+from cartwheel.simulation.dynamics.carried import LOOK
 from cartwheel.simulation.dynamics.friction_directions import Directions
-from cartwheel.simulation.dynamics.restitution import Bounces
-from cartwheel.simulation.limits import too_many_contacts
+from cartwheel.simulation.dynamics.stepping import Stepping
 from cartwheel.simulation.sensing.embree_rays import SharedRayScenes
 from cartwheel.simulation.sensing.rendering import Renderer
 from cartwheel.simulation.sensing.visual_model import VisualModel
@@ -52,6 +52,8 @@ class Engine:
         """Steps since `origin_ns`."""
         self.origin_ns = 0
         """The time of the last change of the step length; initially zero."""
+        self.carries = False
+        """Whether bodies that touch turn together; see `Carried`."""
         self.commanded = 0
         """Number of external actions: moves, pushes and drive commands."""
         self.rewinds = 0
@@ -164,7 +166,7 @@ class Engine:
             carry_over(self.model, self.data, model, data)
         self.model, self.data = model, data
         self.align(alignments)
-        self.bounces = Bounces(model, bounces) if len(bounces) > 1 else None
+        self.stepping = Stepping(model, data, bounces)
         self.visuals.bind(model, data, compile_visuals)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._located = self.refreshed = b""
@@ -234,10 +236,7 @@ class Engine:
         Raises:
             SimulationError: There is not enough memory for the contacts.
         """
-        try:
-            mujoco.mj_forward(self.model, self.data if data is None else data)
-        except mujoco.FatalError as error:
-            raise too_many_contacts(self.data.ncon, error) from None
+        self.stepping.forward(self.data if data is None else data, carries=self.carries)
 
     def refresh_poses(self) -> None:
         """As `locate`, but only if the state differs from that of the last call."""
@@ -272,30 +271,17 @@ class Engine:
             forwarded: Whether the forward pass of the current state is done, so that the first step
                 only integrates. The results are bit-identical in both cases.
         """
-        self.step += count
-        self.time_ns += count * self.step_ns
         self.refreshed = b""
-        if self.bounces is not None:
-            for each in range(count):
-                if each or not forwarded:
-                    self.forward()
-                if self.bounces.apply(self.model, self.data):
-                    self.forward()
-                self._integrate()
-            return
-        try:
-            if forwarded:
-                self._integrate()
-                count -= 1
-            if count:
-                mujoco.mj_step(self.model, self.data, count)
-        except mujoco.FatalError as error:
-            raise too_many_contacts(self.data.ncon, error) from None
-
-    def _integrate(self) -> None:
-        mujoco.mj_Euler(self.model, self.data)
-        # The engine clears it only in a forward pass.
-        self.data.flg_rnepost = False
+        while count:
+            looking = self.stepping.carried
+            piece = count if looking is None else min(count, LOOK - self.step % LOOK)
+            self.step += piece
+            self.time_ns += piece * self.step_ns
+            self.stepping.run(piece, forwarded=forwarded, carries=self.carries)
+            count, forwarded = count - piece, False
+            # At the same steps however a run is divided, which therefore has the same bits.
+            if looking is not None and self.step % LOOK == 0:
+                self.carries = looking.any_turn(self.data)
 
     def rewind(self, *, keep_time: bool = False, prepare: Callable[[], None]) -> None:
         """Resets all joints to their initial state, and time to zero.
@@ -306,6 +292,7 @@ class Engine:
         """
         time = self.data.time
         self.changes += 1
+        self.carries = False
         mujoco.mj_resetData(self.model, self.data)
         if keep_time:
             self.data.time = time

@@ -28,7 +28,7 @@ _CALLBACKS = {
 
 def physics_of_cartwheel(engine: Engine) -> Iterator[str]:
     """Names of what Python code computes within the steps, which another engine cannot call."""
-    if engine.bounces is not None:
+    if engine.stepping.bounces is not None:
         yield "restitution"
     if engine.directions is not None and engine.directions.active:
         yield "friction that depends on the direction"

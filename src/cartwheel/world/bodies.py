@@ -175,7 +175,7 @@ class BodyBuilder:
         axle = axle.seen_from(branch.pose) if held and axle is not None else axle_of(joint)
         driven = branch.driven if held else joint is not None and joint.name in entry.motors
         self._fill(entry, body, replace(branch, driven=driven), axle, moves=moves, trunk=trunk)
-        rolling = axle is not None and not is_upright(rotate(link.pose.orientation, axle.axis))
+        rolling = axle is not None and not _is_upright(link, axle)
         steered = branch.steered
         if joint is not None and _steers(link, joint) and steered != "by motors":
             steered = "by motors" if joint.name in entry.motors else "freely"
@@ -191,16 +191,12 @@ class BodyBuilder:
         )
 
     def _fill(
-        self,
-        entry: ModelEntry,
-        body: Any,
-        branch: _Branch,
-        axle: Axle | None,
-        *,
-        moves: bool,
+        self, entry: ModelEntry, body: Any, branch: _Branch, axle: Axle | None, *, moves: bool,
         trunk: bool,
-    ) -> None:
+    ) -> None:  # fmt: skip
         link = branch.link
+        # A turntable is no wheel; but the axles of rollers on a wheel point upward now and then.
+        turntable = axle is not None and not branch.carried and _is_upright(link, axle)
         if link.inertial is not None:
             self._set_inertial(entry, body, link.name, link.inertial, moves=moves)
         if not link.gravity:
@@ -213,7 +209,7 @@ class BodyBuilder:
             body = _add_tyre(entry, body, link, axle)
         for collision in link.collisions if self._collisions else ():
             name = scoped(entry.name, link.name, collision.name)
-            shape, place = self._rounded(entry, link, collision, axle)
+            shape, place = self._rounded(entry, link, collision, None if turntable else axle)
             there = link.pose @ place
             tread = None
             if axle is not None:
@@ -350,6 +346,10 @@ class BodyBuilder:
         for (name1, group1, free1), (name2, group2, free2) in combinations(solid, 2):
             if not (free1 and free2) or (group1, group2) in connected:
                 exclude(bodyname1=name1, bodyname2=name2)
+
+
+def _is_upright(link: Link, axle: Axle) -> bool:
+    return is_upright(rotate(link.pose.orientation, axle.axis))
 
 
 def _add_tyre(entry: ModelEntry, wheel: Any, link: Link, axle: Axle) -> Any:
