@@ -118,6 +118,35 @@ def test_noise_differs_between_worlds(tmp_path):
         assert made.step(np.zeros((N, 0)))[topic].shape == (N,)
 
 
+DEPTH = """<sdf version="1.9"><model name="eye"><static>1</static><pose>0 5 0.3 0 0 1.5708</pose>
+<link name="link"><sensor name="depth" type="depth_camera"><topic>/depth</topic>
+<update_rate>10</update_rate><camera><image><width>32</width><height>24</height></image><clip>
+<near>0.1</near><far>5</far></clip></camera></sensor></link>
+<link name="wall"><pose>2 0 0.5 0 0 0</pose><collision name="c"><geometry><box>
+<size>0.2 10 3</size></box></geometry></collision><visual name="v"><geometry><box>
+<size>0.2 10 3</size></box></geometry></visual></link></model></sdf>"""
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_images_are_pictures(tmp_path, workers):
+    (tmp_path / "eye.sdf").write_text(DEPTH)
+    robots = ["rosbots.xacro", tmp_path / "eye.sdf"]
+    seeing = cw.build("post", robots)
+    with seeing.world(seed=4) as world:
+        images = world.topic("/rosbots/camera1/image_raw")
+        images.latest  # noqa: B018 - it subscribes
+        world.run(0.1)
+        expected = cw.image(images.latest)
+    obs = {"/rosbots/camera1/image_raw": "data", "depth": ("/depth", "data")}
+    with batch(seeing, 2, obs=obs, workers=workers) as made:
+        values = made.reset()
+    pictures, depths = values["/rosbots/camera1/image_raw"], values["depth"]
+    assert pictures.shape == (2, *expected.shape) and pictures.dtype == np.uint8
+    assert np.array_equal(pictures[1], expected) and expected.std() > 5
+    assert depths.shape == (2, 24, 32) and depths.dtype == float
+    assert depths[:, 12, 16] == pytest.approx(1.9, abs=0.01)
+
+
 @pytest.mark.parametrize("workers", [0, 2])
 def test_variations_depend_on_the_seed_of_the_world(built, workers):
     with batch(built, obs={"pose": duties.pose}, vary=duties.heavier, workers=workers) as made:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 
 import numpy as np
@@ -34,6 +35,20 @@ def test_the_checker_of_gymnasium_passes(job):
         check_env(env)
     assert env.observation_space.contains(env.reset(seed=1)[0])
     env.close()
+
+
+def test_a_picture_is_an_image_space(job):
+    topic = "/rosbots/camera1/image_raw"
+    seeing = dataclasses.replace(job, obs={topic: "data", "pose": pose})
+    vector = VectorEnv(seeing, 2, workers=0)
+    space = vector.single_observation_space[topic]
+    assert space.dtype == np.uint8 and len(space.shape) == 3 and space.shape[2] == 3
+    assert (space.low.min(), space.high.max()) == (0, 255)
+    values, _ = vector.reset(seed=1)
+    assert vector.observation_space.contains(values)
+    values = vector.step(np.tile(FORWARD, (2, 1)))[0]
+    assert vector.observation_space.contains(values) and values[topic].std() > 5
+    vector.close()
 
 
 def test_an_episode_ends_by_success_or_time(job):

@@ -36,7 +36,8 @@ class Batch:
             ``{"/cmd_vel": ["linear.x", "angular.z"]}``.
         obs: The observations by name. Each is a field of the newest message of the topic of this
             name, a list of fields, a tuple of a topic and its fields, or a function that receives
-            the `World` and returns numbers.
+            the `World` and returns numbers. The field ``data`` of an image is its picture, of shape
+            (height, width, 3), uint8, or its depths in m. All other numbers are float64.
         period: Simulation time of a step, s.
         seed: Seed of the first world.
         vary: Called with the world and a random generator after each reset, to change masses,
@@ -255,7 +256,7 @@ def _joined(asked: Sequence[tuple[Callable[[], Values], list[int]]], count: int)
         shapes = {part[name].shape[1:] for _, part in answers}
         if len(shapes) > 1:
             raise different_shapes(name, shapes)
-        found[name] = np.empty((count, *shapes.pop()))
+        found[name] = np.empty((count, *shapes.pop()), answers[0][1][name].dtype)
         for rows, part in answers:
             found[name][rows] = part[name]
     return found

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cartwheel.arrays import reader
+from cartwheel.arrays import depth, image, reader
 from cartwheel.batch.plan import Plan, TopicFields, invalid
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import CartwheelError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Values = dict[str, Array]
 Observer = Callable[["World"], Any]
 Reader = Callable[[Any], Any]
+_DEPTHS = ("32FC1", "16UC1")
 
 
 class Lane:
@@ -51,7 +52,8 @@ class Lane:
             for name, each in plan.obs.items():
                 readers = []
                 if isinstance(each, TopicFields):
-                    readers = [reader(field) for field in each.fields]
+                    kind = self.world.graph.topic(each.topic).type
+                    readers = [_reader(kind, field) for field in each.fields]
                     if each.topic not in self._newest:
                         self._newest[each.topic] = None
                         self.world.subscribe(each.topic, self._keeper(each.topic))
@@ -96,10 +98,10 @@ class Lane:
                 if message is None:
                     raise self._no_message(source.topic)
                 read = [each(message) for each in readers]
-                found[name] = np.array(read[0] if source.single else read, dtype=float)
+                found[name] = _numbers(read[0] if source.single else read)
             else:
                 try:
-                    found[name] = np.array(source(self.world), dtype=float)
+                    found[name] = _numbers(source(self.world))
                 except (TypeError, ValueError) as error:
                     raise invalid(
                         f'the function of the observation "{name}" must return numbers: {error}',
@@ -120,6 +122,26 @@ class Lane:
         self.world.close()
 
 
+def _reader(kind: str, field: str) -> Reader:
+    """Reads a field of messages of a type; the data of images as a picture."""
+    if field == "data" and kind.startswith("sensor_msgs/") and kind.endswith("Image"):
+        return _picture
+    return reader(field)
+
+
+def _picture(message: Any) -> Array:
+    encoding = getattr(message, "encoding", "") or message.format
+    return (
+        depth(message) if encoding in _DEPTHS or "compressedDepth" in encoding else image(message)
+    )
+
+
+def _numbers(value: Any) -> Array:
+    """A copy as an array of float64; pictures remain uint8."""
+    kind = np.uint8 if isinstance(value, np.ndarray) and value.dtype == np.uint8 else float
+    return np.array(value, dtype=kind)
+
+
 def stacked(rows: list[Mapping[str, Array]]) -> Values:
     """The observations of several worlds, with the world as the first axis.
 
@@ -129,7 +151,7 @@ def stacked(rows: list[Mapping[str, Array]]) -> Values:
     found: Values = {}
     for name, first in rows[0].items():
         shape = first.shape
-        table = found[name] = np.empty((len(rows), *shape))
+        table = found[name] = np.empty((len(rows), *shape), first.dtype)
         for line, row in enumerate(rows):
             each = row[name]
             if each.shape != shape:

@@ -89,12 +89,14 @@ class Task:
                 raise invalid(f'there is no observation "{name}" to limit', "limits")
         found: dict[str, spaces.Space[Any]] = {}
         for name, values in example.items():
-            low, high = self.limits.get(name, (-np.inf, np.inf))
-            found[name] = spaces.Box(low, high, values.shape[1:], np.float32)
+            picture = values.dtype == np.uint8
+            low, high = (0, 255) if picture else self.limits.get(name, (-np.inf, np.inf))
+            kind = np.uint8 if picture else np.float32
+            found[name] = spaces.Box(low, high, values.shape[1:], kind)
         return spaces.Dict(found)
 
     def limited(self, values: Values) -> Values:
-        """Observations within their limits, as 32-bit numbers.
+        """Observations within their limits, as 32-bit numbers, or uint8 without limits.
 
         Raises:
             CartwheelError: A number is not finite.
@@ -102,6 +104,9 @@ class Task:
         found: Values = {}
         for name, each in values.items():
             limit = self.limits.get(name)
+            if limit is None and each.dtype == np.uint8:
+                found[name] = each
+                continue
             inside = each if limit is None else np.clip(each, *limit)
             if not np.isfinite(inside).all():
                 raise invalid(
