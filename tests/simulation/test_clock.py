@@ -134,3 +134,12 @@ def test_steps_at_which_all_due_tasks_are_idle_are_skipped():
     reads = Schedule([task(50, idle=lambda: True), task(25, active=always)], step_ns=STEP)
     assert reads.skip(4, 100) == 8
     assert not Schedule([task(50)], step_ns=STEP).may_skip
+
+
+def test_what_is_due_at_every_step_need_not_be_looked_up():
+    always_due = [task(0, order=0), task(1000, order=1)]
+    schedule = Schedule(always_due, step_ns=STEP)
+    first, last, gap = schedule.every
+    for step in range(5):
+        assert schedule.at(step) == (first, last, step + gap)
+    assert Schedule([*always_due, task(50, order=2)], step_ns=STEP).every is None

@@ -63,6 +63,7 @@ class Advancing(Models):
         empty = commands.empty
         self.owner = threading.get_ident()
         left = engine.steps_until(target_ns)
+        served = engine.served_ns == engine.time_ns
         while left > 0:
             if not empty():
                 rewinds = engine.rewinds
@@ -81,9 +82,15 @@ class Advancing(Models):
             if population.subscribers_changed:
                 population.gather_tasks()
             schedule = population.schedule
-            first, last, due = schedule.at(engine.step)
-            if engine.served_ns == engine.time_ns:
+            every = schedule.every
+            if every is None:
+                first, last, due = schedule.at(engine.step)
+            else:
+                first, last, gap = every
+                due = engine.step + gap
+            if served:
                 first, last = self._unserved(first, last)
+                served = False
             if not first and not last:
                 forwarded = bool(engine.refreshed) and engine.is_refreshed()
             else:

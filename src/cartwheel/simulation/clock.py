@@ -193,6 +193,9 @@ class Schedule:
         """Cache by step in the cycle; the step of the next due tasks is relative."""
         self._together: dict[int, tuple[tuple[Task, ...], tuple[Task, ...]]] = {}
         """Cache of tasks that are due together, by a bit mask of their periods."""
+        self.every = self._look(0) if self._cycle == 1 else None
+        """What `at` returns for each step, with the next step relative, if it is always the same: a
+        caller at a high rate then need not call it. None otherwise."""
 
     def at(self, step: int) -> Due:
         """The tasks due at a step, in order, and the next step with due tasks."""

@@ -39,6 +39,15 @@ class Tuned(Protocol):
     """A dataclass with the fields ``p``, ``i``, ``d``, ``i_min`` and ``i_max``."""
 
 
+class Clock(Protocol):
+    """The time of a simulation."""
+
+    time_ns: int
+    """Simulation time of the current state."""
+    step_ns: int
+    """Length of a step."""
+
+
 class Part(MotorRequests):
     """A plugin's access to its model in the simulation. Use it only on the simulation's thread.
 
@@ -53,6 +62,8 @@ class Part(MotorRequests):
         self, engine: Engine, entry: ModelEntry, *, namespace: str = "", frame_prefix: str = ""
     ) -> None:
         super().__init__(engine, entry)
+        self.clock: Clock = engine
+        """Simulation time and length of a step, which are read faster here."""
         self.namespace = namespace
         """Default namespace of topics and services; "" if not set."""
         self.frame_prefix = frame_prefix

@@ -59,3 +59,14 @@ def test_an_axle_measures_from_its_first_reading():
     left.position += 9.0
     reckoning.read(0.1)
     assert reckoning.pose == (0.0, 0.0, 0.0)
+
+
+def test_the_estimate_does_not_depend_on_when_it_is_read():
+    often, once = DeadReckoning(window=3), DeadReckoning(window=3)
+    for index in range(1000):
+        motion = 0.01 * math.sin(index), 0.1 * math.cos(0.3 * index), 0.005 * (index % 7 > 0)
+        for reckoning in (often, once):
+            reckoning.go(*motion, sideways=0.001 * index)
+        often.motion()
+    assert often.pose[0] != 0.0
+    assert often.motion() == once.motion()

@@ -83,7 +83,7 @@ class DifferentialDrive(Drive):
     """Rim speeds after the ramp, m/s."""
     _rotating: list[tuple[CommandedJoint, float]]
     """The wheels and their commands, rad/s."""
-    _steady: tuple[float, float, float] | None
+    _steady: tuple[tuple[float, float], float] | None
     """The command and the period for which the limiters changed nothing."""
     _rotation: tuple[float, float] | None
     """Mean rotation of the left and right wheels at the last update, rad."""
@@ -106,8 +106,9 @@ class DifferentialDrive(Drive):
             radius for pair in config.pairs for radius in (pair.left_radius, pair.right_radius)
         ]
         count = config.measured_pairs
-        self._lefts = [wheel.state for wheel in self._wheels[0::2][:count]]
-        self._rights = [wheel.state for wheel in self._wheels[1::2][:count]]
+        states = [wheel.state for wheel in self._wheels]
+        self._measured = list(zip(states[0::2], states[1::2], strict=True))[:count]
+        """The left and right wheels whose rotation is measured."""
         self.linear, self.angular = Limiter(config.linear), Limiter(config.angular)
         # Without limits, a scheduled drive computes the wheels' speeds once for each command.
         self._is_limited = config.drive is None or not (
@@ -163,17 +164,17 @@ class DifferentialDrive(Drive):
         """Commands the wheels, `seconds` after the last call."""
         config = self._config
         if self._is_limited:
-            forward, turn = self._command
+            command, steady = self._command, self._steady
             period = seconds if config.limit_period is None else config.limit_period
-            inputs = (forward, turn, period)
-            if inputs != self._steady:
+            if steady is None or command != steady[0] or period != steady[1]:
+                forward, turn = command
                 linear, angular = self.linear, self.angular
                 forward, turn = linear.step(forward, period), angular.step(turn, period)
                 if (forward, turn) != self._limited:
                     self._limited = (forward, turn)
                     self._set_targets(forward, turn)
                 is_steady = linear.is_steady and angular.is_steady
-                self._steady = inputs if is_steady else None
+                self._steady = (command, period) if is_steady else None
         if self._speeds is not self._targets:
             if config.acceleration > 0 and self._speeds != self._targets:
                 most = config.acceleration * seconds
@@ -193,14 +194,15 @@ class DifferentialDrive(Drive):
         """Adds the motion since the last call, `seconds` ago, to the dead reckoning."""
         source = self._config.odometry
         if source == "positions":
-            before, self._rotation = self._rotation, self._rotations()
+            before = self._rotation
+            rotation = self._rotation = self._rotations()
             if before is None:
                 return
-            left, right = self._rotation[0] - before[0], self._rotation[1] - before[1]
+            left, right = rotation[0] - before[0], rotation[1] - before[1]
         elif source == "velocities":
             left, right = (
                 seconds * _mean([wheel.velocity for wheel in wheels])
-                for wheels in (self._lefts, self._rights)
+                for wheels in zip(*self._measured, strict=True)
             )
         elif source == "ground truth":
             return
@@ -238,13 +240,13 @@ class DifferentialDrive(Drive):
 
     def _rotations(self) -> tuple[float, float]:
         # This runs at every step, so it reads the positions without calls.
-        lefts, rights = self._lefts, self._rights
-        count = len(lefts)
+        measured = self._measured
+        count = len(measured)
         if count == 1:
-            left, right = lefts[0], rights[0]
+            left, right = measured[0]
             return left.qpos[left.qposadr], right.qpos[right.qposadr]
         left_sum = right_sum = 0.0
-        for left, right in zip(lefts, rights, strict=True):
+        for left, right in measured:
             left_sum += left.qpos[left.qposadr]
             right_sum += right.qpos[right.qposadr]
         return left_sum / count, right_sum / count

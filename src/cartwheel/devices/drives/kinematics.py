@@ -39,7 +39,7 @@ def axle_motion(left: Number, right: Number, separation: Number) -> tuple[Number
 
 
 def along_arc(
-    pose: PlanarPose, forward: Number, turn: Number, *, sideways: Number = 0.0
+    pose: PlanarPose, forward: Number, turn: Number, sideways: Number = 0.0
 ) -> PlanarPose:
     """Returns the pose after a motion at constant velocities.
 
@@ -50,14 +50,15 @@ def along_arc(
         sideways: Length of the motion along the robot's y axis, m.
     """
     x, y, heading = pose
-    straight, half = abs(turn) <= _STRAIGHT, turn / 2
+    half = turn / 2
     middle = heading + half
     # The chord of an arc is shorter than the arc by this factor.
-    if straight.__class__ is bool:
-        # Floats, without the calls that distinguish them from arrays.
-        chord = 1.0 if straight else math.sin(half) / half
+    if half.__class__ is float:
+        # Without the calls that distinguish floats from arrays.
+        chord = 1.0 if -_STRAIGHT <= turn <= _STRAIGHT else math.sin(half) / half
         c, s = math.cos(middle), math.sin(middle)
     else:
+        straight = abs(turn) <= _STRAIGHT
         half = where(straight, 1.0, half)
         chord = where(straight, 1.0, sin(half) / half)
         c, s = cos(middle), sin(middle)

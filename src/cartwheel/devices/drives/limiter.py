@@ -76,7 +76,7 @@ class Limiter:
         """The last limited command, m/s or rad/s."""
         self._before: Number = 0.0
         self._inputs: tuple[Number, Number, Number, float] | None = None
-        self.is_steady = False
+        self.is_steady = self._is_free
         """Whether the next step with the same arguments changes nothing."""
 
     def step(self, wanted: Number, seconds: float) -> Number:

@@ -14,6 +14,11 @@ Motion = tuple[Vec3, Quat, Vec3, Vec3]
 
 The pose is in the odometry frame, and the velocities are in the robot's frame.
 """
+_Step = tuple[float, float, float, float]
+"""A motion along an arc: distances along x and y in m, rotation in rad, duration in s."""
+_TOGETHER = 64
+"""Number of motions that are added together, unless the estimate is read before. Each of them then
+takes half of the time that it takes alone, between two steps of the physics."""
 
 
 class Rotation(Protocol):
@@ -33,33 +38,56 @@ class DeadReckoning:
     """
 
     def __init__(self, window: int | None = None) -> None:
-        self._recent = None if window is None else deque[Vec3](maxlen=window)
+        self._averages = window is not None
+        self._moved = deque[_Step](maxlen=window or 1)
+        """The last motions, from which the velocity is computed."""
         self.restart()
 
     def restart(self) -> None:
         """Resets the estimate to the origin, at rest."""
-        self.pose: PlanarPose = (0.0, 0.0, 0.0)
-        self._velocity = (0.0, 0.0, 0.0)
-        if self._recent is not None:
-            self._recent.clear()
+        self._pose: PlanarPose = (0.0, 0.0, 0.0)
+        self._moved.clear()
+        self._pending: list[_Step] = []
+        """Motions that the estimate does not contain yet."""
 
     def go(self, forward: float, turn: float, seconds: float, *, sideways: float = 0.0) -> None:
         """Adds a motion along an arc: distance in m, rotation in rad, duration in s."""
-        self.pose = along_arc(self.pose, forward, turn, sideways=sideways)
-        if seconds > 0:
-            self._velocity = (forward / seconds, sideways / seconds, turn / seconds)
-            if self._recent is not None:
-                self._recent.append(self._velocity)
+        pending = self._pending
+        pending.append((forward, sideways, turn, seconds))
+        if len(pending) >= _TOGETHER:
+            self._go_on()
+
+    @property
+    def pose(self) -> PlanarPose:
+        """The estimated pose."""
+        if self._pending:
+            self._go_on()
+        return self._pose
+
+    def _go_on(self) -> None:
+        """Adds the pending motions to the estimate."""
+        pose, moved = self._pose, self._moved
+        for motion in self._pending:
+            forward, sideways, turn, seconds = motion
+            pose = along_arc(pose, forward, turn, sideways)
+            if seconds > 0:
+                moved.append(motion)
+        self._pose = pose
+        self._pending.clear()
 
     def motion(self) -> Motion:
         """Returns the estimated pose and velocity."""
         x, y, heading = self.pose
         half = heading / 2
-        forward, sideways, turn_rate = self._velocity
-        if self._recent is not None:
-            count = max(len(self._recent), 1)
+        velocities = [
+            (forward / seconds, sideways / seconds, turn / seconds)
+            for forward, sideways, turn, seconds in self._moved
+        ]
+        forward, sideways, turn_rate = velocities[-1] if velocities else (0.0, 0.0, 0.0)
+        if self._averages:
+            count = max(len(velocities), 1)
             forward, sideways, turn_rate = (
-                sum(each[axis] for each in self._recent) / count for axis in range(3)
+                sum(each[axis] for each in velocities) / count for axis in range(3)
             )
         return (
             (x, y, 0.0),

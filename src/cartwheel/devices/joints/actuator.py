@@ -109,6 +109,8 @@ class JointActuator:
         limits = config.limits
         self._slows = limits.soft is not None and math.inf not in (-limits.lower, limits.upper)
         """Whether the maximum velocity depends on the position."""
+        self._is_limited = limits != JointLimits()
+        self._lower, self._upper, self._fastest = limits.lower, limits.upper, limits.velocity
 
     def expect_commands(self, period: float) -> None:
         """States the time between two calls of `write`, s."""
@@ -219,12 +221,12 @@ class JointActuator:
         """
         # This runs for each joint at every step. Comparisons take a quarter of the time of `min`
         # and `max`, and positional arguments less than named ones.
-        active, limits, target = self._active, self.limits, self.command
+        active, target = self._active, self.command
         if active == "velocity":
-            high = limits.velocity
+            high = self._fastest
             low = -high
             if self._slows:
-                low, high = velocity_bounds(limits, self.state.position)
+                low, high = velocity_bounds(self.limits, self.state.position)
             if low > target:  # noqa: PLR1730
                 target = low
             if high < target:  # noqa: PLR1730
@@ -235,22 +237,32 @@ class JointActuator:
             else:
                 self._follow_velocity(target, seconds)
         elif active == "position":
-            rate, fastest = self.rate, limits.velocity
+            rate, fastest = self.rate, self._fastest
             target += lead * rate
             if self._slows:
-                target, fastest = limited_position(limits, target, self.state.position)
+                target, fastest = limited_position(self.limits, target, self.state.position)
             else:
-                if limits.lower > target:  # noqa: PLR1730
-                    target = limits.lower
-                if limits.upper < target:  # noqa: PLR1730
-                    target = limits.upper
+                if self._lower > target:  # noqa: PLR1730
+                    target = self._lower
+                if self._upper < target:  # noqa: PLR1730
+                    target = self._upper
             servo = self._servo
             if servo is not None and not self.pids:
                 servo.command_position(target, rate, fastest, self.strength)
             else:
                 self._follow_position(target, fastest, seconds)
         elif active == "effort":
-            self._write_effort(seconds)
+            damping, servo = self.damping, self._servo
+            assert servo is not None
+            if self._is_limited:
+                target, damping = self._limited_effort(target, damping, seconds)
+            if servo.applied == "effort" and damping == servo.law[1]:
+                # This is `command_effort` inlined.
+                servo.law = (target, damping)
+                servo.controls[servo.id] = target
+                servo.rotors[servo.dof] = 0.0
+            else:
+                servo.command_effort(target, damping)
         elif active == "held":
             assert self._servo is not None
             self._servo.command_position(target)
@@ -292,8 +304,9 @@ class JointActuator:
             command = pid.velocity(target, self.velocity, seconds, self.lightness)
             self._servo.command_effort(*command)
 
-    def _write_effort(self, seconds: float) -> None:
-        effort, damping, limits, state = self.command, self.damping, self.limits, self.state
+    def _limited_effort(self, effort: float, damping: float, seconds: float) -> tuple[float, float]:
+        """Returns an effort and its damping within the limits; see `limited_effort`."""
+        limits, state = self.limits, self.state
         position, velocity = state.qpos[state.qposadr], state.qvel[state.dofadr]
         most = limits.velocity
         if limits.soft is not None or (
@@ -319,5 +332,4 @@ class JointActuator:
                 effort = -limit
             if limit < effort:  # noqa: PLR1730
                 effort = limit
-        assert self._servo is not None
-        self._servo.command_effort(effort, damping)
+        return effort, damping

@@ -60,18 +60,17 @@ class ControlPlugin(Plugin[Any]):
         manager = self.manager = ControllerManager(robot)
         part = self.part
         robot.period_ns = part.period_ns(rate)
-        nominal = robot.period_ns / 1e9
-        part.schedule(rate, before=lambda: manager.update(part.time_ns, nominal))
+        part.schedule(rate, before=manager.update)
         step_ns = part.period_ns(0)
         robot.hardware.expect_commands(1.0 / rate if rate > 0 else 0.0)
         if robot.hardware.follows and robot.period_ns > step_ns:
             # As in Gazebo, controllers run at their rate, and PIDs of joints at every step.
             manager.writes = False
             robot.hardware.expect_commands(0.0)
-            part.schedule(0, before=lambda: manager.write(part.time_ns, part.period_ns(0) / 1e9))
+            part.schedule(0, before=manager.write)
         part.schedule(
             rate,
-            after=lambda: manager.sense(part.time_ns),
+            after=manager.sense,
             active=manager.senses,
             topics=manager.sensed,
         )

@@ -20,6 +20,9 @@ from cartwheel.graph import JointInput, resolve_name
 from cartwheel.messages import message_class
 from cartwheel.messages.typed import Kind, name_of
 
+NEVER_NS = 1 << 62
+"""A time that is never reached."""
+
 
 class Controller(Component):
     """Base class of all controllers, created when a controller is loaded.
@@ -114,6 +117,9 @@ class Controller(Component):
 
     def start(self, time_ns: int) -> None:
         """Called when the controller starts. The claimed joints are already active."""
+
+    next_ns: int = 0
+    """Simulation time until which `update` need not be called, because it would change nothing."""
 
     def update(self, time_ns: int, seconds: float) -> None:
         """Commands the claimed joints.

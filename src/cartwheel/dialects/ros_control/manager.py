@@ -48,6 +48,7 @@ class ControllerManager:
 
     def __init__(self, robot: ControlledRobot) -> None:
         self.robot = robot
+        self._hardware, self._clock = robot.hardware, robot.plugin.part.clock
         self._controllers: dict[str, Controller] = {}
         self._order: list[Controller] = []
         """Controllers in the order of updates: those that command other controllers first."""
@@ -202,17 +203,15 @@ class ControllerManager:
         """
         return with_leaders(self._order, names)
 
-    def update(self, time_ns: int, nominal: float) -> None:
-        """Starts, stops and updates controllers, and commands the joints.
-
-        Args:
-            time_ns: Simulation time.
-            nominal: Control period in s, which the first update uses as its duration.
-        """
-        seconds = nominal if self._last_ns is None else (time_ns - self._last_ns) / 1e9
-        if self._last_ns is None:
-            self.robot.hardware.start()
-        self._last_ns = time_ns
+    def update(self) -> None:
+        """Starts, stops and updates controllers, and commands the joints."""
+        time_ns = self._clock.time_ns
+        last_ns, self._last_ns = self._last_ns, time_ns
+        if last_ns is None:
+            seconds = self.robot.period_ns / 1e9
+            self._hardware.start()
+        else:
+            seconds = (time_ns - last_ns) / 1e9
         if self._stopping:
             for controller in self._stopping:
                 controller.end(time_ns)
@@ -227,24 +226,23 @@ class ControllerManager:
             self._starting.clear()
         for controller in self._order:
             if controller.running:
-                controller.update(time_ns, seconds)
+                if time_ns >= controller.next_ns:
+                    controller.update(time_ns, seconds)
             else:
                 controller.idle(time_ns)
         if self.writes:
-            self.robot.hardware.write(seconds)
+            self._hardware.write(seconds)
 
-    def write(self, time_ns: int, seconds: float) -> None:
-        """Applies the commands to the joints between updates.
-
-        Args:
-            time_ns: Simulation time.
-            seconds: Time since the last call, s.
-        """
+    def write(self) -> None:
+        """Applies the commands to the joints between updates; called at every step."""
+        clock = self._clock
         if self._last_ns is not None:
-            self.robot.hardware.write(seconds, lead=(time_ns - self._last_ns) / 1e9)
+            lead = (clock.time_ns - self._last_ns) / 1e9
+            self._hardware.write(clock.step_ns / 1e9, lead=lead)
 
-    def sense(self, time_ns: int) -> None:
+    def sense(self) -> None:
         """Lets controllers publish quantities that are only known after a step."""
+        time_ns = self._clock.time_ns
         for controller in self._controllers.values():
             if controller.started:
                 controller.sense(time_ns)

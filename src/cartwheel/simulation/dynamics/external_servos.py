@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from cartwheel.geometry import Vec3, rotate, yaw_of
+from cartwheel.geometry import Vec3, rotate
 from cartwheel.world.entry import DRIVE_AXES, BodyDrive, scoped
 
 _OBJ = mujoco.mjtObj
@@ -28,6 +28,8 @@ class BodyDriveHandle:
         self._level = True
         self._rows = range(0)
         """Actuator ids; empty until the model is compiled."""
+        self._holds = False
+        """Whether `hold` has anything to do."""
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves the names in a compiled model."""
@@ -72,6 +74,7 @@ class BodyDriveHandle:
         self.command((None,) * 3, (None,) * 3)
 
     def _enable(self) -> None:
+        self._holds = bool(self._rows) and self._velocity != _FREE
         for row, value in zip(self._rows, self._velocity, strict=False):
             linear = row - self._rows[0] < 3
             gain = self.drive.force_gain if linear else self.drive.torque_gain
@@ -81,20 +84,37 @@ class BodyDriveHandle:
 
     def hold(self) -> None:
         """Updates the actuators; called before each step, because they act in world axes."""
-        if self._velocity == _FREE or not self._rows:
+        if not self._holds:
             return
         w, x, y, z = self._turned.tolist()
-        vx, vy, vz, *angular = self._motion.tolist()
-        turn = axes = (x, y, z, w)
+        vx, vy, vz, ax, ay, az = self._motion.tolist()
+        sx, sy, sz = self._angular_target
+        tx, ty, tz = self._linear_target
+        # This runs at every step, so calls of `rotate` and cross products are written out.
         if self._level:
-            half = yaw_of(turn) / 2
-            axes = (0.0, 0.0, math.sin(half), math.cos(half))
-        # The servo acts at the centre of mass, which rotates about the link's origin. The cross
-        # products are written out, because this runs at every step.
-        x, y, z = rotate(turn, self.drive.centre)
-        wx, wy, wz = rotate(turn, angular)
-        sx, sy, sz = rotate(axes, self._angular_target)
-        tx, ty, tz = rotate(axes, self._linear_target)
+            half = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) / 2
+            sin, cos = math.sin(half), math.cos(half)
+            mx, my = -2 * (sin * ty), 2 * (sin * tx)
+            tx, ty = tx + cos * mx - sin * my, ty + cos * my + sin * mx
+            if sx or sy:
+                mx, my = -2 * (sin * sy), 2 * (sin * sx)
+                sx, sy = sx + cos * mx - sin * my, sy + cos * my + sin * mx
+        else:
+            turn = (x, y, z, w)
+            sx, sy, sz = rotate(turn, self._angular_target)
+            tx, ty, tz = rotate(turn, self._linear_target)
+        mx, my, mz = 2 * (y * az - z * ay), 2 * (z * ax - x * az), 2 * (x * ay - y * ax)
+        wx = ax + w * mx + y * mz - z * my
+        wy = ay + w * my + z * mx - x * mz
+        wz = az + w * mz + x * my - y * mx
+        # The servo acts at the centre of mass, which rotates about the link's origin.
+        cx, cy, cz = self.drive.centre
+        mx, my, mz = 2 * (y * cz - z * cy), 2 * (z * cx - x * cz), 2 * (x * cy - y * cx)
+        x, y, z = (
+            cx + w * mx + y * mz - z * my,
+            cy + w * my + z * mx - x * mz,
+            cz + w * mz + x * my - y * mx,
+        )
         now = (vx + (wy * z - wz * y), vy + (wz * x - wx * z), vz + (wx * y - wy * x), wx, wy, wz)
         targets = (
             tx + (sy * z - sz * y),

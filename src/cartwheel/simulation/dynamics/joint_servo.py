@@ -22,6 +22,10 @@ _BRAKING = 0.5
 """Fraction of the effort that is used to plan braking far from the target position."""
 
 
+def _stay_awake() -> None:
+    """The default of `ServoHandle.wake`."""
+
+
 class ServoHandle:
     """Applies an effort, or holds a velocity or position with limited effort.
 
@@ -33,29 +37,37 @@ class ServoHandle:
     efforts: the drive uses the motor while no velocity or position is commanded here.
     """
 
-    shared = False
-    """Whether a drive plugin also drives the joint."""
-    alone = True
-    """Whether no other handle drives the joint, so that the actuator keeps what was applied."""
-    rivalled = False
-    """Whether another handle, which does not yield, drives the joint."""
-    period = math.inf
-    """Time between two commands while a position is commanded, s; unlimited if it is unknown."""
-    wake: Callable[[], None] = staticmethod(lambda: None)
-    """Called when `follow` has to be called at every step from now on."""
+    # They are read at every step: an object with so many attributes would keep them in a table.
+    __slots__ = (
+        "_awake", "_bias", "_braking", "_commanded_again", "_ends", "_fastest", "_first", "_grip",
+        "_joint_dof", "_limit", "_near", "_position", "_qpos", "_rate", "_step", "_strength",
+        "_target", "_tendon", "_turning", "alone", "applied", "controls", "dof", "id", "law",
+        "mode", "model_name", "motor", "period", "rivalled", "rotors", "shared", "wake", "yields",
+    )  # fmt: skip
 
     def __init__(self, model: str, motor: Motor, *, yields: bool = False) -> None:
         self.model_name = model
         self.motor = motor
+        self.shared = False
+        """Whether a drive plugin also drives the joint."""
+        self.alone = True
+        """Whether no other handle drives the joint, so that the actuator keeps what was applied."""
+        self.rivalled = False
+        """Whether another handle, which does not yield, drives the joint."""
+        self.period = math.inf
+        """Time between two commands while a position is commanded, s; unlimited if unknown."""
+        self.wake: Callable[[], None] = _stay_awake
+        """Called when `follow` has to be called at every step from now on."""
         self.yields = yields
         """Whether the owner of the handle leaves the joint to others while it has no command."""
         self.mode: Mode = "idle"
-        self._applied: Mode = "idle"
+        self.applied: Mode = "idle"
         """The mode in which `_apply` set the actuator; idle if it must be set again."""
+        self.law = (0.0, 0.0)
+        """The effort and its damping; see `command_effort`."""
         self._awake = False
         self._ends: tuple[float, float] | None = None
         """The joint's limits, rad or m; None without limits."""
-        self._law = (0.0, 0.0)
         self._turning = 0.0
         self._target = self._rate = 0.0
         self._fastest = self._limit = math.inf
@@ -70,31 +82,34 @@ class ServoHandle:
         joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
         # Memory views contain Python floats, and are cheaper than arrays.
         self._qpos: Any = memoryview(data.qpos)
-        self._qvel: Any = memoryview(data.qvel)
+        self.rotors: Any = memoryview(data.qvel)
         self._position = int(model.jnt_qposadr[joint])
         self._step = float(model.opt.timestep)
         turned = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, rotor)
-        self._rotor = int(model.jnt_dofadr[turned])
-        self._ctrl: Any = memoryview(data.ctrl)
+        self.dof = int(model.jnt_dofadr[turned])
+        self.controls: Any = memoryview(data.ctrl)
+        """Controls and velocities of the compiled model; `id` and `dof` are the indices of the
+        effort and of the rotor. A caller at a high rate may set an effort itself, as
+        `command_effort` does."""
         self._bias = model.actuator_biasprm[self.id]
         self._grip = model.tendon_frictionloss
         self._tendon = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._strength = float(self._grip[self._tendon])
-        self._dof = int(model.jnt_dofadr[joint])
+        self._joint_dof = int(model.jnt_dofadr[joint])
         lower, upper = (float(end) for end in model.jnt_range[joint])
         self._ends = (lower, upper) if model.jnt_limited[joint] else None
         self.weigh(model)
         self._commanded_again = self.period <= self._step
         if self._first is None:
             place = (self._target, self._rate, self._fastest, self._limit)
-            self._first = (self.mode, self._law, self._turning, *place)
+            self._first = (self.mode, self.law, self._turning, *place)
         if self._awake or (self.mode == "position" and not self._commanded_again):
             self._rouse()
         self._apply()
 
     def weigh(self, model: Any) -> None:
         """Reads the inertia that the joint moves, from a model in which masses have changed."""
-        inertia = float(model.dof_M0[self._dof])
+        inertia = float(model.dof_M0[self._joint_dof])
         self._braking = 2 * (_BRAKING * self._strength / max(inertia, 1e-9))
         # Nearer to the target, `_braked` changes nothing. The margin exceeds all rounding errors,
         # and the product in `_braked` is not rounded to zero.
@@ -104,7 +119,7 @@ class ServoHandle:
     def rewind(self) -> None:
         """Returns to the command that it had when the model was spawned, mostly none."""
         assert self._first is not None
-        self.mode, self._law, self._turning = self._first[:3]
+        self.mode, self.law, self._turning = self._first[:3]
         self._target, self._rate, self._fastest, self._limit = self._first[3:]
         self._apply()
 
@@ -116,10 +131,10 @@ class ServoHandle:
         """Applies an effort in N m or N, minus the damping in N m s/rad or N s/m times the
         velocity.
         """
-        if self._applied == "effort" and damping == self._law[1]:
-            self._law = (effort, damping)
-            self._ctrl[self.id] = effort
-            self._qvel[self._rotor] = 0.0
+        if self.applied == "effort" and damping == self.law[1]:
+            self.law = (effort, damping)
+            self.controls[self.id] = effort
+            self.rotors[self.dof] = 0.0
         else:
             self._give("effort", effort, damping)
 
@@ -130,8 +145,8 @@ class ServoHandle:
             if not self._awake:
                 self._rouse()
             velocity = self._inside(velocity, *self._ends)
-        if self._applied == "velocity":
-            self._turning = self._qvel[self._rotor] = velocity
+        if self.applied == "velocity":
+            self._turning = self.rotors[self.dof] = velocity
         else:
             self._limit = math.inf
             self._turn("velocity", velocity)
@@ -154,29 +169,28 @@ class ServoHandle:
         self._target, self._rate, self._fastest = position, velocity, max_velocity
         if max_effort != self._limit:
             self._limit = max_effort
-            self._applied = "idle"
+            self.applied = "idle"
         if not (self._awake or self._commanded_again):
             self._rouse()
         # Comparisons take a quarter of the time of `abs`, `copysign`, `min` and `max`.
-        error = position - self._qpos[self._position]
-        size = -error if error < 0.0 else error
-        speed = POSITION_BANDWIDTH * size
-        if not size < self._near:
-            speed = self._braked(size, speed)
-        wanted = velocity - speed if error < 0.0 else velocity + speed
+        error, near = position - self._qpos[self._position], self._near
+        change = POSITION_BANDWIDTH * error
+        if not -near < error < near:
+            change = self._braked(error, change)
+        wanted = velocity + change
         if -max_velocity > wanted:  # noqa: PLR1730
             wanted = -max_velocity
         if max_velocity < wanted:  # noqa: PLR1730
             wanted = max_velocity
-        if self._applied == "position":
-            self._turning = self._qvel[self._rotor] = wanted
+        if self.applied == "position":
+            self._turning = self.rotors[self.dof] = wanted
         else:
             self._turn("position", wanted)
 
     @property
     def turns(self) -> bool:
         """Whether it applies an effort or drives the joint."""
-        return self.mode != "idle" and (self._law[0] != 0.0 or self._turning != 0.0)
+        return self.mode != "idle" and (self.law[0] != 0.0 or self._turning != 0.0)
 
     def follow(self) -> None:
         """Moves the joint toward its target position, or stops it at a limit; called at every
@@ -197,9 +211,11 @@ class ServoHandle:
             return max(velocity, POSITION_BANDWIDTH * (lower - position))
         return velocity
 
-    def _braked(self, size: float, speed: float) -> float:
-        """The speed at a distance from the target, from which the motor can still brake."""
-        return min(speed, sqrt(self._braking * size))
+    def _braked(self, error: float, velocity: float) -> float:
+        """The velocity at a distance from the target, from which the motor can still brake."""
+        if error < 0.0:
+            return -min(-velocity, sqrt(self._braking * -error))
+        return min(velocity, sqrt(self._braking * error))
 
     def _rouse(self) -> None:
         self._awake = True
@@ -207,19 +223,19 @@ class ServoHandle:
 
     def _give(self, mode: Mode, effort: float, damping: float) -> None:
         self.mode = mode
-        self._law = (effort, damping)
+        self.law = (effort, damping)
         self._turning = 0.0
         self._apply()
 
     def _turn(self, mode: Mode, velocity: float) -> None:
         self.mode = mode
-        self._law = (0.0, 0.0)
+        self.law = (0.0, 0.0)
         self._turning = velocity
         self._apply()
 
     def _apply(self) -> None:
-        effort, damping = self._law
-        self._ctrl[self.id] = effort
+        effort, damping = self.law
+        self.controls[self.id] = effort
         self._bias[2] = -damping
         holds = self.mode in ("velocity", "position")
         if holds:
@@ -227,5 +243,5 @@ class ServoHandle:
         else:
             self._grip[self._tendon] = self._strength if self.shared else 0.0
         if holds or not self.shared:
-            self._qvel[self._rotor] = self._turning
-        self._applied = self.mode if self.alone else "idle"
+            self.rotors[self.dof] = self._turning
+        self.applied = self.mode if self.alone else "idle"

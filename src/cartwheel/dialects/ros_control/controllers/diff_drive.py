@@ -119,6 +119,8 @@ class DiffDriveController(Controller):
     types: ClassVar[tuple[str, ...]] = ("diff_drive_controller/DiffDriveController",)
 
     parameters = DiffDriveParameters
+    _followed: tuple[float, float, float] | None = None
+    """The command that the drive has received."""
 
     def configure(self, given: DiffDriveParameters) -> None:
         ros2, left, right = self.robot.ros2, given.left, given.right
@@ -179,6 +181,7 @@ class DiffDriveController(Controller):
 
     def start(self, time_ns: int) -> None:
         self._command.stop()
+        self._followed = None
         self._odometry.start(time_ns)
         self._drive.start()
 
@@ -187,7 +190,10 @@ class DiffDriveController(Controller):
         drive.measure(seconds)
         if time_ns >= odometry.periodic.next_ns:
             odometry.publish(time_ns)
-        drive.command(*self._command.at(time_ns))
+        command = self._command.at(time_ns)
+        if command is not self._followed:
+            self._followed = command
+            drive.command(*command)
         drive.actuate(seconds)
         if self._limited is not None and self._limited.wanted:
             self._publish_limited(time_ns, drive.linear.value, drive.angular.value)

@@ -12,7 +12,7 @@ import numpy as np
 from cartwheel.codes import running
 from cartwheel.devices.joints.pid import PidGains
 from cartwheel.devices.joints.pid_joint import PidJoint, PidJointConfig
-from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.controller import NEVER_NS, Controller
 from cartwheel.dialects.ros_control.gains import GAINS, read_gains
 from cartwheel.dialects.ros_control.hardware import JointHardware
 from cartwheel.dialects.ros_control.parameters import OWN, ignored, parameter, ros2_parameter
@@ -77,13 +77,16 @@ class JointCommand(Controller):
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._command = self._joint.command
+        self.next_ns = 0
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
         self._joint.command = self._command
+        self.next_ns = NEVER_NS
 
     def _on_command(self, message: Any) -> None:
         if math.isfinite(message.data):
             self._command = float(message.data)
+            self.next_ns = 0
 
 
 class JointPid(Controller):
@@ -126,7 +129,7 @@ class JointPid(Controller):
         error, output = self._loop.update(seconds)
         self._count += 1
         # As in ros_control, every tenth update.
-        if self._count % 10 == 1 and self._publisher.wanted:
+        if self._publisher.wanted and self._count % 10 == 1:
             joint, config = self._loop.joint, self._loop.config
             gains, by_position = config.gains, config.quantity == "position"
             self._publisher.publish(
@@ -191,15 +194,19 @@ class JointGroup(Controller):
 
     def start(self, time_ns: int) -> None:  # noqa: ARG002
         self._commands = None
+        self.next_ns = 0
         for loop in self._loops:
             loop.start()
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        for loop in self._loops:
-            loop.update(seconds)
-        if self._commands is not None and not self._loops:
+        if self._loops:
+            for loop in self._loops:
+                loop.update(seconds)
+            return
+        if self._commands is not None:
             for joint, command in zip(self._joints, self._commands, strict=True):
                 joint.command = command
+        self.next_ns = NEVER_NS
 
     def _publish_targets(self, topic: str, wanted: Mapping[str, float]) -> None:
         values = np.array([wanted[joint.joint] for joint in self._joints])
@@ -217,6 +224,7 @@ class JointGroup(Controller):
             )
         elif all(math.isfinite(value) for value in values):
             self._commands = values
+            self.next_ns = 0
             for loop, value in zip(self._loops, values, strict=False):
                 loop.target = value
 

@@ -164,7 +164,8 @@ class JointStateController(Controller):
 
     def start(self, time_ns: int) -> None:
         self._states.start(time_ns)
+        self.next_ns = self._states.periodic.next_ns
 
     def update(self, time_ns: int, seconds: float) -> None:  # noqa: ARG002
-        if time_ns >= self._states.periodic.next_ns:
-            self._states.update(time_ns)
+        self._states.update(time_ns)
+        self.next_ns = self._states.periodic.next_ns

@@ -8,6 +8,7 @@ from typing import Any
 from cartwheel.dialects.ros_control.controller import Controller
 
 _NEVER = -(1 << 62)
+_NONE = (0.0, 0.0, 0.0)
 
 
 class TwistCommand:
@@ -33,14 +34,17 @@ class TwistCommand:
 
     def stop(self) -> None:
         """Clears the command."""
-        self._values = (0.0, 0.0, 0.0)
+        self._values = _NONE
         self.time_ns = _NEVER
         """Time of the last command; before all times if there is none."""
 
     def at(self, time_ns: int) -> tuple[float, float, float]:
-        """Returns x and y velocities in m/s and the yaw rate in rad/s; 0 after the timeout."""
+        """Returns x and y velocities in m/s and the yaw rate in rad/s; 0 after the timeout.
+
+        The tuple is the same one until the command changes.
+        """
         if self._timeout_ns > 0 and time_ns - self.time_ns > self._timeout_ns:
-            return (0.0, 0.0, 0.0)
+            return _NONE
         return self._values
 
     def _on_command(self, message: Any) -> None:
