@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from cartwheel.codes.running import CONTROLLER_NOT_STARTED, CONTROLLERS_NOT_NAMED
+from cartwheel.codes.running import CONTROLLER_NOT_STARTED
 from cartwheel.component import Shared, TopicSharing
 from cartwheel.description.files.package_files import SimulationPackages
 from cartwheel.description.files.readings import Readings
@@ -20,7 +20,7 @@ from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
 from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection_near
-from cartwheel.dialects.ros_control.suggestion import lacks_controllers, suggested
+from cartwheel.dialects.ros_control.suggestion import lacks_controllers, no_controllers, suggested
 from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Code, Diagnostic, PluginError
 from cartwheel.geometry import Pose
@@ -52,8 +52,8 @@ class Spawned:
     """Folders to search for packages first."""
 
 
-class Descriptions(Protocol):
-    """Publishes the descriptions of a session's robots; see `cartwheel.gazebo`."""
+class RobotPublisher(Protocol):
+    """Publishes about a session's robots, such as their descriptions; see `cartwheel.gazebo`."""
 
     def update(self) -> None:
         """Publishes new robots at once."""
@@ -155,8 +155,12 @@ class Session:
         )
         self._clock_form = Form(functools.partial(zero, "rosgraph_msgs/msg/Clock"), "clock")
         self._clock_task = self._schedule_clock(CLOCK_RATE)
-        self.descriptions: Descriptions | None = None
+        self.descriptions: RobotPublisher | None = None
         """What publishes the descriptions of the robots, while something needs them."""
+        self.states: RobotPublisher | None = None
+        """What publishes the transforms of the robots' links, while something needs them."""
+        self.others_publish_states = False
+        """Whether these transforms are left to other nodes, such as robot_state_publisher."""
         self._sharing = TopicSharing(self.graph, self.simulation)
         self._check(0)
 
@@ -200,7 +204,7 @@ class Session:
                 description, "lacking", lambda: lacks_controllers(description)
             ):
                 found = known(description, "suggested", lambda: suggested(description))
-                self.simulation.engine.report(_no_controllers(description, found))
+                self.simulation.engine.report(no_controllers(description, found))
             names: tuple[str, ...] = ()
             if controllers == "auto":
                 selected = known(
@@ -298,6 +302,12 @@ class Session:
             simulation.delete(*(name for name in simulation.models if name not in known))
             raise
 
+    def update_robots(self) -> None:
+        """Publishes descriptions and transforms of new robots, if any are published."""
+        for each in (self.descriptions, self.states):
+            if each is not None:
+                each.update()
+
     def report_unbridged(self) -> None:
         """Reports missing topics listed in ros_gz_bridge files. Call it on the owner's thread."""
         before = len(self.simulation.diagnostics)
@@ -350,7 +360,7 @@ class Session:
         self.shared.get(ControllerFiles).loaded.clear()
         self.graph.close()
         self._clock_task.forget()
-        self.descriptions = None
+        self.descriptions = self.states = None
 
     def _check(self, start: int) -> None:
         if not self.strict:
@@ -375,25 +385,6 @@ class Session:
 
     def _publish_clock(self) -> None:
         self._clock.publish_values(self._clock_form, (self.simulation.engine.time_ns,))
-
-
-def _no_controllers(robot: RobotDescription, found: Sequence[Path]) -> Diagnostic:
-    """The warning for a robot with a controller manager without controllers.
-
-    Args:
-        robot: The robot.
-        found: Files that could be meant.
-    """
-    files = tuple(str(file) for file in found)
-    listed = f": {', '.join(files)}" if files else ""
-    return CONTROLLERS_NOT_NAMED.diagnostic(
-        f'robot "{robot.name}" has a controller manager, but no controllers are named, so nothing '
-        "drives its joints",
-        origin=robot.origin,
-        hint='Pass controllers="auto", or the controller files'
-        f"{listed}. Pass controllers=() to load controllers later.",
-        values={"model": robot.name, "files": files},
-    )
 
 
 def _ignore(_: Diagnostic) -> None:

@@ -1,14 +1,16 @@
 """Recordings that a program reads."""
 
+import math
 from pathlib import Path
 
 import pytest
-from tests.coded import raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
-from cartwheel.codes.graph import FIELD_UNKNOWN, TOPIC_UNKNOWN
+from cartwheel.codes.graph import FIELD_UNKNOWN, FRAMES_SHARED, TOPIC_UNKNOWN
 from cartwheel.codes.recording import NOT_A_RECORDING
 from cartwheel.errors import RecordingError, UnknownNameError
+from cartwheel.gazebo.robot_states import hold_states
 from cartwheel.messages import encode_cdr
 
 TOPICS = ["/odom", "/imu/data", "/scan", "/clock"]
@@ -82,3 +84,72 @@ def test_unknown_topics_and_files(recorded: tuple[Path, list[cw.RecordedMessage]
     (folder / "text.mcap").write_text("not a recording")
     with raises(NOT_A_RECORDING, RecordingError):
         cw.Recording(folder / "text.mcap")
+
+
+ARM = """<robot name="arm"><link name="world"/><link name="base"/>
+<link name="upper"><inertial><mass value="1"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="tip"/>
+<joint name="ground" type="fixed"><parent link="world"/><child link="base"/></joint>
+<joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/>
+<origin xyz="0 0 1"/><axis xyz="0 0 1"/></joint>
+<joint name="glue" type="fixed"><parent link="upper"/><child link="tip"/><origin xyz="0.4 0 0"/>
+</joint></robot>"""
+
+
+def test_a_recording_contains_the_transforms_of_all_links(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        arm = world.spawn(ARM)
+        arm.joints.positions["shoulder"] = 0.5
+        world.run(0.2)
+        assert not {"/tf", "/tf_static"} & set(world.topics)
+        with world.record(tmp_path / "arm.mcap"):
+            world.run(0.1)
+            world.spawn(ARM, name="other", frame_prefix="other", x=2.0)
+            world.run(0.1)
+        assert not {"/tf", "/tf_static", "/robot_description"} & set(world.topics)
+    with cw.Recording(tmp_path / "arm.mcap") as recording:
+        fixed = list(recording.messages("/tf_static"))
+        moving = list(recording.messages("/tf"))
+    assert [each.time for each in fixed] == pytest.approx([0.2, 0.3], abs=1e-3)
+    pairs = [(t.header.frame_id, t.child_frame_id) for t in fixed[-1].message.transforms]
+    assert pairs == [("upper", "tip"), ("other/upper", "other/tip")]
+    assert [each.time for each in moving] == pytest.approx([0.2 + i / 50 for i in range(11)])
+    first = moving[0].message.transforms[0]
+    assert (first.header.frame_id, first.child_frame_id) == ("base", "upper")
+    assert first.transform.rotation.z == pytest.approx(math.sin(0.25), abs=1e-3)
+    assert len(moving[-1].message.transforms) == 2
+
+
+def test_transforms_are_published_once_something_subscribes() -> None:
+    with cw.World("empty") as world:
+        moving, fixed = world.topic("/tf"), world.topic("tf_static")
+        received: list[object] = []
+        world.subscribe("/tf", received.append)
+        world.spawn(ARM)
+        world.run(0.1)
+        assert moving.type == fixed.type == "tf2_msgs/msg/TFMessage"
+        assert moving.latest.transforms[0].child_frame_id == "upper"
+        assert fixed.latest.transforms[0].child_frame_id == "tip"
+        assert received == moving.history()
+        state = world.save()
+        world.run(0.1)
+        before = moving.history()[-5:]
+        world.restore(state)
+        world.run(0.1)
+        assert [encode_cdr(m) for m in moving.history()[-5:]] == [encode_cdr(m) for m in before]
+
+
+def test_robots_with_the_same_frames_are_reported_when_recorded(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        world.spawn(ARM)
+        world.spawn(ARM, name="other", x=2.0)
+        release = hold_states(world.session, reports=False)
+        world.run(0.1)
+        assert coded(world, FRAMES_SHARED) == []
+        with world.record(tmp_path / "arms.mcap"):
+            world.run(0.1)
+        (found,) = coded(world, FRAMES_SHARED)
+        assert found.values["model"] == "other"
+        assert "/tf" in world.topics
+        release()
+        assert "/tf" not in world.topics

@@ -103,7 +103,8 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
         [sys.executable, "-m", "cartwheel.cli.main", "info", str(recording)],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert "/odom" in info.stdout and "/robot_description" in info.stdout
+    for topic in ("/odom", "/robot_description", "/tf_static"):
+        assert topic in info.stdout
 
 
 def test_the_recording_contains_the_last_seconds(pytester_run, tmp_path):

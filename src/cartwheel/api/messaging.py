@@ -19,6 +19,10 @@ from cartwheel.simulation.limits import check_size
 
 if TYPE_CHECKING:
     from cartwheel.bridges.recording import Encoding, Recorder
+    from cartwheel.session import Session
+
+
+_TRANSFORMS = "tf2_msgs/msg/TFMessage"
 
 
 class MessagingWorld(TimedWorld):
@@ -69,7 +73,9 @@ class MessagingWorld(TimedWorld):
         messages you need. Further calls with the same name return the same object.
 
         ``/robot_description``, in the namespace of a robot, contains its expanded XML. It is
-        published from the first call on.
+        published from the first call on. So are the transforms of all links on ``/tf`` and
+        ``/tf_static``, as robot_state_publisher does, but not while ROS 1 is connected, where
+        another node publishes them.
 
         Args:
             name: Topic name.
@@ -86,7 +92,7 @@ class MessagingWorld(TimedWorld):
             CartwheelError: `keep` is out of range.
         """
         self.check_open()
-        full = self._full_name(type)
+        full = self._full_name(name, type)
         if keep is not None:
             check_size(keep)
         self._describe(text(name, "name"))
@@ -102,24 +108,33 @@ class MessagingWorld(TimedWorld):
             found.keep(keep)
         return found
 
-    def _full_name(self, kind: Kind | None) -> str | None:
+    def _full_name(self, topic: str, kind: Kind | None) -> str | None:
         """The name of a type that a program gives; None if it gives none."""
-        return None if kind is None else str(self.message_class(name_of(kind)).__msgtype__)
+        if kind is None:
+            return _TRANSFORMS if text(topic, "topic").lstrip("/") in ("tf", "tf_static") else None
+        return str(self.message_class(name_of(kind)).__msgtype__)
 
     def _describe(self, topic: str) -> None:
-        """Publishes the descriptions of the robots from now on, if a topic is that of one."""
-        if not topic.endswith("robot_description"):
-            return
-        from cartwheel.gazebo.robot_descriptions import hold_descriptions
+        """Publishes descriptions or transforms of the robots from now on, if a topic has these."""
+        hold: Callable[[Session], object]
+        name = topic.rpartition("/")[2]
+        if name == "robot_description":
+            from cartwheel.gazebo.robot_descriptions import hold_descriptions
 
+            hold = hold_descriptions
+        elif topic.lstrip("/") in ("tf", "tf_static"):
+            from cartwheel.gazebo.robot_states import hold_states
+
+            name, hold = "tf", hold_states
+        else:
+            return
         session = self.session
 
         def describe() -> None:
-            if not self._describes:
-                hold_descriptions(session)
-                self._describes = True
-            elif session.descriptions is not None:
-                session.descriptions.update()
+            if name not in self._described:
+                hold(session)
+                self._described.add(name)
+            session.update_robots()
 
         if self._run_by_another():
             session.simulation.post(describe)
@@ -127,8 +142,10 @@ class MessagingWorld(TimedWorld):
             with self.used():
                 describe()
 
-    _describes = False
-    """Whether the world itself publishes the descriptions of its robots."""
+    @functools.cached_property
+    def _described(self) -> set[str]:
+        """What the world itself publishes about its robots."""
+        return set()
 
     @functools.cached_property
     def _known_topics(self) -> dict[str, Topic]:
@@ -188,7 +205,7 @@ class MessagingWorld(TimedWorld):
             except BaseException as error:  # noqa: BLE001 - raised by `run`
                 simulation.faults.defer(error)
 
-        full = self._full_name(type)
+        full = self._full_name(topic, type)
         self._describe(topic)
         return self.graph.subscribe(topic, guarded, type_name=full)
 
@@ -255,7 +272,7 @@ class MessagingWorld(TimedWorld):
         """
         self.check_open()
         check_size(size)
-        full = self._full_name(type)
+        full = self._full_name(topic, type)
         self._describe(text(topic, "topic"))
         return self.graph.mailbox(topic, size=size, type_name=full, can_come=self._run_by_another)
 
@@ -289,7 +306,7 @@ class MessagingWorld(TimedWorld):
                 when the block ends.
         """
         from cartwheel.bridges.recording import Recorder
-        from cartwheel.gazebo.robot_descriptions import hold_descriptions, release_descriptions
+        from cartwheel.gazebo.robot_states import hold_states
 
         if not isinstance(file, str | Path):
             raise refused("file", "a path", file)
@@ -304,11 +321,10 @@ class MessagingWorld(TimedWorld):
             notes=self.session.notes,
             report=simulation.report,
         )
-        described = False
+        release: Callable[[], None] | None = None
         try:
             with self.lock:
-                hold_descriptions(self.session)
-                described = True
+                release = hold_states(self.session)
                 recorder.start()
                 simulation.drain()
             try:
@@ -318,5 +334,5 @@ class MessagingWorld(TimedWorld):
         finally:
             with self.lock:
                 simulation.drain()
-                if described:
-                    release_descriptions(self.session)
+                if release is not None:
+                    release()

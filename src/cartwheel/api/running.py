@@ -210,6 +210,8 @@ class RunningWorld:
             self._connections.raise_failure()
             if outer is None:
                 self._connections.update()
+        elif outer is None:
+            self.session.update_robots()
         self._runner = thread
         if outer is None:
             if thread != threading.main_thread().ident and threading.current_thread().daemon:

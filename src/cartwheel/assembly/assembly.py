@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from cartwheel.bridges.apart.process import BridgeProcess
     from cartwheel.control.server import ControlServer
     from cartwheel.gazebo import GazeboApi
-    from cartwheel.gazebo.robot_descriptions import RobotDescriptions
-    from cartwheel.gazebo.robot_states import RobotStates
     from cartwheel.gazebo.ros2_api import Ros2Api
     from cartwheel.session import Session
     from cartwheel.simulation.pacing import Pacer
@@ -80,8 +78,6 @@ class Assembly:
         """Why another ROS 1 node ended the run."""
         self._ros1_api: GazeboApi | None = None
         self._ros2_api: Ros2Api | None = None
-        self._descriptions: RobotDescriptions | None = None
-        self._states: RobotStates | None = None
 
     def __enter__(self) -> Assembly:
         return self
@@ -218,6 +214,7 @@ class Assembly:
             connection.start()
         self.control.announce_ros(connection.master_uri)
         self._joined.add("ros1")
+        session.others_publish_states = "ros2" not in self._joined
         return connection
 
     def connect_ros2(self, node: str, rmw: Rmw = "dds") -> Ros2Connection:
@@ -234,7 +231,7 @@ class Assembly:
         from cartwheel.assembly.ros2 import Ros2Connection
 
         check_rmw(rmw)
-        self._publish_descriptions()
+        self.session.others_publish_states = False
         with self._opening("ros2") as process:
             connection = Ros2Connection(
                 self.session,
@@ -244,7 +241,7 @@ class Assembly:
                 rmw=rmw,
                 observer=self._observer,
             )
-            connection.start(self._publish_states)
+            connection.start()
         self._joined.add("ros2")
         return connection
 
@@ -308,10 +305,7 @@ class Assembly:
 
     def update(self) -> None:
         """Publishes the descriptions of new robots, and records new topics from the start."""
-        if self._descriptions is not None:
-            self._descriptions.update()
-        if self._states is not None:
-            self._states.update()
+        self.session.update_robots()
         graph = self.session.graph
         if graph.changed == self._updated:
             return
@@ -362,25 +356,13 @@ class Assembly:
 
         In ROS, another node may publish the poses of their links.
         """
-        self._publish_descriptions()
-        if not self._joined:
-            self._publish_states()
+        from cartwheel.gazebo.robot_descriptions import hold_descriptions
+        from cartwheel.gazebo.robot_states import hold_states
 
-    def _publish_descriptions(self) -> RobotDescriptions:
-        if self._descriptions is None:
-            from cartwheel.gazebo.robot_descriptions import hold_descriptions
-
-            self._descriptions = hold_descriptions(self.session)
-        return self._descriptions
-
-    def _publish_states(self) -> RobotStates:
-        if self._states is None:
-            from cartwheel.gazebo.robot_states import RobotStates
-
-            self._states = RobotStates(
-                self.session.simulation, self.session.graph, self._publish_descriptions()
-            )
-        return self._states
+        if self._joined:
+            hold_descriptions(self.session)
+        else:
+            hold_states(self.session)
 
     # -- end
 

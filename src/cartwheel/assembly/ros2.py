@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from cartwheel.assembly.observer import Observer
@@ -12,7 +11,7 @@ from cartwheel.bridges.ros2 import Parameter, Rmw
 from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
 from cartwheel.gazebo.robot_descriptions import TOPIC
-from cartwheel.gazebo.robot_states import RobotStates
+from cartwheel.gazebo.robot_states import RobotStates, hold_states
 from cartwheel.gazebo.ros2_api import Ros2Api
 from cartwheel.session import CLOCK_RATE, Session
 from cartwheel.simulation import RunState
@@ -54,7 +53,6 @@ class Ros2Connection:
         simulation = session.simulation
         self._process = process
         self._parameters = {one.name: one for one in node_parameters(session)}
-        self._states: RobotStates | None = None
         self.name, self.middleware = process.open(
             session.graph,
             {
@@ -75,18 +73,15 @@ class Ros2Connection:
             },
         )
 
-    def start(self, states: Callable[[], RobotStates]) -> None:
+    def start(self) -> None:
         """Joins ROS. Call it on the owner's thread.
-
-        Args:
-            states: Creates the publisher of link poses, which leaves robots to other nodes.
 
         Raises:
             CartwheelError: The bridge cannot start.
         """
         if self._api is not None:
             self._api.start()
-        self._states = states()
+        hold_states(self._session)
         self._process.call("start")
         self._process.notify("make_way", TOPIC.strip("/"))
         self._observer.ros2_joined(self.name, self.middleware)
@@ -108,8 +103,8 @@ class Ros2Connection:
         set_(value)
 
     def _leave_to_others(self, topics: frozenset[str]) -> None:
-        states = self._states
-        if states is not None:
+        states = self._session.states
+        if isinstance(states, RobotStates):
             self._session.simulation.post(lambda: states.leave_to_others(topics))
 
 

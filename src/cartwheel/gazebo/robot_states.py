@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.codes.graph import FRAMES_SHARED
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.gazebo.robot_descriptions import TOPIC, RobotDescriptions, is_robot
+from cartwheel.gazebo.robot_descriptions import (
+    TOPIC,
+    RobotDescriptions,
+    hold_descriptions,
+    is_robot,
+    release_descriptions,
+)
 from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Publisher, resolve_frame
 from cartwheel.messages import header, message_class
+from cartwheel.session import Session
 from cartwheel.simulation import Simulation
 
 NODE = "robot_state_publisher"
@@ -38,17 +45,27 @@ class RobotStates:
     Fixed joints are published on ``/tf_static``, others on ``/tf``. Transforms that plugins publish
     are omitted, such as wheels whose drive publishes them. So is the root link: its drive publishes
     it in ``odom``. Two robots with the same frames need a namespace or prefix: the second robot's
-    frames are omitted, and reported. Use it on the owner's thread. Source: robot_state_publisher.
+    frames are omitted, and reported. `hold_states` provides the instance of a session. Use it on
+    the owner's thread. Source: robot_state_publisher.
 
     Args:
         simulation: The simulation.
         graph: The graph to publish on.
         descriptions: The published robot descriptions.
+        reports: Whether omitted frames are reported.
     """
 
     def __init__(
-        self, simulation: Simulation, graph: Graph, descriptions: RobotDescriptions
+        self,
+        simulation: Simulation,
+        graph: Graph,
+        descriptions: RobotDescriptions,
+        *,
+        reports: bool = True,
     ) -> None:
+        self.holders = 0
+        """Number of calls of `hold_states` that have not ended."""
+        self._reports = reports
         self._simulation = simulation
         self._graph = graph
         self._descriptions = descriptions
@@ -70,6 +87,12 @@ class RobotStates:
         """
         if topics != self._others:
             self._others = topics
+            self._look()
+
+    def report(self) -> None:
+        """Reports omitted frames from now on, also those of present robots."""
+        if not self._reports:
+            self._reports = True
             self._look()
 
     def update(self) -> None:
@@ -142,7 +165,7 @@ class RobotStates:
             shared = sorted(told.children & children)
             if not shared:
                 continue
-            if name not in self._warned:
+            if self._reports and name not in self._warned:
                 self._warned.add(name)
                 self._simulation.engine.report(
                     FRAMES_SHARED.diagnostic(
@@ -171,6 +194,41 @@ class RobotStates:
             transforms += _transforms(simulation.time_ns, told.moving, poses, told.prefix)
         if transforms:
             self._publisher.publish(message_class("tf2_msgs/msg/TFMessage")(transforms))
+
+
+def hold_states(session: Session, *, reports: bool = True) -> Callable[[], None]:
+    """Publishes the descriptions of all robots and, unless other nodes do, their transforms.
+
+    Call it on the thread that owns the simulation.
+
+    Args:
+        session: The session.
+        reports: Whether robots with the same frames are reported.
+
+    Returns:
+        A function that ends it, to be called once. After the last one, nothing is published.
+    """
+    descriptions = hold_descriptions(session)
+    states = session.states
+    if states is None and not session.others_publish_states:
+        session.states = states = RobotStates(
+            session.simulation, session.graph, descriptions, reports=reports
+        )
+    if isinstance(states, RobotStates):
+        states.holders += 1
+        states.update()
+        if reports:
+            states.report()
+
+    def release() -> None:
+        if isinstance(states, RobotStates):
+            states.holders -= 1
+            if not states.holders:
+                session.states = None
+                states.close()
+        release_descriptions(session)
+
+    return release
 
 
 def _tree(description: RobotDescription) -> list[Joint]:

@@ -11,7 +11,7 @@ from cartwheel.bridges.mirror import offered_by_others
 from cartwheel.bridges.recording.encoding import codec
 from cartwheel.bridges.recording.patterns import Patterns
 from cartwheel.bridges.recording.writing import open_writer
-from cartwheel.gazebo.robot_descriptions import hold_descriptions, release_descriptions
+from cartwheel.gazebo.robot_states import hold_states
 from cartwheel.graph import TopicInfo
 from cartwheel.graph.topic import Subscription
 
@@ -51,6 +51,8 @@ class Recent:
         """Time in ns and message by topic."""
         self._surveyor: int | None = None
         self._due = False
+        # The test may have robots with the same frames, which concerns only the recording.
+        self._release = hold_states(world.session, reports=False)
         self._graph.on_change.append(self._changed)
         self._survey()
 
@@ -61,6 +63,7 @@ class Recent:
         for _, subscription in self._subscriptions.values():
             subscription.close()
         self._subscriptions.clear()
+        self._release()
 
     def _changed(self) -> None:
         """Called on any thread, with the graph locked."""
@@ -113,13 +116,9 @@ class Recent:
         Raises:
             RecordingError: The file cannot be written.
         """
-        # Without these topics, a recording cannot be played.
-        hold_descriptions(self._world.session)
-        try:
-            self._survey()
-            self._simulation.drain()
-        finally:
-            release_descriptions(self._world.session)
+        self._world.session.update_robots()
+        self._survey()
+        self._simulation.drain()
         items = sorted(self._items, key=lambda item: item[0])
         start = items[0][0] if items else self._simulation.time_ns
         first = [(start, *item[1:]) for item in self._latched.values()]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import yaml_text
+from cartwheel.codes.running import CONTROLLERS_NOT_NAMED
 from cartwheel.description.files.package_folders import package_name
 from cartwheel.description.model import PluginTag, RobotDescription
 from cartwheel.dialects.catalogue import ROS_CONTROL, plugin_named
@@ -25,7 +26,7 @@ from cartwheel.dialects.ros_control.files import (
 from cartwheel.dialects.ros_control.launch_arguments import texts
 from cartwheel.dialects.ros_control.steer_bot import PARAMETERS
 from cartwheel.dialects.tags import roles_of
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Diagnostic
 
 _ROS2_CONTROL = "gz_ros2_control-system"
 _ARGUMENT = re.compile(r"\$\((?:arg|var)\s+[^()]*\)")
@@ -200,3 +201,22 @@ def _names(word: str, joint: str) -> bool:
     """Whether a word contains a joint's name, or ends like it after ``$(arg prefix)``."""
     rest = _ARGUMENT.sub("", word)
     return joint in word or (rest != word and len(rest) > 1 and joint.endswith(rest))
+
+
+def no_controllers(robot: RobotDescription, found: Sequence[Path]) -> Diagnostic:
+    """The warning for a robot with a controller manager without controllers.
+
+    Args:
+        robot: The robot.
+        found: Files that could be meant.
+    """
+    files = tuple(str(file) for file in found)
+    listed = f": {', '.join(files)}" if files else ""
+    return CONTROLLERS_NOT_NAMED.diagnostic(
+        f'robot "{robot.name}" has a controller manager, but no controllers are named, so nothing '
+        "drives its joints",
+        origin=robot.origin,
+        hint='Pass controllers="auto", or the controller files'
+        f"{listed}. Pass controllers=() to load controllers later.",
+        values={"model": robot.name, "files": files},
+    )
