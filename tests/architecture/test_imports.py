@@ -46,7 +46,7 @@ MAY_IMPORT = {
     "component": {"simulation", "messages", "graph"},
     "devices": {"component", "description", "world", "simulation", "messages", "graph"},
     "dialects": {"component", "description", "devices", "world", "simulation", "messages", "graph"},
-    "plugin": {"component", "dialects"},
+    "plugin": {"component", "description", "dialects"},
     "interfaces": {"description", "simulation", "graph"},
     "session": {"component", "description", "simulation", "messages", "graph", "dialects"},
     "saving": {

@@ -8,7 +8,7 @@ import pytest
 from tests.coded import coded, raises
 
 import cartwheel as cw
-from cartwheel.codes import devices
+from cartwheel.codes import devices, running
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
 GREETER = """
@@ -150,3 +150,88 @@ def test_a_file_with_another_suffix_is_an_error(tmp_path: Path) -> None:
     path.write_text("x = 1\n")
     with raises(devices.PLUGIN_FILE_INVALID, path=str(path)):
         cw.World(plugins=[path])
+
+
+ALL = """
+from dataclasses import dataclass
+import numpy as np
+import cartwheel as cw
+from cartwheel.plugin import CameraIntrinsics, Plugin
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    pass
+
+class All(Plugin[Parameters]):
+    \"\"\"Uses all that the guide lists.\"\"\"
+    filenames = ("liball.so",)
+    parameters = Parameters
+
+    def configure(self):
+        part = self.part
+        self.link, self.joint = part.link("base"), part.joint("lift")
+        self.wrench = part.wrench(self.link.name)
+        self.servo = part.servo("lift", max_effort=200.0)
+        self.wheel = part.velocity_motor("wheel", max_effort=None)
+        down = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+        self.rays = part.rays("base", cw.Pose((0, 0, -0.2)), down, minimum=0.02, maximum=9.0)
+        lens = CameraIntrinsics(width=16, height=12, horizontal_fov=1.0)
+        self.camera = part.camera("eye", "base", cw.Pose((0.2, 0, 0)), lens)
+        self.found = self.advertise("found", "std_msgs/msg/Float64MultiArray")
+        part.schedule(0, before=self.act)
+        part.schedule(10.0, after=self.measure)
+
+    def act(self):
+        self.wrench.apply((0.0, 0.0, 5.0), (0.0, 0.0, 0.0))
+        self.servo.command_position(0.1)
+        self.wheel.command(2.0)
+
+    def measure(self):
+        part = self.part
+        distances, _ = self.rays.cast()
+        picture = part.render(self.camera)
+        touching = part.contacts(["base::c"])
+        force = sum(each.force[2] for each in touching)
+        values = [distances[0], distances[1], self.joint.position, force]
+        values += [self.link.proper_acceleration()[2], part.random("x").normal(), *picture.shape]
+        kind = self.message_class("std_msgs/msg/Float64MultiArray")
+        self.found.publish(kind(data=[float(each) for each in values]))
+"""
+
+MACHINE = """<sdf version="1.9"><model name="machine"><pose>0 0 0.25 0 0 0</pose><link name="base">
+<inertial><mass>10</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>
+<collision name="c"><geometry><box><size>0.5 0.5 0.5</size></box></geometry></collision></link>
+<link name="arm"><pose>0 0 0.5 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>0.1</ixx>
+<iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link><joint name="lift" type="prismatic">
+<parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>
+<link name="disc"><pose>0 0 0.9 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>0.1</ixx>
+<iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link><joint name="wheel" type="continuous">
+<parent>arm</parent><child>disc</child><axis><xyz>0 0 1</xyz></axis></joint>
+<plugin name="all" filename="liball.so"/></model></sdf>"""
+
+
+def test_all_that_the_guide_lists(tmp_path: Path) -> None:
+    (tmp_path / "all.py").write_text(ALL)
+    (tmp_path / "machine.sdf").write_text(MACHINE)
+    with cw.World(strict=True, plugins=[tmp_path / "all.py"]) as world:
+        machine = world.spawn(tmp_path / "machine.sdf")
+        found = world.mailbox("/found")
+        world.run(seconds=2.0)
+        below, above, height, force, acceleration, noise, *shape = found.drain()[-1].data
+        assert machine.joints.velocities["wheel"] == pytest.approx(2.0, rel=1e-3)
+    assert (below, above) == (pytest.approx(0.05, abs=2e-3), float("inf"))
+    assert height == pytest.approx(0.1, abs=1e-3)
+    assert force == pytest.approx(12 * 9.8 - 5, rel=0.01)
+    assert acceleration == pytest.approx(9.8, abs=0.05)
+    assert noise != 0 and shape == [12, 16, 3]
+
+
+@pytest.mark.wording
+def test_a_handle_instead_of_a_name_is_explained(tmp_path: Path) -> None:
+    wrong = ALL.replace("part.wrench(self.link.name)", "part.wrench(self.link)")
+    (tmp_path / "all.py").write_text(wrong)
+    (tmp_path / "machine.sdf").write_text(MACHINE)
+    with cw.World(plugins=[tmp_path / "all.py"]) as world:
+        world.spawn(tmp_path / "machine.sdf")
+        (told,) = coded(world, running.PLUGIN_FAILED)
+    assert "link.name" in told.message

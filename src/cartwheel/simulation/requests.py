@@ -97,6 +97,7 @@ class Requests:
         Raises:
             UnknownNameError: The link does not exist; the error has this `origin`.
         """
+        _require_name(name, "link")
         if self.description.link(name) is None:
             raise UnknownNameError(
                 "link",
@@ -116,6 +117,7 @@ class Requests:
             UnknownNameError: The joint does not exist; the error has this `origin`.
             StaticModelError: The model is static.
         """
+        _require_name(name, "joint")
         movable = [joint.name for joint in self.description.joints if joint.drivable]
         if self.description.static:
             raise StaticModelError(
@@ -233,3 +235,8 @@ class Requests:
         )  # fmt: skip
         self.handles.append(handle)
         return handle
+
+
+def _require_name(name: object, what: str) -> None:
+    if not isinstance(name, str):
+        raise TypeError(f"a {what} is given by its name, such as {what}.name (got {name!r:.60})")
