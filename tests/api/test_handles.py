@@ -159,3 +159,17 @@ def test_attached_links_contain_the_handle(make):
     one, two = (world.model(name).link(world.model(name).links[0]) for name in ("one", "two"))
     one.attach(two)
     assert two in one.attached and one in two.attached and one not in one.attached
+
+
+@pytest.mark.wording
+def test_worlds_say_what_they_are() -> None:
+    built = cw.build("post", ["rosbots"])
+    with built.world() as world:
+        world.run(0.5)
+        assert repr(world) == "<World 'default' at 0.5 s>"
+        hold = world.topic("/part2_cmr/cmd_vel").hold(rate=10.0, linear={"x": 0.1})
+        assert repr(hold) == "<Hold of /part2_cmr/cmd_vel: active>"
+        hold.stop()
+        assert repr(hold) == "<Hold of /part2_cmr/cmd_vel: ended>"
+    assert repr(world) == "<World 'default' closed>"
+    assert repr(built) == "<Built world 'default': ground_plane, post, rosbots>"

@@ -255,6 +255,11 @@ def test_an_error_of_a_condition_is_raised_after_the_step() -> None:
         assert world.time == pytest.approx(0.2)
 
 
+def test_an_array_is_no_condition() -> None:
+    with cw.World("empty") as world, raises(CONDITION_INVALID):
+        world.run_until(lambda: np.zeros(3) > 0, timeout=1.0)
+
+
 @pytest.mark.parametrize("bad", [True, 1.0, None, "x > 1", lambda a, b: True])
 def test_a_condition_that_cannot_be_called(bad: Any) -> None:
     with cw.World("empty") as world, raises(CONDITION_INVALID):

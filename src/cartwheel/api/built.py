@@ -43,6 +43,9 @@ class Built:
         self._diagnostics: tuple[Diagnostic, ...] = ()
         self._visuals = False
 
+    def __repr__(self) -> str:
+        return f"<Built world {self._description.name!r}: {', '.join(self._models)}>"
+
     @property
     def models(self) -> tuple[str, ...]:
         """Names of the models in each world."""

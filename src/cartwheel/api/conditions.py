@@ -32,8 +32,21 @@ class Condition:
         self._arguments = (world,) * _arity(function)
 
     def holds(self) -> bool:
-        """Calls the function. Its errors are raised."""
-        return bool(self._function(*self._arguments))
+        """Calls the function. Its errors are raised.
+
+        Raises:
+            CartwheelError: The result is neither true nor false, as an array is not.
+        """
+        found = self._function(*self._arguments)
+        try:
+            return bool(found)
+        except ValueError as error:
+            raise CartwheelError(
+                f"the condition must return true or false ({error})",
+                code=CONDITION_INVALID,
+                hint="Use .all() or .any() for an array.",
+                values={"condition": self.text},
+            ) from None
 
     @property
     def text(self) -> str:

@@ -311,7 +311,7 @@ class Topic(Generic[M]):
 
             alarm = Alarm(publish, simulation.time_ns, period)
             simulation.alarms.add(alarm)
-        return Hold(alarm, publisher.close)
+        return Hold(self.name, alarm, publisher.close)
 
     def close(self) -> None:
         """Ends the subscription. The messages stay readable."""
@@ -325,9 +325,13 @@ class Topic(Generic[M]):
 class Hold:
     """A message that is published at a rate; see `Topic.hold`."""
 
-    def __init__(self, alarm: Alarm, close: Callable[[], None]) -> None:
+    def __init__(self, topic: str, alarm: Alarm, close: Callable[[], None]) -> None:
+        self._topic = topic
         self._alarm = alarm
         self._close = close
+
+    def __repr__(self) -> str:
+        return f"<Hold of {self._topic}: {'active' if self.active else 'ended'}>"
 
     @property
     def active(self) -> bool:

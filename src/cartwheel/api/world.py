@@ -164,6 +164,13 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             raise
         self._made = True
 
+    def __repr__(self) -> str:
+        if not self._made:
+            return object.__repr__(self)
+        simulation = self.session.simulation
+        state = "closed" if simulation.closed else f"at {simulation.time_ns / 1e9:g} s"
+        return f"<World {simulation.world.name!r} {state}>"
+
     def __setattr__(self, name: str, value: object) -> None:
         # Subclasses of programs may have attributes of their own.
         if (
