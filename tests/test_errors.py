@@ -185,6 +185,13 @@ def exception_classes() -> Iterator[tuple[str, str]]:
                 yield ".".join(file.relative_to(root.parent).with_suffix("").parts), node.name
 
 
+def test_a_topic_is_suggested_by_a_similar_last_part():
+    topics = ["/part2/base_cmr/cmd_vel", "/part2_cmr/cmd_vel", "/part2_cmr/odom", "/clock"]
+    found = [UnknownNameError("topic", name, topics).values["meant"] for name in
+             ("/cmd_vl", "/odm", "/dock", "/x/cmd_velo", "cmd_vl")]  # fmt: skip
+    assert found == ["/part2_cmr/cmd_vel", "/part2_cmr/odom", "/clock", "/part2_cmr/cmd_vel", ""]
+
+
 def test_an_exception_reaches_another_process_with_all_attributes():
     classes = [
         getattr(importlib.import_module(module), name) for module, name in exception_classes()

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 
 SIMILAR = 0.6
 """Minimum similarity of two names for a suggestion."""
+_SIMILAR_END = 0.8
+"""The same for the last parts of two names."""
 LONGEST = 500
 """Maximum length of a name that is shown in full and compared with other names."""
 
@@ -41,7 +43,8 @@ def closest(name: str, known: list[str], cutoff: float) -> list[str]:
     """The most similar name; empty for overlong names, which remote clients may send.
 
     Of the names of topics, those that end with all of the name are the most similar ones:
-    ``/base/odom`` for ``/odom``, with the fewest parts.
+    ``/base/odom`` for ``/odom``, with the fewest parts. If none is similar, those with a similar
+    last part: ``/base/odom`` for ``/odm``.
     """
     if len(name) > LONGEST:
         return []
@@ -51,6 +54,12 @@ def closest(name: str, known: list[str], cutoff: float) -> list[str]:
         if scoped and name not in known:
             return [min(scoped, key=lambda each: (each.count("/"), each))]
     best = most_similar(name, known, cutoff)
+    if best is None and "/" in name:
+        ends: dict[str, str] = {}
+        for each in sorted(known, key=lambda each: (each.count("/"), each)):
+            ends.setdefault(each[:LONGEST].rpartition("/")[2], each)
+        end = most_similar(name.rpartition("/")[2], ends, max(cutoff, _SIMILAR_END))
+        best = None if end is None else ends[end]
     return [best] if best is not None else []
 
 
