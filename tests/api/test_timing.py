@@ -166,6 +166,7 @@ def test_bad_times_are_refused(bad: Any) -> None:
             lambda: world.run(bad),
             lambda: world.run_until(lambda: True, timeout=bad),
             lambda: world.on(bad, lambda: None),
+            lambda: world.every(bad, lambda: None),
             lambda: world.topic("/clock").wait(timeout=bad),
         ]
         if bad is not None:
@@ -188,10 +189,30 @@ def test_a_closed_world_refuses() -> None:
         world.step,
         lambda: world.run_until(lambda: True),
         lambda: world.on(1.0, lambda: None),
+        lambda: world.every(1.0, lambda: None),
         lambda: world.topic("/clock"),
     ):
         with raises(SIMULATION_CLOSED, SimulationError):
             use()
+
+
+def test_an_action_is_repeated_at_a_rate() -> None:
+    times: list[float] = []
+    with cw.World("empty") as world:
+        world.run(0.5)
+        timer = world.every(10.0, lambda: times.append(world.time))
+        world.run(0.35)
+        assert times == pytest.approx([0.5, 0.6, 0.7, 0.8])
+        times.clear()
+        world.reset()
+        world.run_until(lambda: world.time > 0.15)
+        assert times == pytest.approx([0.0, 0.1]) and timer.pending
+        timer.cancel()
+        world.run(0.5)
+        assert len(times) == 2 and not timer.pending
+        world.every(10.0, lambda: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            world.run(0.1)
 
 
 def test_it_runs_until_a_condition_holds() -> None:

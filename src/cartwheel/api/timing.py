@@ -13,21 +13,21 @@ from cartwheel.errors import CartwheelError, TimedOutError, Value
 from cartwheel.simulation import RunState, Simulation
 from cartwheel.simulation.alarms import Alarm
 from cartwheel.simulation.clock import NANOSECONDS
-from cartwheel.simulation.limits import check_steps, duration_ns
+from cartwheel.simulation.limits import check_steps, duration_ns, rate_period_ns
 
 TIMEOUT = 60.0
 """Default simulation time for which a program waits, s."""
 
 
 class Timer:
-    """A pending action of `World.on`."""
+    """A pending action of `World.on` or `World.every`."""
 
     def __init__(self, alarm: Alarm) -> None:
         self._alarm = alarm
 
     @property
     def time(self) -> float:
-        """Simulation time of the action, s."""
+        """Simulation time of the action, s: of the next one, if it is repeated."""
         return self._alarm.time_ns / NANOSECONDS
 
     @property
@@ -164,8 +164,7 @@ class TimedWorld(RunningWorld):
             SimulationError: The world is closed.
         """
         due = duration_ns(time, "the time in s")
-        if not callable(action):
-            raise refused("action", "a function", action)
+        action = _function(action)
         with self.used() as simulation:
             if due < simulation.time_ns:
                 now = simulation.time_ns / NANOSECONDS
@@ -174,14 +173,43 @@ class TimedWorld(RunningWorld):
                     code=NUMBER_OUT_OF_RANGE,
                     values={"name": "time", "value": float(time), "now": now},
                 )
+            return Timer(simulation.alarms.add(Alarm(_guarded(action, simulation), due)))
 
-            def guarded() -> None:
-                try:
-                    action()
-                except BaseException as error:  # noqa: BLE001 - raised by `run`
-                    simulation.faults.defer(error)
+    def every(self, rate: float, action: Callable[[], Any]) -> Timer:
+        """Runs an action at a rate from now on, such as to move an obstacle along a path.
 
-            return Timer(simulation.alarms.add(Alarm(guarded, due)))
+        It runs before the steps, as an action of `on` does. `reset` starts it again, and `cancel`
+        of the handle ends it.
+
+        Args:
+            rate: Hz of simulation time; at most once in each step.
+            action: Is called without arguments.
+
+        Raises:
+            CartwheelError: The rate is out of range, or `action` is not a function.
+            SimulationError: The world is closed.
+        """
+        period = rate_period_ns(rate)
+        action = _function(action)
+        with self.used() as simulation:
+            alarm = Alarm(_guarded(action, simulation), simulation.time_ns, period)
+            return Timer(simulation.alarms.add(alarm))
+
+
+def _function(action: Callable[[], Any]) -> Callable[[], Any]:
+    if not callable(action):
+        raise refused("action", "a function", action)
+    return action
+
+
+def _guarded(action: Callable[[], Any], simulation: Simulation) -> Callable[[], None]:
+    def guarded() -> None:
+        try:
+            action()
+        except BaseException as error:  # noqa: BLE001 - raised by `run`
+            simulation.faults.defer(error)
+
+    return guarded
 
 
 def timed_out(message: str, values: dict[str, Value], hint: str | None = None) -> TimedOutError:
