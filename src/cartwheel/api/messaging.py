@@ -92,10 +92,10 @@ class MessagingWorld(TimedWorld):
             CartwheelError: `keep` is out of range.
         """
         self.check_open()
-        full = self._full_name(name, type)
+        full = self._full_name(text(name, "name"), type)
         if keep is not None:
             check_size(keep)
-        self._describe(text(name, "name"))
+        self._describe(name)
         with self.used():
             found = self._known_topics.get(name)
             if found is None:
