@@ -67,7 +67,7 @@ def _thrusters(
         except PluginError:
             continue
         joint = robot.joint(config.joint.strip())
-        topic, _, _ = topics(model.name, config)
+        topic, _, _ = topics(model.name, model.namespace, config)
         if joint is not None and topic in live:
             yield topic, joint, config
 

@@ -55,7 +55,7 @@ def test_gz_topics_and_frames_can_be_named(make, cart):
       <frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id>
       <odom_publish_frequency>20</odom_publish_frequency>"""
     world = spawn(make, cart(TWO, gz_diff(tags), balls=GLIDERS))
-    boxes = {topic: world.mailbox(topic, size=1000) for topic in ("/odom", "/tf")}
+    boxes = {topic: world.graph.mailbox(topic, size=1000) for topic in ("/odom", "/tf")}
     world.publish("/cmd_vel", linear_x=0.2)
     world.run(2.0)
     odometry, transforms = boxes["/odom"].drain(), boxes["/tf"].drain()

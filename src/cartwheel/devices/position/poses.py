@@ -48,7 +48,7 @@ class ModelPoses(Component):
     """Publishes the poses of a model and of its links, visuals, collisions and sensors.
 
     Each pose is relative to the parent frame. Frames are named ``<model>``, ``<model>/<link>`` and
-    ``<model>/<link>/<part>``.
+    ``<model>/<link>/<part>``. A prefix of the model's frames replaces the model's name.
 
     Args:
         scope: The model and its names.
@@ -59,6 +59,7 @@ class ModelPoses(Component):
         super().__init__(scope)
         part = self.part
         self._config = config
+        self._name = part.frame_prefix.strip("/") or part.name
         self._links = {link.name: part.link(link.name) for link in part.description.links}
         self._root = self._links[part.description.canonical_link]
         self._to_model = part.description.canonical_pose.inverse()
@@ -100,7 +101,7 @@ class ModelPoses(Component):
         return self._model().inverse() @ link.pose
 
     def _transforms(self) -> Iterator[_Transform]:
-        config, name = self._config, self.part.name
+        config, name = self._config, self._name
         if config.model:
             yield self.part.world.name, name, self._model
         for link in self.part.description.links:
@@ -125,7 +126,7 @@ class ModelPoses(Component):
             for link in (joint.parent, joint.child)
         }
         moving = links - {description.canonical_link}
-        return {f"{self.part.name}/{_slashed(link)}" for link in moving}
+        return {f"{self._name}/{_slashed(link)}" for link in moving}
 
 
 def _constant(pose: Pose) -> Pose:

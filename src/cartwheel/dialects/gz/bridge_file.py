@@ -20,6 +20,18 @@ def gz_topic(name: str) -> str:
     return "".join(f"/_{part}" if part[:1].isdigit() else f"/{part}" for part in parts)
 
 
+def gz_spelling(topic: str) -> str:
+    """Converts a topic in a description as `gz_topic` does, but a relative one stays relative."""
+    topic = topic.strip()
+    spelt = gz_topic(topic) if topic else ""
+    return spelt if topic.startswith("/") else spelt.removeprefix("/")
+
+
+def namespaced(topic: str, namespace: str) -> str:
+    """Returns the global name of a topic in a description, which may be relative."""
+    return resolve_name(gz_spelling(topic), namespace)
+
+
 def read_bridge(path: Path) -> list[Bridged]:
     """Reads the entries of a file for ``parameter_bridge``.
 

@@ -11,6 +11,7 @@ from cartwheel.devices.cameras.camera import Camera, CameraConfig
 from cartwheel.devices.cameras.depth_camera import DepthConfig
 from cartwheel.devices.cameras.imager import ImagerConfig
 from cartwheel.devices.cameras.info import CalibrationConfig
+from cartwheel.dialects.gz.bridge_file import gz_spelling
 from cartwheel.dialects.gz.sensor_tags import GzSensor
 from cartwheel.dialects.sdf.camera import read_camera, read_lens
 from cartwheel.dialects.sdf.rates import slowest
@@ -89,7 +90,7 @@ class GzCamera(GzSensor[GzCameraParameters]):
         config, sensor = self.config, read_camera(self, self.sensor)
         last = {"camera": "image", "rgbd_camera": ""}.get(sensor.type, "depth_image")
         topic = self.topic(last)
-        trigger = config.trigger_topic or f"{topic}/trigger"
+        trigger = gz_spelling(config.trigger_topic) or f"{topic}/trigger"
         device = CameraConfig(
             name=sensor.name,
             link=sensor.link,
@@ -111,7 +112,7 @@ class GzCamera(GzSensor[GzCameraParameters]):
             calibration=CalibrationConfig(centre=(lens.width / 2, lens.height / 2)),
             frame=self.frame_id,
             image_topic={"camera": topic, "rgbd_camera": f"{topic}/image"}.get(sensor.type, ""),
-            info_topic=self.config.info_topic
+            info_topic=gz_spelling(self.config.info_topic)
             or (f"{around}/camera_info" if around else "camera_info"),
             set_info=False,
             adjustable=False,

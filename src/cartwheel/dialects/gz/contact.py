@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.contact.bumper import Bumper, BumperConfig
+from cartwheel.dialects.gz.bridge_file import gz_spelling
 from cartwheel.dialects.gz.sensor_tags import GzSensor
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.tags import tag
@@ -35,7 +36,7 @@ class GzContact(GzSensor[GzContactParameters]):
         topic = self.config.topic or sensor.topic or self.topic("contact")
         device = BumperConfig(
             collisions=read_collisions(self, sensor),
-            topic="/" + topic.lstrip("/"),
+            topic=gz_spelling(topic),
             frame="world",
             rate=sensor.update_rate,
         )

@@ -66,7 +66,7 @@ class DetachableJoint(Plugin[DetachableJointParameters]):
     def configure(self) -> None:
         config, own = self.config, self.part.name
         model, link = config.child_model, config.child_link
-        state = config.output_topic or f"/model/{model}/detachable_joint/state"
+        state = config.output_topic or f"model/{model}/detachable_joint/state"
         device = attachment.DetachableJointConfig(
             parent_link=config.parent_link,
             child_model=model,

@@ -11,10 +11,11 @@ from cartwheel.codes import devices
 from cartwheel.devices.drives.drive import DriveConfig
 from cartwheel.devices.drives.limiter import Bounds, Limits
 from cartwheel.devices.drives.odometry import OdometryConfig
-from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.gz.bridge_file import gz_topic, namespaced
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
+from cartwheel.simulation import Part
 
 CONTROL_RATE = 100.0
 """Rate of the control loops, which apply limits and measure the wheels, Hz."""
@@ -175,8 +176,22 @@ def report_limits(plugin: Plugin[Any], limits: Any) -> None:
 
 
 def gz_name(plugin: Plugin[Any], topic: str, default: str) -> str:
-    """Returns the global name of a gz-sim topic; the default is under the model's name."""
-    return gz_topic(topic.strip() or f"model/{plugin.part.name}/{default}")
+    """Returns the global name of a gz-sim topic.
+
+    Args:
+        plugin: The plugin.
+        topic: Topic in the description. If it is relative, it is in the namespace in which the
+            model was spawned.
+        default: The topic under the model's name, if the description states none.
+    """
+    if topic.strip():
+        return namespaced(topic, plugin.part.namespace)
+    return gz_topic(f"model/{plugin.part.name}/{default}")
+
+
+def model_frame(part: Part, frame: str) -> str:
+    """Returns a frame under the model's name, which the prefix of the model's frames replaces."""
+    return frame if part.frame_prefix.strip("/") else f"{part.name}/{frame}"
 
 
 def gz_drive(plugin: Plugin[Any], config: GzDriveParameters, *, topic: str = "") -> DriveConfig:
@@ -190,14 +205,14 @@ def gz_drive(plugin: Plugin[Any], config: GzDriveParameters, *, topic: str = "")
     Raises:
         PluginError: The rate is negative.
     """
-    name = plugin.part.name
+    part = plugin.part
     return DriveConfig(
         command_topic=gz_name(plugin, config.topic or topic, "cmd_vel"),
         control_rate=CONTROL_RATE,
         odometry=OdometryConfig(
             topic=gz_name(plugin, config.odom_topic, "odometry"),
-            frame=config.frame or f"{name}/odom",
-            base=config.child_frame or f"{name}/{plugin.part.description.canonical_link}",
+            frame=config.frame or model_frame(part, "odom"),
+            base=config.child_frame or model_frame(part, part.description.canonical_link),
             rate=config.rate,
             tf_topic=gz_name(plugin, config.tf_topic, "tf"),
         ),

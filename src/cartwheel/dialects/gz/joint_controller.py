@@ -192,7 +192,7 @@ def _topic(plugin: Plugin[Any], joint: str, default: str) -> str:
     if not topic and config.sub_topic:
         topic = f"/model/{plugin.part.name}/{config.sub_topic.strip().lstrip('/')}"
     if not topic and actuator_of(config) is not None:
-        topic = "/actuators"
+        topic = "actuators"
     topic = topic or f"/model/{plugin.part.name}/joint/{joint}/{default}"
     # Gazebo's topic contains the axis, as in /0/cmd_pos, which is not a valid name in ROS.
     return gz_name(plugin, re.sub(r"/\d+(?=/)", "", topic), "")

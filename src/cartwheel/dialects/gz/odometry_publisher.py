@@ -15,7 +15,7 @@ from cartwheel.dialects.common_tags import (
     publish_rate_tag,
     rotation_tag,
 )
-from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.gz.drive_tags import gz_name, model_frame
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import Pose, quat_from_rpy
@@ -77,8 +77,8 @@ class OdometryPublisher(Plugin[OdometryPublisherParameters]):
     def configure(self) -> None:
         config, part = self.config, self.part
         offset = Pose(config.xyz_offset, quat_from_rpy(*config.rpy_offset))
-        frame = config.frame or f"{part.name}/odom"
-        base = config.base_frame or f"{part.name}/base_footprint"
+        frame = config.frame or model_frame(part, "odom")
+        base = config.base_frame or model_frame(part, "base_footprint")
         covariance = np.diag([config.noise**2] * 6).ravel()
         self.add(
             BaseTruth(

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, TypeVar
 
 from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.devices.noise import VectorNoiseConfig
-from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.gz.bridge_file import gz_spelling, gz_topic
 from cartwheel.dialects.plugin import SensorPlugin
 from cartwheel.dialects.sdf.noise import read_vector_noise
 from cartwheel.dialects.tags import tag
@@ -112,7 +112,7 @@ def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
     tops = {name.split("/")[0] for name in known}
     element = sensor.element
     children = tuple(
-        dataclasses.replace(child, text=_spelt(child.text)) if child.tag == "topic" else child
+        dataclasses.replace(child, text=gz_spelling(child.text)) if child.tag == "topic" else child
         for child in element.children
         if child.tag in tops
     )
@@ -122,13 +122,6 @@ def own_tag(sensor: Sensor, known: Iterable[str]) -> PluginTag:
         element=type(element)(tag="sensor", children=children, origin=element.origin),
         origin=sensor.origin,
     )
-
-
-def _spelt(topic: str) -> str:
-    """Converts a topic to the characters of ROS names; a relative topic remains relative."""
-    topic = topic.strip()
-    spelt = gz_topic(topic) if topic else ""
-    return spelt if topic.startswith("/") else spelt.removeprefix("/")
 
 
 class GzSensor(SensorPlugin[C]):

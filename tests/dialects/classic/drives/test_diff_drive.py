@@ -37,7 +37,7 @@ def place(make, robot, pose=START, **more):
 
 def collect(world, topics, seconds):
     """What each topic carried over the next seconds."""
-    boxes = {topic: world.mailbox(topic, size=100_000) for topic in topics}
+    boxes = {topic: world.graph.mailbox(topic, size=100_000) for topic in topics}
     world.run(seconds)
     for box in boxes.values():
         box.close()

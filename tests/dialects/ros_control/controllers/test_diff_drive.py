@@ -148,7 +148,7 @@ def test_separation_and_radius_come_from_the_description(drive):
 def test_the_odometry_is_told_at_its_rate_and_moves_the_frame(drive):
     made = drive(publish_rate=20.0)
     odometry = made.world.mailbox("/base/odom", size=1000)
-    frames = made.world.mailbox("/tf", size=1000)
+    frames = made.world.graph.mailbox("/tf", size=1000)
     made.world.run(2.0)
     assert len(odometry.drain()) == pytest.approx(40, abs=1)
     sent = [t for message in frames.drain() for t in message.transforms]

@@ -87,7 +87,7 @@ def test_it_moves_as_commanded(drive, motion):
 def test_its_odometry_is_published_at_each_update(drive):
     made = drive()
     box = made.world.mailbox("/base/odom", size=1000)
-    frames = made.world.mailbox("/tf", size=1000)
+    frames = made.world.graph.mailbox("/tf", size=1000)
     x, y, yaw = made.place
     made.go(2.0, 0.2, -0.1, 0.4)
     told = box.drain()

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.devices.water.buoyancy_engine import BuoyancyEngine, BuoyancyEngineConfig
-from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -81,14 +81,14 @@ class BuoyancyEngineSystem(Plugin[BuoyancyEngineParameters]):
                 values={"parameter": "min_volume", "value": config.least, "most": config.most},
             )
         namespace = config.namespace.strip()
-        topic = f"/model/{namespace}/buoyancy_engine" if namespace else "/buoyancy_engine"
+        topic = f"model/{namespace}/buoyancy_engine" if namespace else "buoyancy_engine"
         self.add(
             BuoyancyEngine(
                 self.scope,
                 BuoyancyEngineConfig(
                     link=config.link.strip(),
-                    command_topic=gz_topic(topic),
-                    state_topic=gz_topic(f"{topic}/current_volume"),
+                    command_topic=gz_name(self, topic, ""),
+                    state_topic=gz_name(self, f"{topic}/current_volume", ""),
                     least=config.least,
                     most=config.most,
                     neutral=config.neutral,

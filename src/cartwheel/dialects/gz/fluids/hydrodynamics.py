@@ -133,7 +133,7 @@ class HydrodynamicsSystem(Plugin[HydrodynamicsParameters]):
         # Two forces that resist one acceleration would have to be solved together.
         stated = _stated_mass(link)
         namespace = config.namespace.strip()
-        topic = f"/model/{namespace}/ocean_current" if namespace else "/ocean_current"
+        topic = f"model/{namespace}/ocean_current" if namespace else "ocean_current"
         self.add(
             Hydrodynamics(
                 self.scope,

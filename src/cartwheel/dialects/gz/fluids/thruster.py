@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.devices.water.thruster import Thruster, ThrusterConfig
-from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.gz.bridge_file import namespaced
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import PluginError
@@ -82,21 +82,26 @@ class ThrusterParameters:
     battery: str = tag("battery_name", default="", doc="No effect.")
 
 
-def topics(model: str, config: ThrusterParameters) -> tuple[str, str, str]:
+def topics(model: str, namespace: str, config: ThrusterParameters) -> tuple[str, str, str]:
     """Returns the topics of the commands, of the state, and of the switch of the deadband.
 
     Args:
         model: Name of the model.
+        namespace: Namespace in which the model was spawned, for topics in a `<namespace>`.
         config: The tags.
     """
     command, state = ("cmd_vel", "force") if config.by_speed else ("cmd_thrust", "ang_vel")
-    namespace = config.namespace.strip() or model
+    stated = config.namespace.strip().strip("/")
     if config.topic.strip():
-        topic = under = f"{namespace}/{config.topic.strip()}"
+        topic = under = f"{stated or model}/{config.topic.strip()}"
     else:
-        under = f"/model/{namespace}/joint/{config.joint.strip()}"
+        under = f"model/{stated or model}/joint/{config.joint.strip()}"
         topic = f"{under}/{command}"
-    return gz_topic(topic), gz_topic(f"{under}/{state}"), gz_topic(f"{under}/enable_deadband")
+    space = namespace if stated else ""
+    command, state, deadband = (
+        namespaced(each, space) for each in (topic, f"{under}/{state}", f"{under}/enable_deadband")
+    )
+    return command, state, deadband
 
 
 class ThrusterSystem(Plugin[ThrusterParameters]):
@@ -123,7 +128,7 @@ class ThrusterSystem(Plugin[ThrusterParameters]):
                     "most": config.most,
                 },
             )
-        command, state, deadband = topics(self.part.name, config)
+        command, state, deadband = topics(self.part.name, self.part.namespace, config)
         stated = config.coefficient
         self.add(
             Thruster(

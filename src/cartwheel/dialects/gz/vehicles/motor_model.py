@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.description.model import Element
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
-from cartwheel.dialects.gz.bridge_file import gz_topic
+from cartwheel.dialects.gz.bridge_file import namespaced
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller, max_speed_tag
 from cartwheel.dialects.tags import tag
+from cartwheel.simulation import Part
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -29,14 +31,23 @@ class GzMotorParameters(PropellerTags):
     fastest: float = max_speed_tag()
 
 
-def motor_topic(namespace: str, topic: str) -> str:
-    """Returns the topic of a motor's commands.
+def motor_topic(part: Part, plugin: Element, topic: str) -> str:
+    """Returns a topic of a motor, or of what controls motors.
+
+    It is in the plugin's ``<robotNamespace>``, which is in the namespace in which the model was
+    spawned. Without a ``<robotNamespace>``, it is in the latter or, without a namespace, in one
+    with the model's name.
 
     Args:
-        namespace: ``<robotNamespace>``, or the model's name.
-        topic: ``<commandSubTopic>``; may be empty.
+        part: The model.
+        plugin: The element of the plugin.
+        topic: Last part of the topic; may be empty.
     """
-    return gz_topic(f"{namespace}/{topic.strip()}".rstrip("/"))
+    element = plugin.find("robotNamespace")
+    stated = "" if element is None else element.text.strip()
+    spawned = part.namespace.strip("/")
+    space = stated or f"/{spawned or part.name}"
+    return namespaced(f"{space}/{topic.strip()}".rstrip("/"), spawned)
 
 
 class GzMotorModel(Plugin[GzMotorParameters]):
@@ -49,5 +60,5 @@ class GzMotorModel(Plugin[GzMotorParameters]):
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-multicopter-motor-model-system",)
 
     def configure(self) -> None:
-        topic = motor_topic(self.namespace or self.part.name, self.config.topic)
+        topic = motor_topic(self.part, self.tag.element, self.config.topic)
         add_propeller(self, topic=topic, message=GZ_ACTUATORS)

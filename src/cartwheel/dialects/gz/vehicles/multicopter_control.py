@@ -16,7 +16,6 @@ from cartwheel.devices.air.geometric_control import (
     controls_all,
 )
 from cartwheel.dialects.catalogue import short_name
-from cartwheel.dialects.gz.drive_tags import gz_name
 from cartwheel.dialects.gz.vehicles.motor_model import GzMotorModel, motor_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import SMALLEST, invalid, number_at, required, tag
@@ -131,7 +130,7 @@ class MulticopterControl(Plugin[MulticopterControlParameters]):
                 f"the model has no {GzMotorModel.filenames[0]}, so it does not fly",
                 at=self.tag.origin,
             )
-        namespace = self.namespace or self.part.name
+        element = self.tag.element
         self.add(
             GeometricControl(
                 self.scope,
@@ -146,8 +145,8 @@ class MulticopterControl(Plugin[MulticopterControlParameters]):
                     max_rate=_size(config.max_rate),
                     velocity_noise=(config.velocity_mean, config.velocity_deviation),
                     rate_noise=(config.rate_mean, config.rate_deviation),
-                    command_topic=gz_name(self, f"{namespace}/{config.command_topic.strip()}", ""),
-                    enable_topic=gz_name(self, f"{namespace}/{config.enable_topic.strip()}", ""),
+                    command_topic=motor_topic(self.part, element, config.command_topic),
+                    enable_topic=motor_topic(self.part, element, config.enable_topic),
                     motor_topics=motors,
                 ),
             )
@@ -158,10 +157,8 @@ class MulticopterControl(Plugin[MulticopterControlParameters]):
         names = set(map(short_name, GzMotorModel.filenames))
         for plugin in self.part.description.plugins:
             if short_name(plugin.filename) in names:
-                space, topic = (
-                    _text(plugin.element, name) for name in ("robotNamespace", "commandSubTopic")
-                )
-                yield motor_topic(space or self.part.namespace.strip("/") or self.part.name, topic)
+                topic = _text(plugin.element, "commandSubTopic")
+                yield motor_topic(self.part, plugin.element, topic)
 
     def _rotors(self, link: str) -> Iterator[RotorConfig]:
         """Yields the propellers.

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.drives.track import Track, TrackConfig
-from cartwheel.dialects.gz.bridge_file import gz_topic
-from cartwheel.dialects.gz.drive_tags import common_limits, limit_tag, report_limits
+from cartwheel.dialects.gz.bridge_file import namespaced
+from cartwheel.dialects.gz.drive_tags import common_limits, gz_name, limit_tag, report_limits
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.tags import tag
 from cartwheel.geometry import quat_from_rpy
+from cartwheel.simulation import Part
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,19 +65,19 @@ class TrackControllerParameters:
     debug: bool = tag("debug", default=False, doc="No effect.")
 
 
-def track_topics(model: str, link: str, velocity: str = "", centre: str = "") -> tuple[str, str]:
+def track_topics(part: Part, link: str, velocity: str = "", centre: str = "") -> tuple[str, str]:
     """Returns the topics of a track's velocity and of the centre of the turn.
 
     Args:
-        model: Name of the model.
+        part: The model.
         link: Name of the link.
         velocity: Topic in a tag; empty if there is none.
         centre: Topic in a tag; empty if there is none.
     """
-    under = f"/model/{model}/link/{link}"
+    under = f"/model/{part.name}/link/{link}"
     return (
-        gz_topic(velocity.strip() or f"{under}/track_cmd_vel"),
-        gz_topic(centre.strip() or f"{under}/track_cmd_center_of_rotation"),
+        namespaced(velocity.strip() or f"{under}/track_cmd_vel", part.namespace),
+        namespaced(centre.strip() or f"{under}/track_cmd_center_of_rotation", part.namespace),
     )
 
 
@@ -94,9 +95,7 @@ class TrackController(Plugin[TrackControllerParameters]):
         config = self.config
         report_limits(self, config)
         link = config.link.strip()
-        velocity, centre = track_topics(
-            self.part.name, link, config.velocity_topic, config.centre_topic
-        )
+        velocity, centre = track_topics(self.part, link, config.velocity_topic, config.centre_topic)
         odometry = config.odometry_topic or f"/model/{self.part.name}/link/{link}/odometry"
         self.add(
             Track(
@@ -106,7 +105,7 @@ class TrackController(Plugin[TrackControllerParameters]):
                     orientation=quat_from_rpy(*config.orientation),
                     velocity_topic=velocity,
                     centre_topic=centre,
-                    odometry_topic=gz_topic(odometry),
+                    odometry_topic=gz_name(self, odometry, ""),
                     odometry_rate=config.rate,
                     limits=common_limits(config),
                     timeout=config.max_command_age,

@@ -20,6 +20,7 @@ from cartwheel.dialects.gz.drive_tags import (
     gz_drive,
     gz_name,
     limit_tag,
+    model_frame,
     report_limits,
 )
 from cartwheel.dialects.gz.vehicles.track_controller import TrackController, track_topics
@@ -110,7 +111,7 @@ class TrackedVehicleSystem(Plugin[TrackedVehicleParameters]):
         left, right = (tuple(self._tracks(side)) for side in ("left_track", "right_track"))
         body = config.body.strip() or self.part.description.canonical_link
         drive = gz_drive(self, config)
-        base = config.child_frame or f"{self.part.name}/{body}"
+        base = config.child_frame or model_frame(self.part, body)
         self.add(
             TrackedVehicle(
                 self.scope,
@@ -143,7 +144,7 @@ class TrackedVehicleSystem(Plugin[TrackedVehicleParameters]):
             link = required(element, "link").text.strip()
             self._check_link(element, link)
             velocity, centre = track_topics(
-                self.part.name,
+                self.part,
                 link,
                 *(_text(element, each) for each in ("velocity_topic", "center_of_rotation_topic")),
             )

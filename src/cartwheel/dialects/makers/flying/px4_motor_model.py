@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.air.propeller import ACTUATORS
-from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller
 from cartwheel.dialects.tags import SMALLEST, tag
@@ -56,7 +56,7 @@ class Px4MotorModel(Plugin[Px4MotorParameters]):
         config = self.config
         add_propeller(
             self,
-            topic=gz_name(self, f"{self.part.name}/{config.topic.strip('/')}", ""),
+            topic=gz_topic(f"{self.part.name}/{config.topic.strip('/')}"),
             message=ACTUATORS,
             # The direction of rotation changes the sign of the rolling moment, not of the thrust.
             thrust_sign="joint" if config.reversible else "up",

@@ -10,7 +10,7 @@ from cartwheel.devices.noise import DriftingErrorConfig, Noise, VectorNoiseConfi
 from cartwheel.devices.position.barometer import PressureSensor, PressureSensorConfig
 from cartwheel.devices.position.earth_field import earth_field
 from cartwheel.devices.position.magnetometer import Magnetometer, MagnetometerConfig
-from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.makers.flying.px4_home import home_of
 from cartwheel.dialects.makers.flying.rotors_imu import RotorsImu, RotorsImuParameters
 from cartwheel.dialects.plugin import Plugin
@@ -153,4 +153,4 @@ class Px4Barometer(Plugin[Px4BarometerParameters]):
 
 def px4_topic(plugin: Plugin, topic: str) -> str:  # type: ignore[type-arg]
     """Returns the global name of a topic, which begins with the model's name."""
-    return gz_name(plugin, f"{plugin.part.name}/{topic.strip().strip('/')}", "")
+    return gz_topic(f"{plugin.part.name}/{topic.strip().strip('/')}")

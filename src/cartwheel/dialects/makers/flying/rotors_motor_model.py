@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from cartwheel.devices.air.propeller import ACTUATORS
 from cartwheel.devices.air.propeller_states import PropellerJointState, PropellerJointStateConfig
-from cartwheel.dialects.gz.drive_tags import gz_name
+from cartwheel.dialects.gz.bridge_file import gz_topic
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.propeller_tags import PropellerTags, add_propeller, max_speed_tag
 from cartwheel.dialects.tags import tag
@@ -61,4 +61,4 @@ class RotorsMotorModel(Plugin[RotorsMotorParameters]):
 
     def _state_topic(self, topic: str) -> str | None:
         # The topic ends with the motor's number, which is not a valid name in ROS 2.
-        return gz_name(self, f"{self.namespace}/{topic}", "") if topic else None
+        return gz_topic(f"{self.namespace}/{topic}") if topic else None
