@@ -28,7 +28,9 @@ def test_a_namespace_and_a_prefix_keep_two_apart(make, cart, wheels, plugin, for
         world.session.spawn(
             model, name=name, pose=Pose((0, y, 0.002)), namespace=name, frame_prefix=name
         )
-    boxes = {topic: world.graph.mailbox(topic, size=1000) for topic in ("/one/odom", "/two/odom", "/tf")}
+    boxes = {
+        topic: world.graph.mailbox(topic, size=1000) for topic in ("/one/odom", "/two/odom", "/tf")
+    }
     world.run(0.5)
     world.publish("/one/cmd_vel", linear_x=0.3)
     world.run(2.0)

@@ -92,7 +92,8 @@ def test_odometry_and_measured_angles_are_published(make, tmp_path):
     covariance = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     made = FourWheels(make, tmp_path, publish_rate=20, pose_covariance_diagonal=covariance)
     box, states, frames = (
-        made.world.graph.mailbox(topic, size=1000) for topic in ("/base/odom", "/base/odom_steer", "/tf")
+        made.world.graph.mailbox(topic, size=1000)
+        for topic in ("/base/odom", "/base/odom_steer", "/tf")
     )
     begin = made.place
     made.twist(2.0, 0.3, 0.5)
