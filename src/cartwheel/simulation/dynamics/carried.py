@@ -85,7 +85,8 @@ class Carried:
         step = model.opt.timestep
         # A body moves along a straight line in a step, with its velocity at the end of the step.
         # A part of the term brings its path onto the arc; see docs/physics.md.
-        along *= 1 - 0.5 * step / (1 / data.efc_KBIP[rows, 1:2] + step)
+        damped = data.efc_KBIP[rows, 1:2] * step
+        along *= 1 - 0.5 * damped / (1 + damped)
         aref = data.efc_aref
         aref[rows] -= along[:, 0]
         aref[rows + 1] -= along[:, 1]
