@@ -9,7 +9,7 @@ import re
 import pytest
 
 from cartwheel.checks.sliding import Contact, base_motion
-from cartwheel.codes.robot import SKID_STEERING
+from cartwheel.codes.robot import SKID_STEERING, WHEEL_BASE_MISMATCH
 
 BASE, TRACK, KINGPINS, RADIUS = 0.5, 0.3, 0.26, 0.1
 """m: between the axles, between the wheels, between the steered joints, of the wheels."""
@@ -363,6 +363,7 @@ ROS2_MECANUM = ROS2.format(type="mecanum_drive_controller/MecanumDriveController
 ROS2_TRICYCLE = ROS2.format(type="tricycle_controller/TricycleController") + (
     f"""    traction_joint_name: front_left_joint
     steering_joint_name: front_left_steer
+    wheelbase: {BASE}
     wheel_radius: {RADIUS}
 """
 )
@@ -378,7 +379,7 @@ FILES = {
         ROS2_MECANUM,
         ("sum_of_robot_center_projection_on_X_Y_axis", "wheels_radius"),
     ),
-    "ROS 2 tricycle": (ROS2_TRICYCLE, ("wheel_radius",)),
+    "ROS 2 tricycle": (ROS2_TRICYCLE, ("wheelbase", "wheel_radius")),
 }
 
 
@@ -398,6 +399,31 @@ def test_controllers_sizes_are_those_of_the_car(told, take, tmp_path, case):
         assert finding.origin.line == text.splitlines().index(line) + 1
         path.write_text(take(wrong, finding))
         assert told(car(), controller_files=[path]) == []
+
+
+def test_the_sizes_of_wheels_that_other_hardware_moves_are_not_compared(told, tmp_path):
+    """SteerBotHardwareGazebo moves other joints than those that the controller commands."""
+    path = tmp_path / "car.yaml"
+    path.write_text(ROS1_STEERED.replace(f"_h: {BASE}", f"_h: {1.5 * BASE}"))
+    tags = {"robotSimType": "steer_bot_hardware_gazebo/SteerBotHardwareGazebo"}
+    other = plugin("libgazebo_ros_control.so", **tags)
+    plain = plugin("libgazebo_ros_control.so")
+    (finding,) = told(car(plain), controller_files=[path])
+    assert finding.code is WHEEL_BASE_MISMATCH
+    assert told(car(other), controller_files=[path]) == []
+
+
+def test_the_passive_wheels_of_a_tricycle_are_one_axle(told, tmp_path):
+    """Without a second axle whose wheels are not driven, its wheelbase is unknown."""
+    path = tmp_path / "car.yaml"
+    path.write_text(ROS2_TRICYCLE.replace(f"wheelbase: {BASE}", f"wheelbase: {2 * BASE}"))
+    (finding,) = told(car(), controller_files=[path])
+    assert finding.values["measured"] == pytest.approx(BASE)
+    middle = link("middle_wheel", WHEEL) + joint(
+        "middle_joint", ("base_link", "middle_wheel"), "0.1 0 0", "0 1 0"
+    )
+    several = car().replace("<gazebo>", f"{middle}<gazebo>", 1)
+    assert told(several, controller_files=[path]) == []
 
 
 def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven(told):

@@ -126,6 +126,18 @@ def test_a_file_that_needs_names_of_another_file_is_a_part(folder, tmp_path, con
     assert folder() == ["part.xacro"]
 
 
+def test_macros_are_none_although_their_includes_need_an_argument(folder, tmp_path):
+    include = '<xacro:include filename="$(arg place)/wheel.xacro"/>'
+    cart = XACRO.format(' name="cart"', include + '<xacro:wheel name="left"/>')
+    found = folder(
+        cart_dot_xacro=cart,
+        axle_dot_xacro=XACRO.format("", include + WHEEL.replace('"wheel"', '"axle"')),
+        wheel_dot_xacro=XACRO.format("", WHEEL),
+    )
+    assert found == ["cart.xacro"]
+    assert kinds(tmp_path) == {"axle.xacro": "macros", "wheel.xacro": "macros"}
+
+
 def test_a_file_that_needs_arguments_of_launch_files_is_a_part(folder, tmp_path):
     drone = XACRO.format(' name="drone"', '<link name="$(arg team)/base"/>')
     mav = XACRO.format(' name="mav"', '<link name="$(arg team)/mav"/>')

@@ -1,9 +1,13 @@
 """Aircraft without a stabilising controller take off, or the reason is told."""
 
+import math
+
 import pytest
 
 from cartwheel.codes.devices import HARDWARE_NOT_SIMULATED
 from cartwheel.corpus import try_robot
+from cartwheel.corpus.hovering import drag_errors
+from cartwheel.description import load_text
 
 BODY = (
     '<link name="body"><inertial><mass value="{mass}"/>'
@@ -115,3 +119,65 @@ def test_an_index_that_no_message_can_have_takes_no_memory(tmp_path, number):
     )
     verdict = tried(tmp_path, BODY.format(mass=0.5), rotor)
     assert not any(flight.flies for flight in verdict.flights)
+
+
+def multirotor(control, drag):
+    """Four rotors of gz-sim at the corners of a square of 0.2 m, about a body of 0.98 kg."""
+    rotors = "".join(
+        ROTOR.format(i=i, x=x, y=y, way=way)
+        for i, (x, y, way) in enumerate(
+            ((0.1, -0.1, "ccw"), (-0.1, 0.1, "ccw"), (0.1, 0.1, "cw"), (-0.1, -0.1, "cw"))
+        )
+    )
+    rotors = rotors.replace(
+        "librotors_gazebo_motor_model.so", "gz-sim-multicopter-motor-model-system"
+    )
+    rotors = rotors.replace(">8e-05<", f">{drag}<")
+    return f'<robot name="aircraft">{BODY.format(mass=0.98)}{rotors}{control}</robot>'
+
+
+CONTROL = (
+    '<gazebo><plugin name="c" filename="gz-sim-multicopter-control-system">'
+    "<comLinkName>body</comLinkName><velocityGain>2 2 2</velocityGain>"
+    "<attitudeGain>2 3 0.15</attitudeGain><angularRateGain>0.4 0.5 0.1</angularRateGain>"
+    "</plugin></gazebo>"
+)
+
+
+@pytest.mark.parametrize("drag", [0.0, 1e-4, 1e-3])
+def test_the_drag_of_propellers_slows_a_multicopter_by_its_gains(drag):
+    along, turning = drag_errors(load_text(multirotor(CONTROL, drag), file="aircraft.urdf"))
+    # 9.8 N are four times 8.5e-6 N s²/rad² times the square of the speed.
+    braking = 4 * drag * math.sqrt(9.8 / 4 / 8.5e-6)
+    assert along == pytest.approx(braking / (2 + braking), rel=1e-3)
+    assert turning == pytest.approx(braking * 0.02 / (0.1 + braking * 0.02), rel=1e-3)
+
+
+def test_an_aircraft_without_a_velocity_controller_has_no_such_error():
+    assert drag_errors(load_text(multirotor("", 1e-3), file="aircraft.urdf")) == (0.0, 0.0)
+
+
+def test_a_drone_takes_off_before_it_is_told_to_move(tmp_path):
+    gains = {
+        "rollpitch": (10, 5),
+        "yaw": (2, 1),
+        "velocityXY": (5, 2.3),
+        "velocityZ": (5, 1),
+        "positionXY": (1.1, 0),
+        "positionZ": (1, 0.2),
+    }
+    tags = "".join(
+        f"<{name}ProportionalGain>{p}</{name}ProportionalGain>"
+        f"<{name}DifferentialGain>{d}</{name}DifferentialGain>"
+        for name, (p, d) in gains.items()
+    )
+    drone = (
+        '<gazebo><plugin name="drone" filename="libplugin_drone.so"><bodyName>body</bodyName>'
+        f"<maxForce>30</maxForce>{tags}</plugin></gazebo>"
+    )
+    body = BODY.format(mass=1.5).replace("2e-3", "0.02").replace("3e-3", "0.04")
+    verdict = tried(tmp_path, body, drone)
+    (drive,) = verdict.drives
+    assert drive.follows, drive
+    assert drive.turns, drive
+    assert verdict.moves

@@ -1,10 +1,16 @@
 """What a trial tells of robots whose faults are known."""
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
+import yaml
+from tests.dialects.ros_control.arms import ROS1, transmission
+from tests.dialects.ros_control.cars import BASE, TRACK, car, four_wheels
 
 from cartwheel.api import World
+from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import (
     CONTROLLER_GAINS_MISSING,
     CONTROLLERS_NOT_FOUND,
@@ -17,6 +23,8 @@ from cartwheel.codes.robot import (
     INERTIA_GEOMETRY_MISMATCH,
     JOINTS_UNDRIVEN,
     PLANAR_FRICTION,
+    SHAPE_OUT_OF_SCALE,
+    SKID_STEERING,
     UNBALANCED,
     WHEEL_AXIS_MISALIGNED,
     WHEEL_DIAMETER_MISMATCH,
@@ -26,10 +34,12 @@ from cartwheel.codes.robot import (
     WHEELS_SWAPPED,
 )
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE, PLUGIN_LEFT_OUT
+from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import trial, try_robot
-from cartwheel.corpus.diagnosis import _of_drive
+from cartwheel.corpus.diagnosis import _of_drive, faults
 from cartwheel.corpus.trial import _listened
-from cartwheel.description import load_text
+from cartwheel.corpus.verdict import Drive, Reach, Verdict
+from cartwheel.description import load_robot, load_text
 from cartwheel.description.launches import launches_near
 
 INERTIA = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
@@ -69,6 +79,27 @@ ARM = (
     '</hardwareInterface></joint><actuator name="m"/></transmission>'
     '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
 )
+
+
+STEER_BOT = ROS1.replace(
+    "</plugin>",
+    "<robotSimType>steer_bot_hardware_gazebo/SteerBotHardwareGazebo</robotSimType></plugin>",
+)
+STEER_HARDWARE = {
+    "rear_wheel": "rear_wheel_joint",
+    "front_steer": "front_steer_joint",
+    "virtual_rear_wheels": ["rear_right_joint", "rear_left_joint"],
+    "virtual_front_wheels": ["front_right_joint", "front_left_joint"],
+    "virtual_front_steers": ["front_right_steer", "front_left_steer"],
+    "wheel_separation_w": TRACK,
+    "wheel_separation_h": BASE,
+}
+STEERED = {
+    "type": "ackermann_steering_controller/AckermannSteeringController",
+    "rear_wheel": "rear_wheel_joint",
+    "front_steer": "front_steer_joint",
+    "wheel_separation_h": BASE,
+}
 
 
 @pytest.fixture
@@ -156,6 +187,79 @@ def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
     assert _of_drive([publisher, axis], -1.0, turning=False) is axis
     assert _of_drive([publisher], -1.0, turning=False) is None
     assert _of_drive([drive, axis], -1.0, turning=False) is drive
+
+
+def _explained(*findings, **results):
+    robot = load_text('<robot name="r"><link name="a"/></robot>', file="r.urdf")
+    verdict = Verdict(file=Path("r.urdf"), loaded=True, **results)
+    return {fault.test: fault.reason for fault in faults(verdict, robot, lambda: findings)}
+
+
+def test_a_wrong_radius_also_explains_how_fast_sliding_wheels_turn_the_base():
+    radius = WHEEL_DIAMETER_MISMATCH.diagnostic(
+        "too small", severity="warning", values={"stated": 0.3, "measured": 0.18}
+    )
+    drive = Drive(
+        topic="/cmd_vel", commanded=0.2, measured=0.12, commanded_turn=0.4, measured_turn=0.47
+    )
+    assert _explained(radius, drives=(drive,)) == {"drive": radius, "turn": radius}
+    right = replace(drive, measured=0.2)
+    assert _explained(radius, drives=(right,)) == {"turn": None}
+
+
+def test_lengths_in_millimetres_explain_why_the_simulation_diverges():
+    diverged = SIMULATION_DIVERGED.diagnostic("diverged")
+    giant = SHAPE_OUT_OF_SCALE.diagnostic("184 m long", severity="warning")
+    assert _explained(giant, failure=diverged) == {"simulate": giant}
+    assert _explained(failure=diverged) == {"simulate": diverged}
+
+
+def test_a_controller_that_no_launch_file_starts_is_not_tested():
+    reach = Reach(controller="spare", joint="j", target=0.2, reached=0.0, angular=True)
+    running = {"controllers": ("drive", "spare"), "reaches": (reach,)}
+    assert _explained(**running, spawned=("drive",)) == {}
+    assert _explained(**running, spawned=("drive", "spare")) == {"reach": None}
+    assert _explained(**running) == {"reach": None}
+
+
+def test_a_steering_angle_is_commanded_where_the_controller_follows_one(tmp_path):
+    """Its four wheels turn at one speed, so it turns less than it is steered."""
+    bot, file = tmp_path / "bot.urdf", tmp_path / "bot.yaml"
+    bot.write_text(car(four_wheels(steered=True), STEER_BOT, ()))
+    settings = {"base": STEERED, "steer_bot_hardware_gazebo": STEER_HARDWARE}
+    file.write_text(yaml.safe_dump(settings))
+    verdict = try_robot(bot, standing=1.0, controllers=[file])
+    (drive,) = verdict.drives
+    angle = 0.2 / (4 * Robot(load_robot(bot), None).size)
+    assert drive.commanded_turn == pytest.approx(0.2 * math.tan(angle) / BASE, rel=1e-6)
+    assert 0.5 < drive.measured_turn / drive.commanded_turn < 1.0
+    assert {fault.code for fault in verdict.faults} <= {SKID_STEERING}
+
+
+def test_a_joint_that_a_plugin_steers_is_not_commanded_against_it(tmp_path):
+    """The plugin publishes the steering angles on the topics of the controllers."""
+    forks = {"l": "front_left_steer", "r": "front_right_steer"}
+    joints = "".join(
+        f"<{side}{end}Joint>{end.lower()}_{side}_joint</{side}{end}Joint>"
+        for side in ("left", "right")
+        for end in ("Front", "Rear")
+    )
+    plugin = f'<plugin name="drive" filename="libgazebo_ros_ackerman.so">{joints}</plugin>'
+    tags = "".join(transmission(name, "Position") for name in forks.values())
+    bot, file = tmp_path / "bot.urdf", tmp_path / "bot.yaml"
+    bot.write_text(car(four_wheels(steered=True), plugin + ROS1, (), tags))
+    kind = "position_controllers/JointPositionController"
+    settings = {
+        f"limo_f{side}_steering_hinge_controller": {"type": kind, "joint": joint}
+        for side, joint in forks.items()
+    }
+    file.write_text(yaml.safe_dump(settings))
+    verdict = try_robot(bot, standing=1.0, controllers=[file])
+    assert len(verdict.controllers) == 2
+    assert verdict.reaches == ()
+    bot.write_text(car(four_wheels(steered=True), ROS1, (), tags))
+    verdict = try_robot(bot, standing=1.0, controllers=[file])
+    assert {each.joint for each in verdict.reaches} == set(forks.values())
 
 
 def test_the_friction_of_a_body_explains_why_it_moves_slowly_over_the_ground(tried):
@@ -495,12 +599,16 @@ def test_a_controller_of_wheels_without_friction_is_no_fault_if_the_robot_is_pus
     assert verdict.moves, verdict.faults
 
 
-def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_fault(tmp_path):
+@pytest.mark.parametrize("kind", ["my_controllers/Own", "my_controllers/OwnBroadcaster"])
+def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_fault(
+    tmp_path, kind
+):
+    """Unless its type says that it only publishes."""
     files = {
         "package.xml": "<package><name>arm</name></package>",
         "arm.urdf": f'<robot name="arm">{ARM.format(kind="Position")}</robot>',
         "a.yaml": "a:\n  type: position_controllers/JointPositionController\n  joint: shoulder\n"
-        "b:\n  type: my_controllers/Own\n  joint: shoulder\n",
+        f"b:\n  type: {kind}\n  joint: shoulder\n",
         "a.launch": '<launch><param name="robot_description" textfile="$(find arm)/arm.urdf"/>'
         '<rosparam file="$(find arm)/a.yaml"/>'
         '<node name="s" pkg="controller_manager" type="spawner" args="a b"/></launch>',
@@ -512,6 +620,9 @@ def test_a_controller_that_a_launch_file_starts_and_that_is_not_supported_is_a_f
         tmp_path / "arm" / "arm.urdf", standing=1.0, launches=launches_near(tmp_path)
     )
     assert verdict.controllers == ("a",)
+    if kind.endswith("Broadcaster"):
+        assert verdict.good, verdict.faults
+        return
     (fault,) = verdict.faults
     assert (fault.test, fault.subject, fault.code) == ("controller", "b", CONTROLLER_NOT_STARTED)
     assert fault.source == "unknown"

@@ -14,10 +14,11 @@ from cartwheel.checks.controller_files import Controller, Value
 from cartwheel.checks.robot import Robot, Sides
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST
-from cartwheel.checks.wheels import axle_of, wheel_middle, wheel_place
+from cartwheel.checks.wheels import axle_of, passive_axle, wheel_middle, wheel_place
 from cartwheel.description.model import PluginTag
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.parameters import SIZES
+from cartwheel.dialects.ros_control.steer_bot import SIM_TYPE
 from cartwheel.dialects.tag_roles import TagRole
 from cartwheel.errors import Code, Diagnostic, Origin, Place
 
@@ -86,8 +87,15 @@ def stated_sizes(subject: Subject) -> Iterator[Stated]:
                 if size.role in _MEASURES:
                     yield from _of_plugin(robot, tag, size)
     for robot, file in subject.control:
+        if any(_moves_other_joints(tag) for tag in robot.description.plugins):
+            continue
         for controller in file.controllers:
             yield from _of_controller(robot, controller)
+
+
+def _moves_other_joints(tag: PluginTag) -> bool:
+    """Whether the hardware moves other joints than those that controllers command."""
+    return any(each.text.strip() == SIM_TYPE for each in tag.element.find_all("robotSimType"))
 
 
 def controlled_sides(subject: Subject, robot: Robot) -> tuple[Sides, ...]:
@@ -200,6 +208,8 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
             # The distance between both wheels of one axle.
             groups = [groups[0][:1], groups[0][1:2]] if len(groups[0]) == 2 else [[], []]
         sides = [tuple(_known(robot, group)) for group in groups]
+        if row.role == "wheel_base" and len(sides) == 1:
+            sides.append(passive_axle(robot, sides[0]))
         written = value or times
         if written is None or (value is not None and number is None) or not all(sides):
             continue

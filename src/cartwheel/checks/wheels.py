@@ -18,6 +18,8 @@ _ALONG = 0.9
 """Minimum cosine between two directions that count as parallel."""
 _TURNED = 0.1
 """Maximum ratio of y to x between two wheels that are beside each other along x."""
+_BESIDE = 0.1
+"""Maximum distance of a wheel from the axle through another one, relative to the track."""
 CAMBER = 0.5
 """Minimum cosine between a wheel axis and the axle."""
 
@@ -95,6 +97,29 @@ def _rolling(robot: Robot) -> list[Joint]:
     """All joints that turn without limits."""
     joints = robot.joints.values()
     return [each for each in joints if each.type == "continuous" and each.child in robot.placed]
+
+
+def passive_axle(robot: Robot, steering: Sequence[str]) -> tuple[str, ...]:
+    """Joints of the wheels beside each other that a tricycle does not steer.
+
+    They are mounted on the body. Empty if there are none, or if several axles are possible.
+    """
+    found = [
+        joint
+        for joint in _rolling(robot)
+        if joint.name not in steering
+        and robot.rigid_root(joint.parent) == robot.rigid_root(robot.description.canonical_link)
+        and is_across(robot, joint)
+        and wheel_radius(robot, joint) is not None
+    ]
+    places = np.array([wheel_place(robot, joint).position for joint in found])
+    names = tuple(joint.name for joint in found)
+    if len(names) < 2:
+        return ()
+    axle = wheel_axis(robot, found[0])
+    gaps = places - places[0]
+    off = np.linalg.norm(gaps - np.outer(gaps @ axle, axle), axis=1)
+    return names if float(off.max()) <= _BESIDE * float(np.ptp(gaps @ axle)) else ()
 
 
 def wheel_axis(robot: Robot, joint: Joint) -> Floats:

@@ -51,6 +51,8 @@ _CONTROL = frozenset(
     }
 )
 """Reasons why no controller runs."""
+_BROADCASTER = "Broadcaster"
+"""End of the types of ROS 2's controllers that command nothing."""
 _ALTERNATIVE = frozenset({running.CONTROLLER_CONFLICT.number})
 """Causes for which a controller does not start in ROS either, although another one works."""
 _STANDING = frozenset(
@@ -67,6 +69,8 @@ _STANDING = frozenset(
         robot.JOINTS_UNDRIVEN,
     }
 )
+_DIVERGING = frozenset({robot.SHAPE_OUT_OF_SCALE, robot.POSITION_IN_MILLIMETRES})
+"""Lengths in other units, with which shapes are inside each other or kilometres long."""
 _JOINTS = frozenset(
     {
         robot.LIMIT_ZERO,
@@ -92,7 +96,10 @@ def faults(
         findings: Returns the findings of `cartwheel check`, which takes time.
     """
     if verdict.failure is not None:
-        yield Fault(test="simulate" if verdict.loaded else "load", reason=verdict.failure)
+        reason = verdict.failure
+        if verdict.loaded and reason.code is world.SIMULATION_DIVERGED:
+            reason = _coded(findings(), _DIVERGING) or reason
+        yield Fault(test="simulate" if verdict.loaded else "load", reason=reason)
     if not verdict.loaded:
         return
     # Two plugins of a kind are one fault.
@@ -130,7 +137,7 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         and each.values.get("cause") not in _ALTERNATIVE
     }
     for name in verdict.spawned:
-        if name in refused and name not in verdict.controllers:
+        if name in refused and name not in verdict.controllers and not _broadcasts(refused[name]):
             yield Fault(test="controller", subject=name, reason=refused[name])
     if verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
         return
@@ -156,6 +163,12 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
             )
         )
         yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _broadcasts(refused: Diagnostic) -> bool:
+    """Whether a controller of unknown type only publishes, because its type says so."""
+    unknown = refused.values.get("cause") == devices.CONTROLLER_TYPE_UNKNOWN.number
+    return unknown and str(refused.values.get("name")).endswith(_BROADCASTER)
 
 
 def _concerns(each: Diagnostic, tag: PluginTag) -> bool:
@@ -186,8 +199,9 @@ def _measured(
     for drive in verdict.drives:
         if pushed and not (drive.follows and drive.turns) and _is_free(said, drive.topic):
             continue
+        forward: Diagnostic | None = None
         if not drive.follows:
-            reason = _of_drive((*said, *findings()), 1.0 + drive.error, turning=False)
+            forward = reason = _of_drive((*said, *findings()), 1.0 + drive.error, turning=False)
             yield Fault(test="drive", subject=drive.topic, reason=reason)
         if not drive.turns:
             reason = _of_drive(
@@ -196,9 +210,12 @@ def _measured(
                 turning=True,
                 arc=drive.turning == "arc",
             )
+            if reason is None and forward is not None:
+                # The radius of wheels that slide counts for the turn rate by an unknown factor.
+                reason = forward if forward.code is robot.WHEEL_DIAMETER_MISMATCH else None
             yield Fault(test="turn", subject=drive.topic, reason=reason)
     for reach in verdict.reaches:
-        if not reach.arrived:
+        if not reach.arrived and _is_started(reach.controller, verdict):
             # A robot that fell may lie on its joints.
             names = reach.joint, children.get(reach.joint, "")
             reason = _of_joint((*said, *findings()), *names) or fallen
@@ -211,6 +228,15 @@ def _measured(
     for flight in verdict.flights:
         if not flight.flies:
             yield Fault(test="fly", subject=flight.topic)
+
+
+def _is_started(controller: str, verdict: Verdict) -> bool:
+    """Whether ROS runs a controller as well: a file may list more than a launch file starts."""
+    return (
+        not verdict.spawned
+        or controller not in verdict.controllers
+        or (controller in verdict.spawned)
+    )
 
 
 def _of_drive(
@@ -242,6 +268,9 @@ def _of_drive(
     codes = _TURNING if turning else _DRIVING
     if 0.0 < ratio < 1.0:
         codes |= {robot.PLANAR_FRICTION}
+        if turning and skids is None:
+            # Wheels that slide by an unknown amount.
+            codes |= {robot.SKID_STEERING}
     if 1.0 - _BRAKED < ratio < 1.0:
         # A caster may also brake a base that drives straight ahead.
         codes |= {robot.CASTER_FRICTION}

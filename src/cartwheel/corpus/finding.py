@@ -35,6 +35,11 @@ _DEFINED = {
     "argument": r"""<(?:xacro:)?arg\b[^>]*?\bname\s*=\s*["']{}["']""",
 }
 """Definitions by the kind of name."""
+_MACRO = re.compile(r"<(?:xacro:)?macro\b.*?</(?:xacro:)?macro\s*>", re.DOTALL)
+_USED = re.compile(
+    r"<(?:link|joint|gazebo|xacro:(?!(?:include|macro|property|arg|if|unless)\b)\w+)\b"
+)
+"""What a description contains beside definitions: elements, and calls of macros."""
 _VARIABLE = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 
 
@@ -148,6 +153,8 @@ class _Folder:
         except DescriptionError as error:
             if path.suffix == ".sdf" and not _is_chosen(path):
                 return "old version"
+            if not launched and _only_defines(self.texts[path]):
+                return "macros"
             return "part" if part or (not launched and self._is_elsewhere(path, error)) else None
         is_part = (part or path.suffix == ".xacro") and (
             "name" not in root.attributes or self._hangs(path, root)
@@ -224,6 +231,12 @@ def _pattern(name: str) -> re.Pattern[str] | None:
     if not re.search(r"\w", known.removesuffix(".xacro").removesuffix(".urdf")):
         return None
     return re.compile("/" + "/".join(parts) + "$")
+
+
+def _only_defines(text: str) -> bool:
+    """Whether a xacro only defines macros, although its includes cannot be expanded alone."""
+    rest, macros = _MACRO.subn("", text)
+    return macros > 0 and not _USED.search(rest)
 
 
 def _is_chosen(path: Path) -> bool:

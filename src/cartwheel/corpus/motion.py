@@ -11,11 +11,14 @@ from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.heading import heading
+from cartwheel.corpus.hovering import drag_errors
 from cartwheel.corpus.limits import StatedLimits
 from cartwheel.corpus.thrusters import has_thrusters
 from cartwheel.corpus.verdict import Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.devices.drives.drive import Drives
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.geometry import Pose, rotate
 from cartwheel.graph import TWIST_STAMPED, JointInput, TopicInfo
 from cartwheel.simulation.clock import NANOSECONDS
@@ -30,6 +33,8 @@ _RADIUS = 4.0
 steering angle is at most atan(1/4) = 14°."""
 _SMALLEST = 0.1
 """m; for bases without geometry."""
+_TAKING_OFF = 2.0
+"""Time after the message that starts a flight, s."""
 _MEASURED = 2.0
 _RATE = 20.0
 """Rate of commands, Hz."""
@@ -77,6 +82,7 @@ def drives(
     model: Model,
     robot: Robot,
     limits: StatedLimits,
+    started: Sequence[Controller],
     *,
     idle: Set[str],
     steered: bool,
@@ -88,6 +94,7 @@ def drives(
         model: The robot in the world.
         robot: Its description.
         limits: The robot's own limits. The commands stay below them.
+        started: The controllers that run.
         idle: Nodes of controllers that do not run, whose topics are not tested.
         steered: The base cannot turn in place, so it turns while it drives forward.
     """
@@ -99,13 +106,21 @@ def drives(
         _SPEED_UP,
         min(_LONGEST, 2.0 * max(forward / limits.acceleration, turn / limits.turn_acceleration)),
     )
+    sag, sag_turn = drag_errors(robot.description)
     for info in world.graph.topics():
         if not info.drives or (info.subscribers and idle >= set(info.subscribers)):
             continue
         ahead, _ = _driven(world, model, robot, info, (forward, 0.0, speed_up))
         both = (forward if steered else 0.0, turn, speed_up)
         _, turned = _driven(world, model, robot, info, both)
-        drive = world.session.shared.get(Drives).of(info.subscribers)
+        drive = world.session.shared.get(Drives).of(info.subscribers) or next(
+            (
+                each
+                for each in started
+                if isinstance(each, WheelController) and each.node in info.subscribers
+            ),
+            None,
+        )
         yield Drive(
             topic=info.name,
             commanded=drive.commanded(forward, 0.0)[0] if drive is not None else forward,
@@ -114,25 +129,33 @@ def drives(
             measured_turn=turned,
             turning="arc" if steered else "in place",
             limited=forward < VELOCITY or (turn < TURN and not steered),
+            sag=sag,
+            sag_turn=sag_turn,
         )
     world.reset()
 
 
 def reaches(
-    world: World, model: Model, description: RobotDescription, gains: Mapping[str, float]
+    world: World,
+    model: Model,
+    description: RobotDescription,
+    started: Sequence[Controller],
+    gains: Mapping[str, float],
 ) -> list[Reach]:
     """Commands all position-controlled joints at once and measures where they end.
 
-    `gains` contains the proportional gains of PID controllers with an effort output and a slow or
-    no integral, by joint, in N m/rad or N/m.
+    Controllers that a plugin commands are left out, because it would replace the commands. `gains`
+    contains the proportional gains of PID controllers with an effort output and a slow or no
+    integral, by joint, in N m/rad or N/m.
     """
-    if not world.graph.joint_inputs.all():
+    taken = {each.name for each in started if _is_commanded(world, each)}
+    takers = [each for each in world.graph.joint_inputs.all() if each.owner not in taken]
+    if not takers:
         return []
     world.reset()
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
     told: list[tuple[JointInput, Joint, float]] = []
-    takers = world.graph.joint_inputs.all()
     chosen = _targets(world, model, [joints[name] for taker in takers for name in taker.joints])
     for taker in takers:
         targets = {name: chosen[name] for name in taker.joints}
@@ -156,6 +179,13 @@ def reaches(
         )
         for taker, joint, target in told
     ]
+
+
+def _is_commanded(world: World, controller: Controller) -> bool:
+    """Whether a plugin publishes on a topic of a controller, such as a drive that steers by it."""
+    return any(
+        info.publishers and controller.node in info.subscribers for info in world.graph.topics()
+    )
 
 
 def yields(proportional: float, integral: float) -> bool:
@@ -213,6 +243,7 @@ def _driven(
     """
     world.reset()
     world.run(0.5)
+    flying = _take_off(world, topic)
     *velocity, speed_up = command
     _drive_on(world, topic, velocity, speed_up)
     before, joints = model.pose, positions(world, model)
@@ -222,14 +253,26 @@ def _driven(
         name: (end - joints[name]) / _MEASURED for name, end in positions(world, model).items()
     }
     # The pose is that of the root link, whose frame may be turned in the model's frame.
-    ahead = rotate(
-        robot.description.canonical_pose.inverse().orientation, (*heading(robot, speeds), 0)
-    )
+    facing = (1.0, 0.0) if flying else heading(robot, speeds)
+    ahead = rotate(robot.description.canonical_pose.inverse().orientation, (*facing, 0))
     x, y, _ = rotate(before.orientation, ahead)
     length = math.hypot(x, y) or 1.0
     dx, dy = after.x - before.x, after.y - before.y
     turned = math.remainder(_yaw(after) - _yaw(before), 2 * math.pi)
     return (x * dx + y * dy) / length / _MEASURED, turned / _MEASURED
+
+
+def _take_off(world: World, topic: TopicInfo) -> bool:
+    """Lets an aircraft take off that flies only after a message; whether there is such a topic."""
+    found = False
+    for each in world.graph.topics():
+        if each.name.rpartition("/")[2] == "takeoff" and set(each.subscribers) & set(
+            topic.subscribers
+        ):
+            found = True
+            world.publish(each.name, {})
+            world.run(_TAKING_OFF)
+    return found
 
 
 def positions(world: World, model: Model) -> dict[str, float]:

@@ -216,6 +216,7 @@ def _moved(
             model,
             Robot(robot, None),
             stated_limits(robot, started),
+            started,
             idle=_idle(world),
             steered=_steered(robot, started),
         )
@@ -237,7 +238,7 @@ def _joints_moved(
 ) -> Iterator[Verdict]:
     started = _controllers(world).started
     gains = _gains(robot, started)
-    reached = [*motion.reaches(world, model, robot, gains), *posed(world, model, robot)]
+    reached = [*motion.reaches(world, model, robot, started, gains), *posed(world, model, robot)]
     verdict = replace(verdict, reaches=tuple(reached))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))

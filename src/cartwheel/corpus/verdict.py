@@ -77,6 +77,10 @@ class Drive:
     """How it was commanded to turn: steered bases turn on an arc, while they drive forward."""
     limited: bool = False
     """Whether limits in the robot's files are below the usual commands, which were reduced."""
+    sag: float = 0.0
+    """Relative error of the speed that follows from drag and the gains of a multicopter."""
+    sag_turn: float = 0.0
+    """The same for the turn rate."""
 
     @property
     def error(self) -> float:
@@ -91,12 +95,12 @@ class Drive:
     @property
     def follows(self) -> bool:
         """Whether it moved forward as commanded."""
-        return abs(self.error) <= TOLERANCE
+        return -self.sag - TOLERANCE <= self.error <= TOLERANCE
 
     @property
     def turns(self) -> bool:
         """Whether it turned as commanded."""
-        return abs(self.error_turn) <= TOLERANCE
+        return -self.sag_turn - TOLERANCE <= self.error_turn <= TOLERANCE
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

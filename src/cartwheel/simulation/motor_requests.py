@@ -189,14 +189,16 @@ class MotorRequests(Requests):
         to_link = poses[link.name].inverse()
         centre, reach = np.zeros(3), 0.0
         places = [
-            (other.inertial.mass, (to_link @ poses[other.name]).apply(other.inertial.pose.position))
+            (other.inertial, (to_link @ poses[other.name]).apply(other.inertial.pose.position))
             for other in description.links
             if other.inertial is not None
         ]
-        for mass, place in places:
-            centre += mass / description.mass * np.array(place)
-        for mass, place in places:
-            reach += mass / description.mass * float(np.sum((np.array(place) - centre) ** 2))
+        for inertial, place in places:
+            centre += inertial.mass / description.mass * np.array(place)
+        for inertial, place in places:
+            # The square of the radius of gyration about the centre of mass, m².
+            far = inertial.mass * float(np.sum((np.array(place) - centre) ** 2))
+            reach += (far + sum(inertial.diagonal) / 2) / description.mass
         band = _DRIVE_BAND if gains is None else math.inf
         if gains is None:
             force = _DRIVE_WEIGHTS * 9.8 * description.mass / _DRIVE_BAND

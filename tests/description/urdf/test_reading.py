@@ -343,6 +343,7 @@ LOADED = {
     "friction": (joint("j", "a", "b", '<dynamics friction="-1"/>', "continuous"), "value-invalid"),
     "mimic": (joint("j", "a", "b", '<mimic joint="k"/>', "continuous"), "mimic-unknown"),
     "itself": (joint("j", "a", "b", '<mimic joint="j"/>', "continuous"), "mimic-unknown"),
+    "nothing": (joint("j", "a", "b", '<mimic joint=""/>', "continuous"), "mimic-unknown"),
 }
 
 

@@ -207,7 +207,8 @@ def _mimic(node: Node) -> Mimic:
         return numbers.within(value, most, f"mimic {name}", node.origin)
 
     return Mimic(
-        joint=node.require("joint").strip(),
+        # An empty name is that of no joint, so the joint moves independently.
+        joint=(node.get("joint") if "joint" in node.attributes else node.require("joint")).strip(),
         multiplier=bounded("multiplier", 1.0, numbers.MOST_RATIO),
         offset=bounded("offset", 0.0, numbers.FARTHEST_JOINT),
     )

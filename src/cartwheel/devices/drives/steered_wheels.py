@@ -186,6 +186,10 @@ class SteeredByAngle:
         self._driven.command = self._speed.step(speed, seconds) / self._config.radius
         self._steering.command = self._angle.step(angle, seconds)
 
+    def turned(self, speed: float, angle: float) -> float:
+        """The yaw rate at a velocity in m/s and an angle of the steering joint in rad, rad/s."""
+        return speed * tan(angle * self._config.angle_factor) / self._config.wheel_base
+
     def stop(self) -> None:
         """Stops the wheel immediately. The steering angle stays."""
         self._driven.command = 0.0

@@ -92,7 +92,8 @@ def parameter(
         unit: SI unit of the value, unless the documentation states another one.
         role: Its meaning.
         interface: For joints that the controller commands: the interface, or `OWN`.
-        wheels: For a size: the fields with the joints of the measured wheels. A distance has two.
+        wheels: For a size: the fields with the joints of the measured wheels. A distance has two,
+            or one if the wheels on the other axle are not driven.
         positive: Whether the number must be positive.
         read: Reads a group of parameters from the section with this name.
         itself: Whether the controller reads the parameter itself, because it depends on others.

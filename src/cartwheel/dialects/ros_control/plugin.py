@@ -135,13 +135,14 @@ class RosControl(ControlPlugin):
     def _steer_bot(self) -> Hardware | None:
         """Returns the hardware SteerBotHardwareGazebo; None, with a report, without parameters."""
         name = steer_bot.PARAMETERS
+        place = "/".join(["", *self.namespace.strip("/").split("/"), name]).replace("//", "/")
         settings = self._settings(name)
         if settings is not None:
             return steer_bot.SteerBotHardware(self, settings, self.tag.origin)
         self.warn(
             devices.HARDWARE_NOT_SIMULATED,
             f'<robotSimType> "{steer_bot.SIM_TYPE}" has no parameters in '
-            f'"/{self.namespace}/{name}", so joints are driven as with DefaultRobotHWSim',
+            f'"{place}", so joints are driven as with DefaultRobotHWSim',
             hint=f'Pass the YAML file that contains "{name}", with --controllers.',
             values={"hardware": steer_bot.SIM_TYPE, "parameters": name},
         )

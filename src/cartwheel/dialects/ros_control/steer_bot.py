@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from cartwheel.codes import robot
 from cartwheel.component import Component
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
 from cartwheel.devices.joints.limits import JointLimits, position_range
@@ -107,6 +108,14 @@ class SteerBotHardware(Hardware):
             *(shared(name, [each], ("position",)) for name, each in steers.items()),
         ]
         self._joints = {each.name: each for each in (*own, self._wheel, self._steer)}
+        owner.part.report(
+            robot.SKID_STEERING.diagnostic(
+                "all four wheels turn at the same speed, as with the original hardware, so they "
+                "slide in curves, and the robot turns less than it is steered",
+                origin=origin,
+                values={"hardware": SIM_TYPE},
+            )
+        )
 
     def start(self) -> None:
         super().start()

@@ -50,6 +50,27 @@ def test_planar_move_closes_a_circle_looking_outwards(make, cart, read):
     assert np.linalg.norm(path(told)[-1] - path(told)[0]) < 0.06
 
 
+def test_planar_move_turns_a_wide_body_against_its_friction(make):
+    """The torque is for the radius of gyration of the body, not only of its parts."""
+    wide = make.sdf(
+        """<model name="wide"><link name="base"><pose>0 0 0.05 0 0 0</pose>
+        <inertial><mass>20</mass><inertia><ixx>0.61</ixx><iyy>0.61</iyy><izz>1.2</izz></inertia>
+        </inertial><collision name="c"><geometry><box><size>0.6 0.6 0.1</size></box></geometry>
+        </collision></link>"""
+        + PLANAR.format("")
+        + "</model>"
+    )
+    world = make.world()
+    world.session.spawn(wide)
+    world.publish("/cmd_vel", angular_z=0.4)
+    world.run(1.0)
+    before = world.model("wide").pose.rpy[2]
+    world.run(2.0)
+    # The friction of the corners is mu m g 0.42 m; the servo has 5 m g 2 k, with k = 0.35 m.
+    turned = (world.model("wide").pose.rpy[2] - before) / 2.0
+    assert turned == pytest.approx(0.4 - 0.05 * 0.42 / (5 * 2 * 0.35), abs=0.005)
+
+
 def test_planar_move_stops_at_a_wall(make, cart):
     wall = make.box("wall", (0.1, 4, 1), static=True, pose=Pose((1.05, 0, 0.5)))
     world = make.world(wall)

@@ -120,6 +120,9 @@ class SteerDriveController(WheelController):
         self._odometry = wheel_odometry(self, given)
         self._wheels = SteeredByAngle(config, driven, steering, self._odometry.reckoning)
 
+    def commanded(self, forward: float, turn: float) -> tuple[float, float]:
+        return forward, self._wheels.turned(forward, turn)
+
     def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:  # noqa: ARG002
         forward, _, angle = command
         self._wheels.command(forward, angle, seconds)

@@ -32,7 +32,14 @@ class TricycleParameters(OdometryParameters):
     steering: str = parameter(
         "steering_joint_name", role="joint", interface="position", doc="Steering joint."
     )
-    base: float = parameter("wheelbase", unit="m", positive=True, doc="Distance between the axles.")
+    base: float = parameter(
+        "wheelbase",
+        unit="m",
+        role="wheel_base",
+        wheels=("steering",),
+        positive=True,
+        doc="Distance between the axles.",
+    )
     radius: float = parameter(
         "wheel_radius",
         unit="m",

@@ -47,6 +47,15 @@ class WheelController(Controller):
     def stop(self, time_ns: int) -> None:  # noqa: ARG002
         self._wheels.stop()
 
+    def commanded(self, forward: float, turn: float) -> tuple[float, float]:
+        """The velocity that a command without a sideways part asks for: m/s in x and rad/s.
+
+        Args:
+            forward: ``linear.x``, m/s.
+            turn: ``angular.z``, rad/s or rad.
+        """
+        return forward, turn
+
     @abstractmethod
     def _drive(self, command: Vec3, time_ns: int, seconds: float) -> None:
         """Commands the wheels to follow x and y velocities in m/s and a yaw rate in rad/s."""
