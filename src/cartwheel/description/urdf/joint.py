@@ -208,7 +208,7 @@ def _mimic(node: Node) -> Mimic:
 
     return Mimic(
         # An empty name is that of no joint, so the joint moves independently.
-        joint=(node.get("joint") if "joint" in node.attributes else node.require("joint")).strip(),
+        joint=("" if node.get("joint") == "" else node.require("joint")).strip(),
         multiplier=bounded("multiplier", 1.0, numbers.MOST_RATIO),
         offset=bounded("offset", 0.0, numbers.FARTHEST_JOINT),
     )

@@ -188,7 +188,8 @@ class SteeredByAngle:
 
     def turned(self, speed: float, angle: float) -> float:
         """The yaw rate at a velocity in m/s and an angle of the steering joint in rad, rad/s."""
-        return speed * tan(angle * self._config.angle_factor) / self._config.wheel_base
+        slope: float = tan(angle * self._config.angle_factor)
+        return speed * slope / self._config.wheel_base
 
     def stop(self) -> None:
         """Stops the wheel immediately. The steering angle stays."""
