@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import gc
 import importlib
 import os
 import signal
@@ -90,6 +91,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     folders = set(config.args)
     if worker is None or folders != set(config.getini("testpaths")):
         return
+    gc.disable()  # `pytest_collection` enables it.
     files = sorted(_TESTS.rglob("test_*.py"))
     first = len(files) * int(worker["workerid"].removeprefix("gw")) // worker["workercount"]
     for file in files[first:] + files[:first]:
@@ -97,6 +99,21 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         # The collection imports it again, and reports the error.
         with contextlib.suppress(Exception, pytest.skip.Exception):
             importlib.import_module(name)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Keeps what imports and the collection make from the garbage collector.
+
+    There are a million objects of all tests. To go through them takes most of a second each time.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.collect()
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
