@@ -36,9 +36,12 @@ _SAMPLE = 40
 
 
 def _changed(text):
-    """The document with each of its numbers at each extreme."""
-    for found in _NUMBER.finditer(text):
-        for value in _VALUES:
+    """The document with each of its numbers at half of the extremes, the next at the other half.
+
+    Neighbours are numbers of one vector or one element, which the same function reads.
+    """
+    for place, found in enumerate(_NUMBER.finditer(text)):
+        for value in _VALUES[place % 2 :: 2]:
             yield text[: found.start()] + value + text[found.end() :]
 
 
@@ -50,7 +53,7 @@ def _refused(error):
 def test_each_number_at_its_extremes(kind, tmp_path):
     """What is read also runs: a faulty number never ends in an error of Python's."""
     changed = list(_changed(DOCUMENTS[kind]))
-    assert len(changed) > 10 * len(_VALUES)
+    assert len(changed) > 5 * len(_VALUES)
     random.Random(0).shuffle(changed)
     ran = 0
     for count, text in enumerate(changed):
