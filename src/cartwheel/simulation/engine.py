@@ -272,15 +272,20 @@ class Engine:
                 only integrates. The results are bit-identical in both cases.
         """
         self.refreshed = b""
+        looking = self.stepping.carried
+        if looking is None:
+            self.step += count
+            self.time_ns += count * self.step_ns
+            self.stepping.run(count, forwarded, self.carries)
+            return
         while count:
-            looking = self.stepping.carried
-            piece = count if looking is None else min(count, LOOK - self.step % LOOK)
+            piece = min(count, LOOK - self.step % LOOK)
             self.step += piece
             self.time_ns += piece * self.step_ns
-            self.stepping.run(piece, forwarded=forwarded, carries=self.carries)
+            self.stepping.run(piece, forwarded, self.carries)
             count, forwarded = count - piece, False
             # At the same steps however a run is divided, which therefore has the same bits.
-            if looking is not None and self.step % LOOK == 0:
+            if self.step % LOOK == 0:
                 self.carries = looking.any_turn(self.data)
 
     def rewind(self, *, keep_time: bool = False, prepare: Callable[[], None]) -> None:

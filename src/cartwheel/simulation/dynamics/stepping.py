@@ -46,7 +46,7 @@ class Stepping:
         except mujoco.FatalError as error:
             raise too_many_contacts(data.ncon, error) from None
 
-    def run(self, count: int, *, forwarded: bool, carries: bool) -> None:
+    def run(self, count: int, forwarded: bool, carries: bool) -> None:
         """Runs steps. The results are the same bits with and without `forwarded`.
 
         Args:
