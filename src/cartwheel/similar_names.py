@@ -58,8 +58,8 @@ def closest(name: str, known: list[str], cutoff: float) -> list[str]:
         ends: dict[str, str] = {}
         for each in sorted(known, key=lambda each: (each.count("/"), each)):
             ends.setdefault(each[:LONGEST].rpartition("/")[2], each)
-        end = most_similar(name.rpartition("/")[2], ends, max(cutoff, _SIMILAR_END))
-        best = None if end is None else ends[end]
+        last = most_similar(name.rpartition("/")[2], ends, max(cutoff, _SIMILAR_END))
+        best = None if last is None else ends[last]
     return [best] if best is not None else []
 
 

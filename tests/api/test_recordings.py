@@ -7,11 +7,17 @@ import pytest
 from tests.coded import coded, raises
 
 import cartwheel as cw
-from cartwheel.codes.graph import FIELD_UNKNOWN, FRAMES_SHARED, TOPIC_UNKNOWN
+from cartwheel.codes.graph import (
+    FIELD_UNKNOWN,
+    FRAMES_SHARED,
+    TOPIC_TYPE_MISMATCH,
+    TOPIC_UNKNOWN,
+)
 from cartwheel.codes.recording import NOT_A_RECORDING
 from cartwheel.errors import RecordingError, UnknownNameError
 from cartwheel.gazebo.robot_states import hold_states
 from cartwheel.messages import encode_cdr
+from cartwheel.msgs.nav_msgs import Odometry
 
 TOPICS = ["/odom", "/imu/data", "/scan", "/clock"]
 
@@ -153,3 +159,17 @@ def test_robots_with_the_same_frames_are_reported_when_recorded(tmp_path: Path) 
         assert "/tf" in world.topics
         release()
         assert "/tf" not in world.topics
+
+
+@pytest.mark.parametrize("name", ["drive.mcap", "drive.bag", "drive"])
+def test_messages_of_a_type(name: str, recorded: tuple[Path, list[cw.RecordedMessage]]) -> None:
+    folder, received = recorded
+    with cw.Recording(folder / name) as recording:
+        odometry = list(recording.messages("/odom", type=Odometry))
+        assert len(odometry) == sum(each.topic == "/odom" for each in received)
+        speed: float = odometry[-1].message.twist.twist.linear.x
+        assert speed > 0.3
+        of_type = list(recording.messages(type="sensor_msgs/msg/Imu", start=0.5))
+        assert {each.topic for each in of_type} == {"/imu/data"}
+        with raises(TOPIC_TYPE_MISMATCH, topic="/imu/data"):
+            recording.messages("/imu/data", type=Odometry)

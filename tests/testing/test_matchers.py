@@ -14,7 +14,7 @@ import cartwheel.testing
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.codes.world import VALUE_INVALID
-from cartwheel.errors import GraphError
+from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.msgs.sensor_msgs import Image, LaserScan
 from cartwheel.testing import (
     UnmetError,
@@ -280,3 +280,64 @@ def test_the_error_reaches_another_process(cart):
 def test_help_and_completion_list_the_functions():
     assert {"reaches", "sees", "stays_within"} <= set(dir(cartwheel.testing))
     assert "\n    reaches(" in pydoc.render_doc(cartwheel.testing, renderer=pydoc.plaintext)
+
+
+def test_stays_within_compares_the_yaw(cart):
+    cart.pose = cw.Pose.from_xyz_rpy((0, 0, cart.pose.z), (0, 0, -3.1))
+    stays_within(cart, yaw=(3.1, 3.3), seconds=0.2)
+    cart.publish(DRIVE, angular_z=1.0)
+    with pytest.raises(UnmetError, match=r"stays within 3.1 ≤ yaw ≤ 3.3 rad") as failed:
+        stays_within(cart, yaw=(3.1, 3.3))
+    assert failed.value.values["coordinate"] == "yaw"
+    assert failed.value.values["value"] == pytest.approx(3.3, abs=0.03)
+
+
+def test_links_touch(cart):
+    world = cart._world
+    link = next(each for each in cart.links if "wheel" in each)
+    other = cw.Model(world, "post")
+    cart.pose = cw.Pose((0.0, 0.0, 0.05))
+    touches(cart.link(link), "ground_plane", timeout=1)
+    touches_nothing(cart.link(link), seconds=0.1)
+    touches_nothing(cart.link(link), other, seconds=0.1)
+    with pytest.raises(UnmetError, match=f"cart::{link} touches another model"):
+        touches(cart.link(link), timeout=0.1)
+    with pytest.raises(UnmetError) as failed:
+        touches_nothing(cart, world.model("ground_plane").link("link"), seconds=0.1)
+    assert failed.value.values["other"] == "ground_plane::link"
+    cart.publish(DRIVE, linear_x=0.5)
+    time = touches(cart, "post", timeout=15)
+    touched = {each.links[0] for each in world.contacts(between=(cart, "post"))}
+    assert time == world.time and touched
+    (first, *_) = touched
+    touches(cart.link(first), other)
+    touches(cart, f"post::{other.links[0]}")
+    touches(other.link(other.links[0]), f"cart::{first[:3]}*")
+    for wrong in ("post::nothing", "cart::no*"):
+        with pytest.raises(UnknownNameError) as unknown:
+            touches(cart, wrong)
+        assert unknown.value.values["kind"] == "link"
+
+
+def test_errors_name_the_parameter(cart):
+    for name, refused in (
+        ("robot", lambda: touches_nothing(cart._world, "post")),
+        ("other", lambda: touches(cart, 3)),
+        ("robot", lambda: reaches(cart.link(cart.links[0]), (1, 0))),
+        ("world", lambda: sees("cart", "/scan")),
+    ):
+        with raises(VALUE_INVALID, name=name):
+            refused()
+
+
+def test_topics_of_a_model_are_in_its_namespace():
+    with cw.World("post") as world:
+        world.spawn("rosbots.xacro", name="b", namespace="b", y=3)
+        robot = world.spawn("rosbots.xacro", name="a", namespace="a")
+        assert publishes(robot, "odom", rate=100, seconds=0.5) == pytest.approx(100, rel=0.1)
+        sees(robot, "camera1/image_raw")
+        assert publishes(robot, "/b/odom") > 0
+        with pytest.raises(UnknownNameError) as failed:
+            publishes(robot, "odm")
+        assert failed.value.values["name"] == "/a/odm"
+        assert failed.value.values["meant"] == "/a/odom"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import builtins
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Generic, NamedTuple, Self, overload
 
 import numpy as np
 
@@ -12,21 +13,26 @@ from cartwheel import arrays
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import RecordedTopic, span_of
-from cartwheel.codes.graph import TOPIC_UNKNOWN
+from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH, TOPIC_UNKNOWN
 from cartwheel.codes.recording import RECORDING_EMPTY
-from cartwheel.errors import RecordingError, UnknownNameError
+from cartwheel.errors import GraphError, RecordingError, UnknownNameError
 from cartwheel.geometry import Array
+from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation.clock import NANOSECONDS
 
 
-class RecordedMessage(NamedTuple):
-    """A message in a recording."""
+class RecordedMessage(NamedTuple, Generic[M]):
+    """A message in a recording.
+
+    For type checkers, ``RecordedMessage[Odometry]`` has a message of this class of
+    `cartwheel.msgs`, and a `RecordedMessage` without a class one of any type.
+    """
 
     time: float
     """Time at which it was recorded, s: the simulation time for recordings of Cartwheel."""
     topic: str
     """Name of its topic."""
-    message: Any
+    message: M
     """The message, as from `World.subscribe`."""
 
 
@@ -95,27 +101,60 @@ class Recording:
         """
         return sum(each.count for _, each in self._found(topic))
 
+    @overload
     def messages(
-        self, *topics: str, start: float | None = None, end: float | None = None
-    ) -> Iterator[RecordedMessage]:
+        self,
+        *topics: str,
+        type: builtins.type[M],
+        start: float | None = None,
+        end: float | None = None,
+    ) -> Iterator[RecordedMessage[M]]: ...
+    @overload
+    def messages(
+        self,
+        *topics: str,
+        type: str | None = None,
+        start: float | None = None,
+        end: float | None = None,
+    ) -> Iterator[RecordedMessage[Any]]: ...
+    def messages(
+        self,
+        *topics: str,
+        type: Kind | None = None,
+        start: float | None = None,
+        end: float | None = None,
+    ) -> Iterator[RecordedMessage[Any]]:
         """Yields messages in the order of time.
 
-        The messages have no static types. For a type checker, annotate the variable:
-        ``odometry: Odometry = recorded.message``.
+        With a class of `cartwheel.msgs` as `type`, the messages have this class for type checkers:
+        ``recording.messages("/odom", type=Odometry)``.
 
         Args:
-            topics: Names of topics; without any, all topics with ROS messages of known types.
+            topics: Names of topics; without any, all topics with ROS messages of known types, or of
+                `type`.
+            type: Class or name of the message type.
             start: Time of the first message, s; None for the start of the recording.
             end: Time of the last message, s; None for the end of the recording.
 
         Raises:
             UnknownNameError: The recording does not contain a topic.
+            GraphError: A topic has a different type, or `type` is not a message type.
             RecordingError: A topic does not contain ROS messages, its type is unknown, or the file
                 is damaged.
         """
         decoders = {}
         wanted = [one for each in topics for one in self._found(each)]
+        kind = None if type is None else name_of(type)
         for number, topic in wanted or enumerate(self._recording.topics):
+            # ROS 2's types of a few packages, such as control_msgs, have another name in a world.
+            if kind is not None and topic.type not in (kind, kind.replace("_ros2/", "/", 1)):
+                if not topics:
+                    continue
+                raise GraphError(
+                    f'the topic "{topic.name}" has the type {topic.type}, not {kind}',
+                    code=TOPIC_TYPE_MISMATCH,
+                    values={"topic": topic.name, "type": topic.type, "name": kind},
+                )
             try:
                 decoders[number] = (topic.name, decoder(topic))
             except RecordingError:
@@ -125,7 +164,7 @@ class Recording:
 
     def _messages(
         self, decoders: dict[int, Any], start: float | None, end: float | None
-    ) -> Iterator[RecordedMessage]:
+    ) -> Iterator[RecordedMessage[Any]]:
         begin_ns = 0 if start is None else max(0, round(start * NANOSECONDS))
         end_ns = None if end is None else round(end * NANOSECONDS)
         for recorded in self._recording.messages(start_ns=begin_ns, topics=decoders.keys()):

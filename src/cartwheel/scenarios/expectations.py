@@ -192,9 +192,10 @@ def _reaches(value: Mapping[str, Any]) -> Condition:
 
 
 def _stays_within(value: Mapping[str, Any]) -> Condition:
-    if not any(name in value for name in (*_AXES, "tilt", "speed")):
-        raise _invalid('"stays_within" requires at least one of x, y, z, tilt and speed', "x")
-    return StaysWithin(value["stays_within"], _some(value, *_AXES), **_some(value, "tilt", "speed"))
+    limits, more = _some(value, *_AXES, "yaw"), _some(value, "tilt", "speed")
+    if not limits and not more:
+        raise _invalid('"stays_within" requires at least one of x, y, z, yaw, tilt and speed', "x")
+    return StaysWithin(value["stays_within"], limits, **more)
 
 
 def _pair(value: str | list[str]) -> tuple[str, str | None]:

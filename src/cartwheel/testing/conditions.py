@@ -161,7 +161,8 @@ class StaysWithin(Condition):
 
     Args:
         model: Name of the model.
-        limits: Minimum and maximum of ``x``, ``y`` and ``z``, m.
+        limits: Minimum and maximum of ``x``, ``y`` and ``z`` in m, and of ``yaw`` in rad, to which
+            full turns can be added.
         tilt: Maximum angle between the model's z axis and the vertical, rad.
         speed: Maximum speed, m/s.
 
@@ -184,7 +185,7 @@ class StaysWithin(Condition):
             raise CartwheelError(
                 "a model needs limits to stay within",
                 code=OPTION_INVALID,
-                hint="Give at least one of x, y, z, tilt and speed.",
+                hint="Give at least one of x, y, z, yaw, tilt and speed.",
                 values={"name": "limits"},
             )
         self._seen: dict[str, Range] = {}
@@ -199,6 +200,9 @@ class StaysWithin(Condition):
         pose, now = self.world.model(self.model).pose, self.world.time
         found = dict(zip(_AXES, pose.position, strict=True))
         bounds: dict[str, Sequence[float]] = dict(self.limits)
+        if "yaw" in bounds:
+            middle = sum(bounds["yaw"]) / 2
+            found["yaw"] = middle + angle_between(pose.yaw, middle)
         if self.tilt is not None:
             found["tilt"], bounds["tilt"] = tilt_of(pose), (0.0, self.tilt)
         if self.speed is not None and self._before is not None and now > self._before[0]:
@@ -220,7 +224,10 @@ class StaysWithin(Condition):
 
     @property
     def expected(self) -> str:
-        parts = [f"{low:g} ≤ {name} ≤ {high:g} m" for name, (low, high) in self.limits.items()]
+        parts = [
+            f"{low:g} ≤ {name} ≤ {high:g} {'rad' if name == 'yaw' else 'm'}"
+            for name, (low, high) in self.limits.items()
+        ]
         if self.tilt is not None:
             parts.append(f"tilt ≤ {self.tilt:g} rad")
         if self.speed is not None:
@@ -339,7 +346,8 @@ def _limits(name: str, limits: Sequence[float]) -> Range:
     try:
         low, high = map(float, limits)
     except (TypeError, ValueError):
-        raise refused(name, "a minimum and a maximum in m", limits) from None
+        unit = "rad" if name == "yaw" else "m"
+        raise refused(name, f"a minimum and a maximum in {unit}", limits) from None
     if low > high:
         error = refused(name, "a minimum and a maximum, in this order", limits)
         error.hint = f"The limits are swapped. Write ({high:g}, {low:g})."

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from cartwheel.api.values import instance
+from cartwheel.api.values import instance, invalid
 from cartwheel.errors import Pickled
 from cartwheel.testing.conditions import (
     Condition,
@@ -24,7 +24,7 @@ from cartwheel.testing.touching import Touches
 from cartwheel.testing.watching import Watch, When, run
 
 if TYPE_CHECKING:
-    from cartwheel.api import Model, World
+    from cartwheel.api import Link, Model, World
     from cartwheel.geometry import Pose
 
 Limits = tuple[float, float]
@@ -95,6 +95,7 @@ def stays_within(
     x: Limits | None = None,
     y: Limits | None = None,
     z: Limits | None = None,
+    yaw: Limits | None = None,
     tilt: float | None = None,
     speed: float | None = None,
     seconds: float = 5.0,
@@ -106,6 +107,7 @@ def stays_within(
         x: Minimum and maximum, m.
         y: Minimum and maximum, m.
         z: Minimum and maximum, m.
+        yaw: Minimum and maximum, rad. Full turns are ignored: (3.0, 3.3) contains -3.1.
         tilt: Maximum angle between the model's z axis and the vertical, rad.
         speed: Maximum speed, m/s.
         seconds: Simulation time, s.
@@ -116,7 +118,8 @@ def stays_within(
         CartwheelError: There is no limit, or a minimum is above its maximum.
     """
     __tracebackhide__ = True
-    limits = {name: each for name, each in (("x", x), ("y", y), ("z", z)) if each is not None}
+    given = {"x": x, "y": y, "z": z, "yaw": yaw}
+    limits = {name: each for name, each in given.items() if each is not None}
     condition = StaysWithin(_robot(robot), limits, tilt=tilt, speed=speed)
     _always(_world(robot), condition, seconds)
 
@@ -151,7 +154,7 @@ def publishes(
 
     Args:
         world: The world, or one of its models.
-        topic: The topic.
+        topic: The topic, for a model in its namespace.
         rate: Messages per second of simulation time. Without a rate, the run ends with the first
             message.
         tolerance: Relative tolerance of the rate.
@@ -166,8 +169,8 @@ def publishes(
         UnknownNameError: The topic does not exist.
     """
     __tracebackhide__ = True
-    condition = Publishes(topic, rate, tolerance=tolerance)
-    _check(_world(world), condition, "once" if rate is None else "end", seconds)
+    condition = Publishes(_topic(world, topic), rate, tolerance=tolerance)
+    _check(_world(world, "world"), condition, "once" if rate is None else "end", seconds)
     return condition.measured
 
 
@@ -186,7 +189,8 @@ def sees(
 
     Args:
         world: The world, or one of its models.
-        topic: A topic with images, depth images, laser scans, ranges or images of logical cameras.
+        topic: A topic with images, depth images, laser scans, ranges or images of logical cameras,
+            for a model in its namespace.
         range: Shortest distance that the sensor measures, m.
         within: Tolerance of the range, m; None is 0.05.
         color: Red, green and blue from 0 to 1, for images.
@@ -206,17 +210,20 @@ def sees(
             colour to which it belongs.
     """
     __tracebackhide__ = True
-    condition = Sees(topic, range=range, within=within, color=color, share=share, model=model)
-    return _until(_world(world), condition, timeout)
+    name = _topic(world, topic)
+    condition = Sees(name, range=range, within=within, color=color, share=share, model=model)
+    return _until(_world(world, "world"), condition, timeout)
 
 
-def touches(robot: Model, other: Model | str | None = None, *, timeout: float = 5.0) -> float:
-    """Runs the world until a model touches another one.
+def touches(
+    robot: Model | Link, other: Model | Link | str | None = None, *, timeout: float = 5.0
+) -> float:
+    """Runs the world until a model or a link touches another one.
 
     Args:
-        robot: The model.
-        other: The other model, or a pattern such as ``wall*``; None for any model but the ground
-            plane.
+        robot: The model, or one of its links.
+        other: The other model or link, or a pattern such as ``wall*`` or ``cart::*_bumper``; None
+            for any other model but the ground plane.
         timeout: Maximum simulation time, s.
 
     Returns:
@@ -224,28 +231,30 @@ def touches(robot: Model, other: Model | str | None = None, *, timeout: float = 
 
     Raises:
         UnmetError: They did not touch.
-        UnknownNameError: No model has this name.
+        UnknownNameError: No model or link has this name.
     """
     __tracebackhide__ = True
-    return _until(_world(robot), Touches(_robot(robot), _name(other)), timeout)
+    condition = Touches(_side(robot, "robot"), None if other is None else _side(other, "other"))
+    return _until(_world(robot), condition, timeout)
 
 
 def touches_nothing(
-    robot: Model, other: Model | str | None = None, *, seconds: float = 5.0
+    robot: Model | Link, other: Model | Link | str | None = None, *, seconds: float = 5.0
 ) -> None:
-    """Runs the world for a time, in which a model must not touch another one.
+    """Runs the world for a time, in which a model or a link must not touch another one.
 
     Args:
-        robot: The model.
+        robot: The model, or one of its links.
         other: As for `touches`.
         seconds: Simulation time, s.
 
     Raises:
         UnmetError: They touched. `values` contains the links, the force in N and the time.
-        UnknownNameError: No model has this name.
+        UnknownNameError: No model or link has this name.
     """
     __tracebackhide__ = True
-    _always(_world(robot), Touches(_robot(robot), _name(other), inverted=True), seconds)
+    sides = _side(robot, "robot"), None if other is None else _side(other, "other")
+    _always(_world(robot), Touches(*sides, inverted=True), seconds)
 
 
 def joint_reaches(
@@ -295,20 +304,40 @@ def _check(world: World, condition: Condition, when: When, seconds: float) -> No
         raise UnmetError(condition, world.time)
 
 
-def _name(other: Model | str | None) -> str | None:
-    return other if other is None or isinstance(other, str) else _robot(other, "other")
+def _side(given: Model | Link | str, name: str) -> str:
+    """The name of a model, the scoped name of a link, or a pattern for the other side."""
+    from cartwheel.api import Link, Model
+
+    if isinstance(given, Model | Link):
+        return given.scoped_name
+    if name == "other" and isinstance(given, str):
+        return given
+    error = invalid(name, "must be a Model or a Link", given)
+    error.hint = 'Write world.model("cart"), or one of its links.'
+    raise error
 
 
-def _robot(model: Model, name: str = "robot") -> str:
+def _robot(model: Model) -> str:
     """The name of a model."""
     from cartwheel.api import Model
 
-    return instance(model, Model, name, 'world.model("cart")').name
+    return instance(model, Model, "robot", 'world.model("cart")').name
 
 
-def _world(model: World | Model) -> World:
-    from cartwheel.api import Model, World
+def _topic(world: World | Model, topic: str) -> str:
+    """The name of a topic, for a model in its namespace."""
+    from cartwheel.api import Model
+    from cartwheel.graph import resolve_name
 
-    if isinstance(model, World):
-        return model
-    return instance(model, Model, "world", "the world or one of its models")._world
+    return resolve_name(topic, world.namespace) if isinstance(world, Model) else topic
+
+
+def _world(given: World | Model | Link, name: str = "robot") -> World:
+    from cartwheel.api import Link, Model, World
+
+    if isinstance(given, World) and name == "world":
+        return given
+    if isinstance(given, Link):
+        return given._world
+    example = "the world or one of its models" if name == "world" else 'world.model("cart")'
+    return instance(given, Model, name, example)._world

@@ -18,11 +18,13 @@ GROUND = "ground_plane"
 
 
 class Touches(Condition):
-    """Two models touch.
+    """Two models or links touch.
 
     Args:
-        model: Name of a model, or a pattern such as ``wall*``.
-        other: The other model; None for any model but the ground plane.
+        model: Name of a model, or a pattern such as ``wall*``. With ``::``, it is the name of a
+            link in its model, or a pattern such as ``cart::wheel_*``.
+        other: The other model or link; None for any other model but the ground plane. Two links of
+            one model are compared only if `other` is a link.
         inverted: Whether the models must not touch instead.
     """
 
@@ -37,8 +39,13 @@ class Touches(Condition):
     def begin(self, world: World) -> None:
         super().begin(world)
         for name in filter(None, (self.model, self.other)):
-            if not fnmatch.filter(world.models, name):
-                raise UnknownNameError("model", name, world.models)
+            model, separator, _ = name.partition("::")
+            models = fnmatch.filter(world.models, model)
+            if not models:
+                raise UnknownNameError("model", model, world.models)
+            links = [f"{each}::{link}" for each in models for link in world.model(each).links]
+            if separator and not fnmatch.filter(links, name):
+                raise UnknownNameError("link", name, links)
 
     def holds(self) -> bool:
         touching = any(self._contacts())
@@ -46,22 +53,26 @@ class Touches(Condition):
 
     def _contacts(self) -> Iterator[Contact]:
         for contact in self.world.contacts():
-            turned = not self._meant(*contact.models)
-            if not turned or self._meant(*reversed(contact.models)):
+            names = [
+                f"{model}::{link}"
+                for model, link in zip(contact.models, contact.links, strict=True)
+            ]
+            turned = not self._meant(*names)
+            if not turned or self._meant(*reversed(names)):
                 if self.first is None:
-                    names = [
-                        f"{model}::{link}"
-                        for model, link in zip(contact.models, contact.links, strict=True)
-                    ]
                     one, other = reversed(names) if turned else names
                     force = math.hypot(*contact.force)
                     self.first = (self.world.time, one, other, force)
                 yield contact
 
     def _meant(self, one: str, other: str) -> bool:
-        if not fnmatch.fnmatchcase(one, self.model) or one == other:
+        """Whether two links, as scoped names, are those of the condition, in this order."""
+        own, model = one.partition("::")[0], other.partition("::")[0]
+        if not _matches(one, self.model):
             return False
-        return other != GROUND if self.other is None else fnmatch.fnmatchcase(other, self.other)
+        if self.other is None:
+            return model not in (own, GROUND)
+        return (own != model or "::" in self.other) and _matches(other, self.other)
 
     @property
     def expected(self) -> str:
@@ -81,3 +92,8 @@ class Touches(Condition):
             return {}
         time, one, other, force = self.first
         return {"time": time, "link": one, "other": other, "force": force}
+
+
+def _matches(link: str, pattern: str) -> bool:
+    """Whether a link, as a scoped name, or its model matches a pattern."""
+    return fnmatch.fnmatchcase(link if "::" in pattern else link.partition("::")[0], pattern)
