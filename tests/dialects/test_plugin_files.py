@@ -152,6 +152,18 @@ def test_a_file_with_another_suffix_is_an_error(tmp_path: Path) -> None:
         cw.World(plugins=[path])
 
 
+def test_a_wind_pushes_a_body(tmp_path: Path) -> None:
+    """10 N on 10 kg give 1 m/s after 1 s; ten gusts vary by 0.3 / sqrt(10) of that."""
+    body = """<sdf version="1.9"><model name="kite"><link name="link"><gravity>0</gravity><inertial>
+      <mass>10</mass></inertial></link><plugin name="wind" filename="libgusty_wind.so">
+      <force>10</force></plugin></model></sdf>"""
+    with cw.World(strict=True, plugins=[EXAMPLE / "gusty_wind.py"]) as world:
+        kite = world.spawn(body, z=5.0)
+        world.run(seconds=1.0)
+        assert kite.velocity.linear[0] == pytest.approx(1.0, abs=0.4)
+        assert kite.velocity.linear[0] != pytest.approx(1.0, abs=1e-6)
+
+
 ALL = """
 from dataclasses import dataclass
 import numpy as np
