@@ -14,6 +14,7 @@ from cartwheel.description.model import Mimic
 from cartwheel.errors import Origin, PluginError
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.joint_stops import JointStop
 from cartwheel.simulation.handles import MotorHandle
 from cartwheel.simulation.requests import Requests
 from cartwheel.world.entry import BodyDrive, Motor
@@ -24,6 +25,8 @@ _DRIVE_BAND = 0.05
 """Velocity error at which the servo reaches its maximum force, m/s or rad/s."""
 _DRIVE_ARM = 0.1
 """Minimum lever arm for the maximum torque, m."""
+_LAST = 1 << 40
+"""Added to the order of a task that runs after all those that command motors."""
 
 
 class MotorRequests(Requests):
@@ -58,7 +61,7 @@ class MotorRequests(Requests):
             motor = self._share(motor, max_effort)
         elif motor is None or (not yields and all(each.yields for each in self._drives(joint))):
             motor = self._entry.motors[joint] = made
-        handle = MotorHandle(self.name, motor, yields=yields)
+        handle = MotorHandle(self.name, motor, self._stop(joint), yields=yields)
         self._add_drive(handle, origin)
         return handle
 
@@ -97,6 +100,19 @@ class MotorRequests(Requests):
         task.asleep = task.reads_state = True
         handle.wake = partial(self._engine.wake, task)
         return handle
+
+    def _stop(self, joint: str) -> JointStop:
+        """Stops the motors of a joint at its limits."""
+        for each in self.handles:
+            if isinstance(each, JointStop) and each.name == joint:
+                return each
+        stop = JointStop(self.name, joint, partial(self._servos, joint))
+        self.handles.append(stop)
+        task = self.schedule(0, before=stop.follow, idle=stop.rests)
+        task.order += _LAST
+        task.asleep = task.reads_state = True
+        stop.wake = partial(self._engine.wake, task)
+        return stop
 
     def _drives(self, joint: str) -> list[MotorHandle | ServoHandle]:
         drives = (h for h in self.handles if isinstance(h, MotorHandle | ServoHandle))

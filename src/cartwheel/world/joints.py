@@ -209,6 +209,7 @@ def _add_axis(body: Any, name: str, joint: Joint, axis: Axis, *, follows: bool =
     if bounds is not None:
         made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
         made.range = list(bounds)
+        made.solimp_limit = list(STIFF_IMPEDANCE)
     if axis.effort is not None and axis.effort > 0:
         made.actfrclimited = mujoco.mjtLimited.mjLIMITED_TRUE
         made.actfrcrange = [-axis.effort, axis.effort]

@@ -9,8 +9,10 @@ from functools import partial
 from cartwheel.devices.elementwise import Number, remainder
 from cartwheel.devices.joints.limits import (
     JointLimits,
+    cut_range,
     limited_effort,
     limited_position,
+    position_range,
     saturated,
     velocity_bounds,
 )
@@ -111,6 +113,9 @@ class JointActuator:
         """Whether the maximum velocity depends on the position."""
         self._is_limited = limits != JointLimits()
         self._lower, self._upper, self._fastest = limits.lower, limits.upper, limits.velocity
+        self._held = position_range(joint)
+        """The limits of the joint itself, rad or m."""
+        self._lowest, self._highest = cut_range(limits, self._held)
 
     def expect_commands(self, period: float) -> None:
         """States the time between two calls of `write`, s."""
@@ -310,14 +315,16 @@ class JointActuator:
         position, velocity = state.qpos[state.qposadr], state.qvel[state.dofadr]
         most = limits.velocity
         if limits.soft is not None or (
-            position < limits.lower
-            or position > limits.upper
+            position < self._lowest
+            or position > self._highest
             or velocity < -most
             or velocity > most
         ):
             command = DampedEffort(effort, damping)
             gain = state.lightness * seconds
-            effort, damping = limited_effort(limits, command, position, velocity, gain)
+            effort, damping = limited_effort(
+                limits, command, position, velocity, gain, held=self._held
+            )
         elif damping:
             # The same as `saturated` for efforts within the limit, which most are.
             output, limit = effort - damping * velocity, limits.effort

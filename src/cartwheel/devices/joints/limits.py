@@ -13,6 +13,10 @@ _INSIDE = 1 - 1e-6
 """Part of a limit: MuJoCo does not integrate the damping of an actuator at its limit implicitly."""
 
 
+_ENDLESS = (-math.inf, math.inf)
+"""The range of a joint without limits."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointLimits:
     """Limits of a joint. Source: joint_limits_interface."""
@@ -32,7 +36,7 @@ class JointLimits:
 def position_range(joint: Joint | None) -> tuple[float, float]:
     """Returns the lowest and highest position of a joint, rad or m; infinite without a limit."""
     if joint is None or joint.type == "continuous":
-        return -math.inf, math.inf
+        return _ENDLESS
     lower, upper = joint.axis.lower, joint.axis.upper
     return -math.inf if lower is None else lower, math.inf if upper is None else upper
 
@@ -98,12 +102,31 @@ def saturated(
     )
 
 
+def cut_range(limits: JointLimits, held: tuple[float, float]) -> tuple[float, float]:
+    """Returns the lowest and highest position without reduced efforts, rad or m.
+
+    Beyond a limit of its controllers, a joint has only efforts that move it back. A limit of the
+    joint itself holds the joint: in Gazebo, a joint that an effort pushes against it rests there.
+    If efforts were reduced beyond it, the joint would leave this limit, which is slightly soft, and
+    return, for ever.
+
+    Args:
+        limits: The limits of the controllers.
+        held: The limits of the joint itself, rad or m.
+    """
+    lower = limits.lower if limits.lower > held[0] else -math.inf
+    upper = limits.upper if limits.upper < held[1] else math.inf
+    return lower, upper
+
+
 def limited_effort(
     limits: JointLimits,
     command: DampedEffort,
     position: Number,
     velocity: Number,
     gain: Number = 0.0,
+    *,
+    held: tuple[float, float] = _ENDLESS,
 ) -> DampedEffort:
     """Returns an effort within the limits.
 
@@ -113,6 +136,7 @@ def limited_effort(
         position: Position of the joint, rad or m.
         velocity: Velocity of the joint, rad/s or m/s.
         gain: Change of the velocity per effort in one control period; see `saturated`.
+        held: Range of positions in which the joint's own limits hold it, rad or m; see `cut_range`.
     """
     effort, damping = saturated(command, limits.effort, velocity, gain)
     if limits.soft is not None:
@@ -124,8 +148,9 @@ def limited_effort(
         effort = where(slow, gain * slowest, where(fast, gain * fastest, effort))
         damping = where(slow | fast, gain, damping)
     # Beyond a limit, only efforts that move the joint back are applied.
-    below = (position < limits.lower) | (velocity < -limits.velocity)
-    above = (position > limits.upper) | (velocity > limits.velocity)
+    lower, upper = cut_range(limits, held)
+    below = (position < lower) | (velocity < -limits.velocity)
+    above = (position > upper) | (velocity > limits.velocity)
     outside = below | above
     if outside is not False and anywhere(outside):
         output = effort - damping * velocity

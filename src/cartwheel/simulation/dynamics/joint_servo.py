@@ -26,6 +26,32 @@ def _stay_awake() -> None:
     """The default of `ServoHandle.wake`."""
 
 
+def ends_of(model: Any, joint: int) -> tuple[float, float] | None:
+    """Returns the limits of a joint, rad or m; None without limits.
+
+    Args:
+        model: The compiled model.
+        joint: Index of the joint.
+    """
+    lower, upper = model.jnt_range[joint].tolist()
+    return (lower, upper) if model.jnt_limited[joint] else None
+
+
+def inside(velocity: float, position: float, ends: tuple[float, float]) -> float:
+    """Returns the velocity nearest to a commanded one that does not move a joint beyond its limits.
+
+    Close to a limit, the joint approaches it as a target position. Beyond it, the joint returns.
+
+    Args:
+        velocity: Commanded velocity, rad/s or m/s.
+        position: Position of the joint, rad or m.
+        ends: Limits, rad or m.
+    """
+    lowest = POSITION_BANDWIDTH * (ends[0] - position)
+    highest = POSITION_BANDWIDTH * (ends[1] - position)
+    return min(max(velocity, lowest), highest)
+
+
 class ServoHandle:
     """Applies an effort, or holds a velocity or position with limited effort.
 
@@ -96,8 +122,8 @@ class ServoHandle:
         self._tendon = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
         self._strength = float(self._grip[self._tendon])
         self._joint_dof = int(model.jnt_dofadr[joint])
-        lower, upper = (float(end) for end in model.jnt_range[joint])
-        self._ends = (lower, upper) if model.jnt_limited[joint] else None
+        self._joint = joint
+        self._ends = ends_of(model, joint)
         self.weigh(model)
         self._commanded_again = self.period <= self._step
         if self._first is None:
@@ -115,6 +141,13 @@ class ServoHandle:
         # and the product in `_braked` is not rounded to zero.
         near = self._braking / POSITION_BANDWIDTH**2 * (1.0 - 1e-9)
         self._near = near if self._braking >= 1.0 else 0.0
+
+    def limit(self, model: Any) -> None:
+        """Reads the limits of the joint, which have changed."""
+        velocity = self._turning if self._ends is None else self._rate
+        self._ends = ends_of(model, self._joint)
+        if self.mode == "velocity":
+            self.command_velocity(velocity)
 
     def rewind(self) -> None:
         """Returns to the command that it had when the model was spawned, mostly none."""
@@ -144,7 +177,7 @@ class ServoHandle:
             self._rate = velocity
             if not self._awake:
                 self._rouse()
-            velocity = self._inside(velocity, *self._ends)
+            velocity = inside(velocity, self._qpos[self._position], self._ends)
         if self.applied == "velocity":
             self._turning = self.rotors[self.dof] = velocity
         else:
@@ -201,15 +234,6 @@ class ServoHandle:
             self.command_position(target, self._rate, self._fastest, self._limit)
         elif self.mode == "velocity" and self._ends is not None:
             self.command_velocity(self._rate)
-
-    def _inside(self, velocity: float, lower: float, upper: float) -> float:
-        """The velocity that does not move the joint beyond its limits."""
-        position: float = self._qpos[self._position]
-        if velocity > 0.0:
-            return min(velocity, POSITION_BANDWIDTH * (upper - position))
-        if velocity < 0.0:
-            return max(velocity, POSITION_BANDWIDTH * (lower - position))
-        return velocity
 
     def _braked(self, error: float, velocity: float) -> float:
         """The velocity at a distance from the target, from which the motor can still brake."""

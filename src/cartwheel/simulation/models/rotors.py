@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.joint_stops import JointStop
 from cartwheel.simulation.handles import MotorHandle
 from cartwheel.simulation.part import Part
 
@@ -20,12 +21,13 @@ class Rotors:
 
     def __init__(self) -> None:
         self._motors: list[MotorHandle] = []
+        self._stops: list[JointStop] = []
         self._shared: list[tuple[list[MotorHandle], list[ServoHandle]]] = []
         """The handles of each joint that several plugins drive."""
 
     def bind(self, parts: Iterable[Part]) -> None:
         """Finds the motors of models, whose handles are bound."""
-        self._motors, self._shared = [], []
+        self._motors, self._stops, self._shared = [], [], []
         for part in parts:
             motors: dict[str, list[MotorHandle]] = defaultdict(list)
             servos: dict[str, list[ServoHandle]] = defaultdict(list)
@@ -34,6 +36,8 @@ class Rotors:
                     motors[handle.motor.joint].append(handle)
                 elif isinstance(handle, ServoHandle):
                     servos[handle.motor.joint].append(handle)
+                elif isinstance(handle, JointStop):
+                    self._stops.append(handle)
             for joint, found in motors.items():
                 if len(found) == 1 and joint not in servos:
                     self._motors += found
@@ -44,6 +48,8 @@ class Rotors:
         """Sets the velocities of all rotors to the commands of their motors."""
         for motor in self._motors:
             motor.rotors[motor.dof] = motor.target
+        for stop in self._stops:
+            stop.hold()
         for motors, servos in self._shared:
             if any(servo.mode in ("velocity", "position") for servo in servos):
                 continue
