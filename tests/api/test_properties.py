@@ -288,6 +288,17 @@ def test_damping_slows_a_pendulum(make, uncompiled):
     assert joint.velocity == pytest.approx(3.0 - 0.2 / 0.2 * 1.0, abs=2e-3)
 
 
+@pytest.mark.parametrize("quantity", ["damping", "friction", "positions", "velocities"])
+def test_one_number_is_assigned_to_all_joints(make, quantity):
+    world = make.world()
+    joints = world.spawn("rosbots.xacro", z=0.05).joints
+    setattr(joints, quantity, 0.5)
+    assert dict(getattr(joints, quantity)) == dict.fromkeys(joints.names, 0.5)
+    for value in ([0.5], None, math.nan, "half"):
+        with raises(VALUE_INVALID):
+            setattr(joints, quantity, value)
+
+
 def test_damping_of_all_joints(pendulum):
     _, model = pendulum
     model.joints.damping = {"slider": 2.0}

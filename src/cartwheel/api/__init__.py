@@ -3,13 +3,14 @@
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
 from cartwheel.api.contacts import Contact
-from cartwheel.api.joints import Gains, Joint, Joints, JointValues
+from cartwheel.api.joints import Gains, Joint, Joints
 from cartwheel.api.lights import Light
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.pictures import Picture
 from cartwheel.api.plots import Plot
+from cartwheel.api.properties.joint_values import JointValues
 from cartwheel.api.recordings import RecordedMessage, Recording
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
-from cartwheel.api.handles import Handle, Sealed
+from cartwheel.api.handles import Handle
 from cartwheel.api.properties.inertials import missing
-from cartwheel.api.values import array, invalid, scalar
+from cartwheel.api.properties.joint_values import JointValues, Values
+from cartwheel.api.values import invalid, scalar
 from cartwheel.description.model import Joint as Description
 from cartwheel.description.model import JointType, RobotDescription
-from cartwheel.geometry import Array
 
 if TYPE_CHECKING:
     from cartwheel.api.world import World
     from cartwheel.simulation import Simulation
-
-Values = Mapping[str, float] | Sequence[float] | NDArray[np.float64]
-"""Values of some joints by name, or of all joints in the order of `Joints.names`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,74 +28,6 @@ class Gains:
     """Integral gain, the same per second."""
     d: float = 0.0
     """Derivative gain, the same times seconds."""
-
-
-class JointValues(Sealed, MutableMapping[str, float]):
-    """One quantity of all joints of a model: a mapping by name, and an array.
-
-    Each access reads or sets the current state. ``numpy.asarray(values)`` is a new array in the
-    order of `Joints.names`.
-    """
-
-    __slots__ = ("_joints", "_name", "_read", "_write")
-
-    def __init__(
-        self,
-        joints: Joints,
-        name: str,
-        read: Callable[[Simulation, str], float],
-        write: Callable[[Simulation, Mapping[str, float]], None],
-    ) -> None:
-        self._joints = joints
-        self._name = name
-        self._read = read
-        self._write = write
-
-    def __getitem__(self, joint: str) -> float:
-        with self._joints.world.lock:
-            return self._read(self._joints.world.session.simulation, joint)
-
-    def __setitem__(self, joint: str, value: float) -> None:
-        self.set({joint: value})
-
-    def __delitem__(self, joint: str) -> None:
-        raise TypeError(f'the {self._name} of joint "{joint}" cannot be removed')
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._joints.names)
-
-    def __len__(self) -> int:
-        return len(self._joints.names)
-
-    def __contains__(self, joint: object) -> bool:
-        return joint in self._joints.names
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
-        with self._joints.world.lock:
-            return np.array([self[joint] for joint in self._joints.names], dtype=dtype)
-
-    def __repr__(self) -> str:
-        return repr(dict(self))
-
-    def set(self, values: Values) -> None:
-        """Sets the values of some joints by name, or of all joints.
-
-        Raises:
-            CartwheelError: A number is not finite or out of range, or there is not one number for
-                each joint.
-            UnknownNameError: A joint does not exist or cannot move.
-            SimulationError: The world is closed.
-        """
-        if not isinstance(values, Mapping):
-            names = self._joints.names
-            numbers = array(values, (len(names),), f"the {self._name} of the joints")
-            values = dict(zip(names, numbers.tolist(), strict=True))
-        given = {
-            joint: scalar(value, f'the {self._name} of joint "{joint}"')
-            for joint, value in values.items()
-        }
-        with self._joints.world.used(change=True) as simulation:
-            self._write(simulation, given)
 
 
 class Joints(Handle):

@@ -26,10 +26,10 @@ from cartwheel.geometry import (
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.dynamics.fixed_joints import AttachmentHandle, SurroundingsHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
-from cartwheel.simulation.dynamics.joint_stops import JointStop
 from cartwheel.simulation.dynamics.moving_surface import SurfaceHandle
+from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
 from cartwheel.simulation.dynamics.wheel_slip import SlipHandle
-from cartwheel.world.entry import ROTOR, Motor, scoped
+from cartwheel.world.entry import ROTOR, scoped
 
 _OBJ = mujoco.mjtObj
 _XBODY = _OBJ.mjOBJ_XBODY
@@ -328,58 +328,6 @@ class JointsHandle:
     def efforts(self) -> Array:
         """Efforts, N m or N; a new array of shape (joints,); see `JointHandle.effort`."""
         return np.array([joint.effort for joint in self._joints])
-
-
-class MotorHandle:
-    """A joint driven at a velocity with limited effort; it brakes at zero velocity.
-
-    As in Gazebo, dry friction acts between the joint and a rotor that turns at the target velocity.
-    The joint velocity is exact below the effort limit; at the limit, the joint slips. A joint with
-    position limits stops at them.
-
-    Args:
-        model: Model name.
-        motor: The motor.
-        stop: Stops the motor at the joint's limits; bound before this handle.
-        yields: Whether the owner of the handle leaves the joint to others while it has no command.
-    """
-
-    rivalled = False
-    """Whether another handle, which does not yield, drives the joint."""
-
-    def __init__(self, model: str, motor: Motor, stop: JointStop, *, yields: bool = False) -> None:
-        self.model_name = model
-        self.motor = motor
-        self.stop = stop
-        self.yields = yields
-        """Whether the owner of the handle leaves the joint to others while it has no command."""
-        self.target = 0.0
-        # Until the model is compiled, commands are only stored.
-        self.rotors: Any = [0.0]
-        """Velocities of the compiled model, or the commands of a joint with limits; `dof` is the
-        index of this motor's rotor. A caller at a high rate may set both this velocity and `target`
-        itself, which is what `command` does."""
-        self.dof = 0
-
-    def bind(self, model: Any, data: Any) -> None:  # noqa: ARG002 - all handles bind alike
-        """Writes commands to a compiled model from now on."""
-        self.connect()
-        if not (self.yields and self.rivalled):
-            self.command(self.target)
-
-    def connect(self) -> None:
-        """Finds where to write commands, after the limits of the joint have changed."""
-        self.rotors, self.dof = self.stop.place
-
-    @property
-    def turns(self) -> bool:
-        """Whether the commanded velocity is nonzero."""
-        return self.target != 0.0
-
-    def command(self, target: float) -> None:
-        """Sets the target velocity, rad/s or m/s."""
-        self.target = target
-        self.rotors[self.dof] = target
 
 
 class CameraHandle:

@@ -14,8 +14,7 @@ from cartwheel.description.model import Mimic
 from cartwheel.errors import Origin, PluginError
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
-from cartwheel.simulation.dynamics.joint_stops import JointStop
-from cartwheel.simulation.handles import MotorHandle
+from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
 from cartwheel.simulation.requests import Requests
 from cartwheel.world.entry import BodyDrive, Motor
 

@@ -20,7 +20,8 @@ from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 from cartwheel.errors import Origin
 from cartwheel.simulation import Part
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
-from cartwheel.simulation.handles import JointHandle, MotorHandle
+from cartwheel.simulation.dynamics.velocity_motor import MotorHandle
+from cartwheel.simulation.handles import JointHandle
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from cartwheel.codes import running
 from cartwheel.component import Component, Scope
 from cartwheel.devices.elementwise import Number, copysign, minimum, sqrt
-from cartwheel.simulation.handles import JointHandle, MotorHandle
+from cartwheel.simulation.dynamics.velocity_motor import MotorHandle
+from cartwheel.simulation.handles import JointHandle
 
 _RATE = 100.0
 """Rate of the control loop, Hz."""

@@ -42,7 +42,10 @@ class BatteryParameters:
         doc="Time constant of the low-pass filter for the current.",
     )
     power: float = tag(
-        "power_load", default=0.0, unit="W", doc="Power that is drawn while the battery discharges."
+        "power_load",
+        default=0.0,
+        unit="W",
+        doc="Power that is drawn while the battery discharges, also while it is recharged.",
     )
     draining: bool = tag(
         "start_draining",
@@ -103,7 +106,10 @@ class BatteryPlugin(Plugin[BatteryParameters]):
     capacity) - resistance * current``, where ``constant`` and ``linear`` are the open-circuit
     voltage coefficients.
 
-    Recharging stops at 90 % of the capacity. BatteryState messages are published at 50 Hz on
+    While the battery is recharged, a load that has started continues: the charging current is
+    the capacity divided by ``<charging_time>``, minus the current of the load. Stop the load on
+    ``<stop_power_draining_topic>`` to recharge in this time. Recharging stops at 90 % of the
+    capacity. BatteryState messages are published at 50 Hz on
     ``/model/<model>/battery/<battery_name>/state``. The message field ``percentage`` is between 0
     and 1, as sensor_msgs/BatteryState defines it. Cartwheel reports an empty battery, but the robot
     continues to work. Original plugin: ``LinearBatteryPlugin`` in gz-sim.

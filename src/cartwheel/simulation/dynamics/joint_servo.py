@@ -66,9 +66,10 @@ class ServoHandle:
     # They are read at every step: an object with so many attributes would keep them in a table.
     __slots__ = (
         "_awake", "_bias", "_braking", "_commanded_again", "_ends", "_fastest", "_first", "_grip",
-        "_joint_dof", "_limit", "_near", "_position", "_qpos", "_rate", "_step", "_strength",
-        "_target", "_tendon", "_turning", "alone", "applied", "controls", "dof", "id", "law",
-        "mode", "model_name", "motor", "period", "rivalled", "rotors", "shared", "wake", "yields",
+        "_joint", "_joint_dof", "_limit", "_near", "_position", "_qpos", "_rate", "_step",
+        "_strength", "_target", "_tendon", "_turning", "alone", "applied", "controls", "dof", "id",
+        "law", "mode", "model_name", "motor", "period", "rivalled", "rotors", "shared", "wake",
+        "yields",
     )  # fmt: skip
 
     def __init__(self, model: str, motor: Motor, *, yields: bool = False) -> None:
@@ -142,8 +143,9 @@ class ServoHandle:
         near = self._braking / POSITION_BANDWIDTH**2 * (1.0 - 1e-9)
         self._near = near if self._braking >= 1.0 else 0.0
 
-    def limit(self, model: Any) -> None:
-        """Reads the limits of the joint, which have changed."""
+    def refresh(self, model: Any) -> None:
+        """Reads the inertia and the limits of the joint, which may have changed."""
+        self.weigh(model)
         velocity = self._turning if self._ends is None else self._rate
         self._ends = ends_of(model, self._joint)
         if self.mode == "velocity":

@@ -13,10 +13,10 @@ from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
-from cartwheel.simulation.dynamics.joint_stops import JointStop
 from cartwheel.simulation.dynamics.separation import Separation, overlap
+from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
 from cartwheel.simulation.engine import Engine
-from cartwheel.simulation.handles import JointHandle, MotorHandle
+from cartwheel.simulation.handles import JointHandle
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.in_place import InPlace
@@ -293,13 +293,8 @@ class Population:
         for handle in resident.part.handles:
             if isinstance(handle, JointHandle):
                 handle.bind(self._engine.model, self._engine.data)
-            elif isinstance(handle, ServoHandle):
-                handle.weigh(self._engine.model)
-                handle.limit(self._engine.model)
-            elif isinstance(handle, JointStop):
-                handle.limit(self._engine.model)
-            elif isinstance(handle, MotorHandle):
-                handle.connect()
+            elif isinstance(handle, ServoHandle | JointStop | MotorHandle):
+                handle.refresh(self._engine.model)
 
     def observe(self) -> None:
         """Creates a new observer and scene version after a change of the models or lights."""

@@ -14,8 +14,8 @@ from cartwheel.errors import Origin, WorldError, fault
 from cartwheel.geometry import Pose
 from cartwheel.simulation.dynamics.external_servos import WrenchHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
+from cartwheel.simulation.dynamics.velocity_motor import MotorHandle
 from cartwheel.simulation.engine import Engine
-from cartwheel.simulation.handles import MotorHandle
 from cartwheel.simulation.part import Part
 from cartwheel.world.entry import ModelEntry
 

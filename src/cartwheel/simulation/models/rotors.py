@@ -6,8 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
-from cartwheel.simulation.dynamics.joint_stops import JointStop
-from cartwheel.simulation.handles import MotorHandle
+from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
 from cartwheel.simulation.part import Part
 
 

@@ -1,4 +1,4 @@
-"""The limits of joints that velocity motors drive."""
+"""Motors that hold a velocity, within the limits of their joints."""
 
 from __future__ import annotations
 
@@ -9,9 +9,13 @@ from typing import Any
 import mujoco
 
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle, ends_of, inside
-from cartwheel.world.entry import ROTOR, scoped
+from cartwheel.world.entry import ROTOR, Motor, scoped
 
 _OBJ = mujoco.mjtObj
+
+
+def _stay_awake() -> None:
+    """The default of `JointStop.wake`."""
 
 
 class JointStop:
@@ -27,12 +31,11 @@ class JointStop:
         servos: Returns the servos that drive the same joint.
     """
 
-    wake: Callable[[], None] = staticmethod(lambda: None)
-    """Called when `follow` has to be called at every step from now on."""
-
     def __init__(self, model: str, joint: str, servos: Callable[[], Sequence[ServoHandle]]) -> None:
         self.model_name = model
         self.name = joint
+        self.wake: Callable[[], None] = _stay_awake
+        """Called when `follow` has to be called at every step from now on."""
         self._find_servos = servos
         self._servos: Sequence[ServoHandle] = ()
         self.command: list[float] = [0.0]
@@ -52,10 +55,10 @@ class JointStop:
         turned = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, rotor)
         self._rotor = int(model.jnt_dofadr[turned])
         self._servos = self._find_servos()
-        self.limit(model)
+        self.refresh(model)
 
-    def limit(self, model: Any) -> None:
-        """Reads the limits of the joint, which have changed."""
+    def refresh(self, model: Any) -> None:
+        """Reads the limits of the joint, which may have changed."""
         had, self._ends = self._ends is not None, ends_of(model, self._joint)
         self._turning = math.nan
         if self._ends is None:
@@ -99,3 +102,55 @@ class JointStop:
         """Sets the velocity of the rotor again; see `Rotors`."""
         if self._ends is not None and not math.isnan(self._turning):
             self._qvel[self._rotor] = self._turning
+
+
+class MotorHandle:
+    """A joint driven at a velocity with limited effort; it brakes at zero velocity.
+
+    As in Gazebo, dry friction acts between the joint and a rotor that turns at the target velocity.
+    The joint velocity is exact below the effort limit; at the limit, the joint slips. A joint with
+    position limits stops at them.
+
+    Args:
+        model: Model name.
+        motor: The motor.
+        stop: Stops the motor at the joint's limits; bound before this handle.
+        yields: Whether the owner of the handle leaves the joint to others while it has no command.
+    """
+
+    rivalled = False
+    """Whether another handle, which does not yield, drives the joint."""
+
+    def __init__(self, model: str, motor: Motor, stop: JointStop, *, yields: bool = False) -> None:
+        self.model_name = model
+        self.motor = motor
+        self.stop = stop
+        self.yields = yields
+        """Whether the owner of the handle leaves the joint to others while it has no command."""
+        self.target = 0.0
+        # Until the model is compiled, commands are only stored.
+        self.rotors: Any = [0.0]
+        """Velocities of the compiled model, or the commands of a joint with limits; `dof` is the
+        index of this motor's rotor. A caller at a high rate may set both this velocity and `target`
+        itself, which is what `command` does."""
+        self.dof = 0
+
+    def bind(self, model: Any, data: Any) -> None:  # noqa: ARG002 - all handles bind alike
+        """Writes commands to a compiled model from now on."""
+        self.refresh(model)
+        if not (self.yields and self.rivalled):
+            self.command(self.target)
+
+    def refresh(self, model: Any) -> None:  # noqa: ARG002 - handles are refreshed alike
+        """Finds where to write commands, after the limits of the joint may have changed."""
+        self.rotors, self.dof = self.stop.place
+
+    @property
+    def turns(self) -> bool:
+        """Whether the commanded velocity is nonzero."""
+        return self.target != 0.0
+
+    def command(self, target: float) -> None:
+        """Sets the target velocity, rad/s or m/s."""
+        self.target = target
+        self.rotors[self.dof] = target
