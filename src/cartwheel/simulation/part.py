@@ -15,12 +15,9 @@ from cartwheel.simulation.clock import NANOSECONDS, SLOWEST, Task
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.dynamics.moving_surface import SurfaceHandle
+from cartwheel.simulation.dynamics.velocity_motor import MotorHandle
 from cartwheel.simulation.engine import Engine
-from cartwheel.simulation.handles import (
-    CameraHandle,
-    Handle,
-    MotorHandle,
-)
+from cartwheel.simulation.handles import CameraHandle, Handle
 from cartwheel.simulation.motor_requests import MotorRequests
 from cartwheel.simulation.random_numbers import RandomNumbers
 from cartwheel.simulation.sensing.contacts import contacts_of, geoms_of
