@@ -61,6 +61,9 @@ class RobotPublisher(Protocol):
     def close(self) -> None:
         """Stops publishing."""
 
+    def forget(self) -> None:
+        """Clears the references of the tasks of a closed simulation."""
+
 
 class Session:
     """A simulation with its graph.
@@ -360,6 +363,9 @@ class Session:
         self.shared.get(ControllerFiles).loaded.clear()
         self.graph.close()
         self._clock_task.forget()
+        for each in (self.descriptions, self.states):
+            if each is not None:
+                each.forget()
         self.descriptions = self.states = None
 
     def _check(self, start: int) -> None:

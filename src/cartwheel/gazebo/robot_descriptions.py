@@ -71,6 +71,10 @@ class RobotDescriptions:
             publisher.close()
         self._published.clear()
 
+    def forget(self) -> None:
+        """Clears the references of the tasks of a closed simulation."""
+        self._task.forget()
+
     def _publish(self, name: str, description: RobotDescription) -> Publisher:
         taken = {publisher.topic for _, publisher in self._published.values()}
         space = self._simulation.namespace(name).strip("/")

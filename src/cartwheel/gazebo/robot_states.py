@@ -106,6 +106,11 @@ class RobotStates:
         self._simulation.unschedule(self._looking)
         self._simulation.unschedule(self._telling)
 
+    def forget(self) -> None:
+        """Clears the references of the tasks of a closed simulation."""
+        self._looking.forget()
+        self._telling.forget()
+
     def _is_due(self) -> bool:
         return self._version != self._simulation.scene.version
 
