@@ -69,6 +69,26 @@ def _place(
         poses[link] = frame @ joint.pose @ _motion(joint, angles[joint.name]) @ joint.pose.inverse()
 
 
+class JointPose:
+    """The pose of a joint's child link in its parent link, without the poses of other links.
+
+    Args:
+        description: The robot.
+        joint: One of its joints.
+    """
+
+    def __init__(self, description: RobotDescription, joint: Joint) -> None:
+        rest = {link.name: link.pose for link in description.links}
+        self.joint = joint
+        self._before = rest.get(joint.parent, Pose()).inverse() @ rest[joint.child] @ joint.pose
+        self._after = joint.pose.inverse()
+
+    def at(self, position: float) -> Pose:
+        """The pose at a position of the joint, rad or m."""
+        position = position if math.isfinite(position) else 0.0
+        return self._before @ _motion(self.joint, position) @ self._after
+
+
 def _motion(joint: Joint, position: float) -> Pose:
     axis = joint.axis.xyz
     if position == 0.0:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cartwheel.codes.graph import FRAMES_SHARED
-from cartwheel.description.kinematics import link_poses
+from cartwheel.description.kinematics import JointPose, joint_positions
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.gazebo.robot_descriptions import (
     TOPIC,
@@ -16,7 +16,6 @@ from cartwheel.gazebo.robot_descriptions import (
     is_robot,
     release_descriptions,
 )
-from cartwheel.geometry import Pose
 from cartwheel.graph import Graph, Publisher, resolve_frame
 from cartwheel.messages import header, message_class
 from cartwheel.session import Session
@@ -35,7 +34,10 @@ class _Told:
 
     description: RobotDescription
     prefix: str
-    moving: tuple[Joint, ...]
+    moving: tuple[JointPose, ...]
+    read: tuple[str, ...]
+    """Names of the joints whose positions are read, also those that others mimic."""
+    mimics: bool
     children: frozenset[str]
 
 
@@ -147,15 +149,17 @@ class RobotStates:
                 continue
             by_plugins = _told_by_plugins(description)
             moving = tuple(
-                joint
+                JointPose(description, joint)
                 for joint in joints
                 if (joint.drivable or joint.type == "screw") and joint.name not in by_plugins
             )
-            self._told[name] = _Told(description, prefix, moving, children)
-            fixed = [joint for joint in joints if joint.type == "fixed"]
+            mimics = any(each.joint.mimic is not None for each in moving)
+            read = description.joints if mimics else [each.joint for each in moving]
+            names = tuple(joint.name for joint in read)
+            self._told[name] = _Told(description, prefix, moving, names, mimics, children)
+            fixed = [JointPose(description, joint) for joint in joints if joint.type == "fixed"]
             if fixed:
-                poses = link_poses(description, {})
-                static.put((NODE, name), _transforms(0, fixed, poses, prefix))
+                static.put((NODE, name), _transforms(0, fixed, {}, prefix))
         # Advertise only if there is something to publish, so that /tf shows the actual publisher.
         if self._told and self._publisher is None:
             self._publisher = self._graph.advertise(
@@ -191,12 +195,13 @@ class RobotStates:
             if not told.moving or name not in simulation.models:
                 continue
             positions = {
-                joint.name: simulation.joint_position(name, joint.name)
-                for joint in told.description.joints
-                if (name, joint.name) in placed
+                joint: simulation.joint_position(name, joint)
+                for joint in told.read
+                if (name, joint) in placed
             }
-            poses = link_poses(told.description, positions)
-            transforms += _transforms(simulation.time_ns, told.moving, poses, told.prefix)
+            if told.mimics:
+                positions = joint_positions(told.description, positions)
+            transforms += _transforms(simulation.time_ns, told.moving, positions, told.prefix)
         if transforms:
             self._publisher.publish(message_class("tf2_msgs/msg/TFMessage")(transforms))
 
@@ -257,15 +262,15 @@ def _told_by_plugins(description: RobotDescription) -> set[str]:
 
 
 def _transforms(
-    time_ns: int, joints: Iterable[Joint], poses: dict[str, Pose], prefix: str
+    time_ns: int, joints: Iterable[JointPose], positions: Mapping[str, float], prefix: str
 ) -> list[Any]:
     Stamped, Transform, Vector3, Quaternion = (
         message_class(f"geometry_msgs/msg/{name}")
         for name in ("TransformStamped", "Transform", "Vector3", "Quaternion")
     )
     made = []
-    for joint in joints:
-        pose = poses[joint.parent].inverse() @ poses[joint.child]
+    for each in joints:
+        joint, pose = each.joint, each.at(positions.get(each.joint.name, 0.0))
         made.append(
             Stamped(
                 header(time_ns, resolve_frame(joint.parent, prefix)),
