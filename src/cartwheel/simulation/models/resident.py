@@ -150,6 +150,8 @@ class Resident:
         self.created = ()
         self.drives.clear()
         self.part.handles.clear()
+        for task in self.part.tasks:
+            task.forget()  # A handle refers to its task, to wake it.
         self.part.tasks.clear()
         self.part.on_seed.clear()
         self.part.owned.clear()
