@@ -288,6 +288,33 @@ def test_damping_slows_a_pendulum(make, uncompiled):
     assert joint.velocity == pytest.approx(3.0 - 0.2 / 0.2 * 1.0, abs=2e-3)
 
 
+def test_a_spring_holds_what_gravity_pulls(make, uncompiled):
+    """x = x0 - m g / k; gravity pulls along the axis of the slider."""
+    world = make.world(
+        make.sdf(
+            """<model name="m"><link name="load"><inertial><mass>2</mass><inertia><ixx>0.1</ixx>
+            <iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link>
+            <joint name="slide" type="prismatic"><parent>world</parent><child>load</child>
+            <axis><xyz>0 0 1</xyz><dynamics><damping>40</damping></dynamics></axis></joint>
+            </model>"""
+        ),
+        ground=None,
+    )
+    joint = world.model("m").joints["slide"]
+    assert (joint.stiffness, joint.spring_reference) == (0.0, 0.0)
+    uncompiled()
+    joint.stiffness = 200.0
+    world.run(3.0)
+    assert joint.position == pytest.approx(-2 * G / 200.0, abs=1e-4)
+    joint.spring_reference = 0.3
+    world.run(3.0)
+    assert joint.position == pytest.approx(0.3 - 2 * G / 200.0, abs=1e-4)
+    assert (joint.stiffness, joint.spring_reference) == (200.0, 0.3)
+    for name, value in (("stiffness", -1.0), ("spring_reference", math.inf)):
+        with raises(VALUE_INVALID):
+            setattr(joint, name, value)
+
+
 @pytest.mark.parametrize("quantity", ["damping", "friction", "positions", "velocities"])
 def test_one_number_is_assigned_to_all_joints(make, quantity):
     world = make.world()

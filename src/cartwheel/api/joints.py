@@ -270,6 +270,36 @@ class Joint(Handle):
         self._change(friction=scalar(friction, "friction", least=0.0))
 
     @property
+    def stiffness(self) -> float:
+        """Stiffness of the joint's spring, N m/rad or N/m; 0 without a spring.
+
+        Raises:
+            CartwheelError: The stiffness is negative or not finite.
+            UnknownNameError: The model does not exist any more.
+            SimulationError: The world is closed.
+        """
+        return self._described.axis.spring_stiffness
+
+    @stiffness.setter
+    def stiffness(self, stiffness: float) -> None:
+        self._change(spring_stiffness=scalar(stiffness, "stiffness", least=0.0))
+
+    @property
+    def spring_reference(self) -> float:
+        """Position at which the joint's spring exerts no effort, rad or m.
+
+        Raises:
+            CartwheelError: The position is not finite.
+            UnknownNameError: The model does not exist any more.
+            SimulationError: The world is closed.
+        """
+        return self._described.axis.spring_reference
+
+    @spring_reference.setter
+    def spring_reference(self, position: float) -> None:
+        self._change(spring_reference=scalar(position, "spring_reference"))
+
+    @property
     def gains(self) -> Gains | None:
         """Gains of the joint's PID controller; None without one.
 
