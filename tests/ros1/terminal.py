@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import pty
 import re
-import select
 import signal
 import subprocess
+import threading
 import time
 import uuid
 from collections.abc import Mapping
@@ -18,6 +19,9 @@ ESCAPES = re.compile(r"\x1b(\[[0-9;?]*[A-Za-z]|\][^\x07]*\x07|[=>])|\r")
 
 class Terminal:
     """An interactive bash behind a pseudo-terminal.
+
+    What is shown is read at all times, as by a real terminal: a program whose terminal is full
+    waits.
 
     Args:
         environment: Of the shell.
@@ -41,6 +45,22 @@ class Terminal:
         )
         os.close(slave)
         self._mark = 0
+        self._arrived = threading.Condition()
+        self._reader = threading.Thread(target=self._keep_reading, daemon=True)
+        self._reader.start()
+
+    def _keep_reading(self) -> None:
+        decoder = codecs.getincrementaldecoder("utf-8")("replace")
+        while True:
+            try:
+                data = os.read(self._master, 65536)
+            except OSError:  # nobody writes any more
+                return
+            if not data:
+                return
+            with self._arrived:
+                self.said += ESCAPES.sub("", decoder.decode(data))
+                self._arrived.notify_all()
 
     def type(self, command: str) -> None:
         """Types a line and the return key."""
@@ -49,8 +69,8 @@ class Terminal:
 
     def forget(self) -> None:
         """Lets `read` and `wait_for` look only at what is shown from now on."""
-        self.read(0.0)
-        self._mark = len(self.said)
+        with self._arrived:
+            self._mark = len(self.said)
 
     def press(self, keys: str) -> None:
         """Presses keys, without return."""
@@ -66,17 +86,11 @@ class Terminal:
         self._until_idle(15.0)
 
     def read(self, seconds: float) -> str:
-        """What was shown since the last command, after at most `seconds` without anything new."""
-        until = time.monotonic() + seconds
-        while select.select([self._master], [], [], max(0.0, until - time.monotonic()))[0]:
-            try:
-                data = os.read(self._master, 65536)
-            except OSError:
-                break
-            if not data:
-                break
-            self.said += ESCAPES.sub("", data.decode(errors="replace"))
-        return self.said[self._mark :]
+        """What was shown since the last command; waits at most `seconds` for anything new."""
+        with self._arrived:
+            if seconds:
+                self._arrived.wait(seconds)
+            return self.said[self._mark :]
 
     def wait_for(self, pattern: str, seconds: float = 120.0) -> re.Match[str]:
         """Waits until a regular expression is shown after the last command.
@@ -111,6 +125,7 @@ class Terminal:
             if number is signal.SIGINT:
                 self._until_idle(15.0)
         self._process.wait()
+        self._reader.join(15.0)
         os.close(self._master)
 
     def children(self) -> list[int]:

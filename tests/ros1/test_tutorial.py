@@ -133,8 +133,10 @@ def test_the_imu_is_read(shell: Terminal) -> None:
     assert z == pytest.approx(9.8, abs=0.2)
 
 
-def test_rviz_shows_the_cart_and_its_image(desk: Desk, shell: Terminal) -> None:
+def test_rviz_shows_the_cart_and_its_image(desk: Desk, rviz: Terminal, shell: Terminal) -> None:
     """Model colours in the scene, no white of a link without transform, the post in the panel."""
+
+    found: dict[str, float] = {}
 
     def seen() -> bool:
         pixels = desk.look().astype(int)
@@ -142,9 +144,12 @@ def test_rviz_shows_the_cart_and_its_image(desk: Desk, shell: Terminal) -> None:
         red, green, blue = (scene[..., channel] for channel in range(3))
         cart = ((blue > red + 40) & (blue > green + 10)).sum()
         white = (scene.min(axis=2) > 250).sum()
+        found.update(cart=cart, white=white, panel=panel.std())
         return bool(cart > 1500 and white < cart / 4 and panel.std() > 15)
 
-    assert eventually(seen, 240.0), f"see {desk.folder / 'screen.png'}"
+    assert eventually(seen, 240.0), (
+        f"{found}, see {desk.folder / 'screen.png'}\n{rviz.said[-3000:]}"
+    )
     if pictures := os.environ.get("CARTWHEEL_PICTURES"):
         Image.open(desk.folder / "screen.png").crop((0, 0, 1200, 846)).save(
             Path(pictures) / "rviz.png", optimize=True
