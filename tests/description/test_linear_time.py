@@ -104,3 +104,8 @@ def test_a_rule_stops_after_many_findings(tmp_path):
     found = [each for each in check(file).findings if each.code.name == "joint-link-unknown"]
     assert len(found) <= 201
     assert [each.values["most"] for each in found if "most" in each.values] == [200]
+
+
+@pytest.mark.parametrize("text", ["<macro ", "<macro ></macro", "<macro></macro>"])
+def test_macros_that_do_not_end(text):
+    assert finding._only_defines(text * 100_000) == text.endswith("/macro>")

@@ -35,7 +35,7 @@ _DEFINED = {
     "argument": r"""<(?:xacro:)?arg\b[^>]*?\bname\s*=\s*["']{}["']""",
 }
 """Definitions by the kind of name."""
-_MACRO = re.compile(r"<(?:xacro:)?macro\b.*?</(?:xacro:)?macro\s*>", re.DOTALL)
+_MACRO, _MACRO_END = re.compile(r"<(?:xacro:)?macro\b"), re.compile(r"</(?:xacro:)?macro\s*>")
 _USED = re.compile(
     r"<(?:link|joint|gazebo|xacro:(?!(?:include|macro|property|arg|if|unless)\b)\w+)\b"
 )
@@ -235,8 +235,12 @@ def _pattern(name: str) -> re.Pattern[str] | None:
 
 def _only_defines(text: str) -> bool:
     """Whether a xacro only defines macros, although its includes cannot be expanded alone."""
-    rest, macros = _MACRO.subn("", text)
-    return macros > 0 and not _USED.search(rest)
+    rest, place = [], 0
+    while (macro := _MACRO.search(text, place)) and (end := _MACRO_END.search(text, macro.end())):
+        rest.append(text[place : macro.start()])
+        place = end.end()
+    rest.append(text[place:])
+    return len(rest) > 1 and not _USED.search("".join(rest))
 
 
 def _is_chosen(path: Path) -> bool:
