@@ -112,3 +112,13 @@ def test_a_run_in_pieces_and_a_restored_one_have_the_same_bits():
         world.restore(saved)
         world.run(0.5)
         assert state(world) == expected
+
+
+def test_steps_are_as_fast_as_before_once_the_box_is_gone():
+    with turntable() as world:
+        start(world, 2.0)
+        engine = world.session.simulation.engine
+        assert engine.carries
+        world.model("box").delete()
+        world.run(0.1)
+        assert not engine.carries

@@ -167,6 +167,8 @@ class Engine:
         self.model, self.data = model, data
         self.align(alignments)
         self.stepping = Stepping(model, data, bounces)
+        # Otherwise nothing would look for such bodies again, and each step would take longer.
+        self.carries = self.carries and self.stepping.carried is not None
         self.visuals.bind(model, data, compile_visuals)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._located = self.refreshed = b""
