@@ -111,7 +111,7 @@ class MessagingWorld(TimedWorld):
     def _full_name(self, topic: str, kind: Kind | None) -> str | None:
         """The name of a type that a program gives; None if it gives none."""
         if kind is None:
-            return _TRANSFORMS if text(topic, "topic").lstrip("/") in ("tf", "tf_static") else None
+            return _TRANSFORMS if _has_transforms(text(topic, "topic")) else None
         return str(self.message_class(name_of(kind)).__msgtype__)
 
     def _describe(self, topic: str) -> None:
@@ -122,7 +122,7 @@ class MessagingWorld(TimedWorld):
             from cartwheel.gazebo.robot_descriptions import hold_descriptions
 
             hold = hold_descriptions
-        elif topic.lstrip("/") in ("tf", "tf_static"):
+        elif _has_transforms(topic):
             from cartwheel.gazebo.robot_states import hold_states
 
             name, hold = "tf", hold_states
@@ -336,3 +336,7 @@ class MessagingWorld(TimedWorld):
                 simulation.drain()
                 if release is not None:
                     release()
+
+
+def _has_transforms(topic: str) -> bool:
+    return topic.lstrip("/") in ("tf", "tf_static")
