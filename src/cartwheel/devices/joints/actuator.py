@@ -262,13 +262,7 @@ class JointActuator:
             assert servo is not None
             if self._is_limited:
                 target, damping = self._limited_effort(target, damping, seconds)
-            if servo.applied == "effort" and damping == servo.law[1]:
-                # This is `command_effort` inlined.
-                servo.law = (target, damping)
-                servo.controls[servo.id] = target
-                servo.rotors[servo.dof] = 0.0
-            else:
-                servo.command_effort(target, damping)
+            servo.command_effort(target, damping)
         elif active == "held":
             assert self._servo is not None
             self._servo.command_position(target)

@@ -115,7 +115,7 @@ def rate_of(target: Number, before: Number, seconds: float) -> Number:
     return (target - before) / seconds if seconds > 0 else 0.0
 
 
-STIFF = 0.1
+_STIFF = 0.1
 """(omega T)² of a spring and a joint that oscillate with a period of twenty control periods."""
 
 
@@ -142,7 +142,7 @@ def position_effort(
     """
     p, d = gains.p, gains.d
     effort = p * error + integral_term(gains, integral) + d * rate
-    stiff = p * seconds * seconds * lightness > STIFF
+    stiff = p * seconds * seconds * lightness > _STIFF
     if stiff is False or not anywhere(stiff):
         return DampedEffort(effort, d)
     return DampedEffort(
@@ -193,10 +193,8 @@ class Pid:
 
     def reset(self) -> None:
         """Clears the integral and the last target."""
-        self.integral = 0.0
-        """The stored integral; see `integrate`."""
-        self.target: float | None = None
-        """The last target; None before the first."""
+        self._integral = 0.0
+        self._target: float | None = None
 
     def position(
         self,
@@ -228,24 +226,24 @@ class Pid:
         """
         gains = self.gains
         if rate is None:
-            before = target if self.target is None else self.target
+            before = target if self._target is None else self._target
             rate = (target - before) / seconds if seconds > 0 else 0.0
-        self.target = target
+        self._target = target
         if gains.stored != "error":
-            self.integral = integrate(gains, self.integral, error, seconds)
+            self._integral = integrate(gains, self._integral, error, seconds)
             return position_effort(
-                gains, error, self.integral, rate=rate, seconds=seconds, lightness=lightness
+                gains, error, self._integral, rate=rate, seconds=seconds, lightness=lightness
             )
         # The same without calls, because most controllers do this at every step.
         p, d, low, high = gains.p, gains.d, gains.i_min, gains.i_max
-        self.integral = integral = self.integral + error * seconds
+        self._integral = integral = self._integral + error * seconds
         term = gains.i * integral
         if low > term:  # noqa: PLR1730
             term = low
         if high < term:  # noqa: PLR1730
             term = high
         effort = p * error + term + d * rate
-        if p * seconds * seconds * lightness > STIFF:
+        if p * seconds * seconds * lightness > _STIFF:
             effort, d = effort + p * seconds * rate, d + p * seconds
         return effort, d
 
@@ -257,13 +255,13 @@ class Pid:
         `lightness` is the acceleration of the joint per effort; see `velocity_effort`.
         """
         change = self._change(target, seconds)
-        self.integral = integrate(self.gains, self.integral, target - velocity, seconds)
-        return velocity_effort(self.gains, target, self.integral, change, lightness)
+        self._integral = integrate(self.gains, self._integral, target - velocity, seconds)
+        return velocity_effort(self.gains, target, self._integral, change, lightness)
 
     def effort(self, error: float, seconds: float) -> float:
         """Returns the limited effort in N m or N for an error; see `plain_effort`."""
-        self.integral = integrate(self.gains, self.integral, error, seconds)
-        effort: float = plain_effort(self.gains, error, self.integral)
+        self._integral = integrate(self.gains, self._integral, error, seconds)
+        effort: float = plain_effort(self.gains, error, self._integral)
         return effort
 
     def limited(self, command: DampedEffort, velocity: float) -> DampedEffort:
@@ -276,7 +274,7 @@ class Pid:
 
     def _change(self, target: float, seconds: float) -> float:
         """Stores a target, and returns its rate of change since the last one."""
-        before = target if self.target is None else self.target
-        self.target = target
+        before = target if self._target is None else self._target
+        self._target = target
         change: float = rate_of(target, before, seconds)
         return change

@@ -8,7 +8,7 @@ from typing import Literal
 
 from cartwheel.devices.elementwise import remainder
 from cartwheel.devices.joints.actuator import JointActuator
-from cartwheel.devices.joints.pid import STIFF, DampedEffort, Pid, PidGains
+from cartwheel.devices.joints.pid import DampedEffort, Pid, PidGains
 
 Quantity = Literal["position", "velocity", "effort"]
 UNKNOWN = (math.nan, math.nan)
@@ -69,25 +69,9 @@ class PidJoint:
                 error = target - state.qpos[state.qposadr]
             else:
                 error = math.remainder(target - state.qpos[state.qposadr], _TURN)
-            pid, lightness = self._pid, state.lightness
-            gains = pid.gains
-            if gains.stored == "error":
-                # This is `position_terms` inlined.
-                before = target if pid.target is None else pid.target
-                rate = (target - before) / seconds if seconds > 0 else 0.0
-                pid.target = target
-                p, damping, low, high = gains.p, gains.d, gains.i_min, gains.i_max
-                pid.integral = integral = pid.integral + error * seconds
-                term = gains.i * integral
-                if low > term:  # noqa: PLR1730
-                    term = low
-                if high < term:  # noqa: PLR1730
-                    term = high
-                effort = p * error + term + damping * rate
-                if p * seconds * seconds * lightness > STIFF:
-                    effort, damping = effort + p * seconds * rate, damping + p * seconds
-            else:
-                effort, damping = pid.position_terms(error, seconds, target, None, lightness)
+            effort, damping = self._pid.position_terms(
+                error, seconds, target, None, state.lightness
+            )
         output: float = effort - damping * velocity
         if self.config.commands_effort:
             joint.command, joint.damping = effort, damping

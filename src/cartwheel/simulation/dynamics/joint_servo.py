@@ -65,11 +65,11 @@ class ServoHandle:
 
     # They are read at every step: an object with so many attributes would keep them in a table.
     __slots__ = (
-        "_awake", "_bias", "_braking", "_commanded_again", "_ends", "_fastest", "_first", "_grip",
-        "_joint", "_joint_dof", "_limit", "_near", "_position", "_qpos", "_rate", "_step",
-        "_strength", "_target", "_tendon", "_turning", "alone", "applied", "controls", "dof", "id",
-        "law", "mode", "model_name", "motor", "period", "rivalled", "rotors", "shared", "wake",
-        "yields",
+        "_applied", "_awake", "_bias", "_braking", "_commanded_again", "_ctrl", "_ends",
+        "_fastest", "_first", "_grip", "_joint", "_joint_dof", "_law", "_limit", "_near",
+        "_position", "_qpos", "_qvel", "_rate", "_rotor", "_step", "_strength", "_target",
+        "_tendon", "_turning", "alone", "id", "mode", "model_name", "motor", "period",
+        "rivalled", "shared", "wake", "yields",
     )  # fmt: skip
 
     def __init__(self, model: str, motor: Motor, *, yields: bool = False) -> None:
@@ -88,9 +88,9 @@ class ServoHandle:
         self.yields = yields
         """Whether the owner of the handle leaves the joint to others while it has no command."""
         self.mode: Mode = "idle"
-        self.applied: Mode = "idle"
+        self._applied: Mode = "idle"
         """The mode in which `_apply` set the actuator; idle if it must be set again."""
-        self.law = (0.0, 0.0)
+        self._law = (0.0, 0.0)
         """The effort and its damping; see `command_effort`."""
         self._awake = False
         self._ends: tuple[float, float] | None = None
@@ -109,15 +109,12 @@ class ServoHandle:
         joint = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, name)
         # Memory views contain Python floats, and are cheaper than arrays.
         self._qpos: Any = memoryview(data.qpos)
-        self.rotors: Any = memoryview(data.qvel)
+        self._qvel: Any = memoryview(data.qvel)
         self._position = int(model.jnt_qposadr[joint])
         self._step = float(model.opt.timestep)
         turned = mujoco.mj_name2id(model, _OBJ.mjOBJ_JOINT, rotor)
-        self.dof = int(model.jnt_dofadr[turned])
-        self.controls: Any = memoryview(data.ctrl)
-        """Controls and velocities of the compiled model; `id` and `dof` are the indices of the
-        effort and of the rotor. A caller at a high rate may set an effort itself, as
-        `command_effort` does."""
+        self._rotor = int(model.jnt_dofadr[turned])
+        self._ctrl: Any = memoryview(data.ctrl)
         self._bias = model.actuator_biasprm[self.id]
         self._grip = model.tendon_frictionloss
         self._tendon = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, rotor)
@@ -129,7 +126,7 @@ class ServoHandle:
         self._commanded_again = self.period <= self._step
         if self._first is None:
             place = (self._target, self._rate, self._fastest, self._limit)
-            self._first = (self.mode, self.law, self._turning, *place)
+            self._first = (self.mode, self._law, self._turning, *place)
         if self._awake or (self.mode == "position" and not self._commanded_again):
             self._rouse()
         self._apply()
@@ -154,7 +151,7 @@ class ServoHandle:
     def rewind(self) -> None:
         """Returns to the command that it had when the model was spawned, mostly none."""
         assert self._first is not None
-        self.mode, self.law, self._turning = self._first[:3]
+        self.mode, self._law, self._turning = self._first[:3]
         self._target, self._rate, self._fastest, self._limit = self._first[3:]
         self._apply()
 
@@ -166,10 +163,10 @@ class ServoHandle:
         """Applies an effort in N m or N, minus the damping in N m s/rad or N s/m times the
         velocity.
         """
-        if self.applied == "effort" and damping == self.law[1]:
-            self.law = (effort, damping)
-            self.controls[self.id] = effort
-            self.rotors[self.dof] = 0.0
+        if self._applied == "effort" and damping == self._law[1]:
+            self._law = (effort, damping)
+            self._ctrl[self.id] = effort
+            self._qvel[self._rotor] = 0.0
         else:
             self._give("effort", effort, damping)
 
@@ -180,8 +177,8 @@ class ServoHandle:
             if not self._awake:
                 self._rouse()
             velocity = inside(velocity, self._qpos[self._position], self._ends)
-        if self.applied == "velocity":
-            self._turning = self.rotors[self.dof] = velocity
+        if self._applied == "velocity":
+            self._turning = self._qvel[self._rotor] = velocity
         else:
             self._limit = math.inf
             self._turn("velocity", velocity)
@@ -204,7 +201,7 @@ class ServoHandle:
         self._target, self._rate, self._fastest = position, velocity, max_velocity
         if max_effort != self._limit:
             self._limit = max_effort
-            self.applied = "idle"
+            self._applied = "idle"
         if not (self._awake or self._commanded_again):
             self._rouse()
         # Comparisons take a quarter of the time of `abs`, `copysign`, `min` and `max`.
@@ -217,15 +214,15 @@ class ServoHandle:
             wanted = -max_velocity
         if max_velocity < wanted:  # noqa: PLR1730
             wanted = max_velocity
-        if self.applied == "position":
-            self._turning = self.rotors[self.dof] = wanted
+        if self._applied == "position":
+            self._turning = self._qvel[self._rotor] = wanted
         else:
             self._turn("position", wanted)
 
     @property
     def turns(self) -> bool:
         """Whether it applies an effort or drives the joint."""
-        return self.mode != "idle" and (self.law[0] != 0.0 or self._turning != 0.0)
+        return self.mode != "idle" and (self._law[0] != 0.0 or self._turning != 0.0)
 
     def follow(self) -> None:
         """Moves the joint toward its target position, or stops it at a limit; called at every
@@ -249,19 +246,19 @@ class ServoHandle:
 
     def _give(self, mode: Mode, effort: float, damping: float) -> None:
         self.mode = mode
-        self.law = (effort, damping)
+        self._law = (effort, damping)
         self._turning = 0.0
         self._apply()
 
     def _turn(self, mode: Mode, velocity: float) -> None:
         self.mode = mode
-        self.law = (0.0, 0.0)
+        self._law = (0.0, 0.0)
         self._turning = velocity
         self._apply()
 
     def _apply(self) -> None:
-        effort, damping = self.law
-        self.controls[self.id] = effort
+        effort, damping = self._law
+        self._ctrl[self.id] = effort
         self._bias[2] = -damping
         holds = self.mode in ("velocity", "position")
         if holds:
@@ -269,5 +266,5 @@ class ServoHandle:
         else:
             self._grip[self._tendon] = self._strength if self.shared else 0.0
         if holds or not self.shared:
-            self.rotors[self.dof] = self._turning
-        self.applied = self.mode if self.alone else "idle"
+            self._qvel[self._rotor] = self._turning
+        self._applied = self.mode if self.alone else "idle"
