@@ -320,3 +320,24 @@ class Pose:
             point = _three(point, "point")
         dx, dy, dz = rotate(self.orientation, point)
         return (self.position[0] + dx, self.position[1] + dy, self.position[2] + dz)
+
+
+def interpolated(start: Pose, end: Pose, share: float) -> Pose:
+    """The pose between two poses: linear in position, spherical in orientation (slerp).
+
+    Args:
+        start: The pose at `share` 0.
+        end: The pose at `share` 1.
+        share: From 0 to 1.
+    """
+    x, y, z = (a + (b - a) * share for a, b in zip(start.position, end.position, strict=True))
+    one, two = start.orientation, end.orientation
+    cosine = sum(a * b for a, b in zip(one, two, strict=True))
+    # Both signs of a quaternion are the same rotation; the shorter way is used.
+    sign, cosine = (-1.0, -cosine) if cosine < 0 else (1.0, cosine)
+    before, after = 1 - share, share
+    if cosine < 1 - 1e-12:
+        angle = math.acos(cosine)
+        before, after = (math.sin(each * angle) / math.sin(angle) for each in (before, after))
+    turned = [before * a + sign * after * b for a, b in zip(one, two, strict=True)]
+    return Pose((x, y, z), quat_normalize(turned))

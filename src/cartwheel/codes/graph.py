@@ -119,3 +119,12 @@ ACTION_UNKNOWN = Code("CW734", "action-unknown", "error", "an action does not ex
 TOPICS_SHARED = Code(
     "CW735", "topics-shared", "warning", "two models publish on or subscribe to the same topics"
 )
+FRAME_UNKNOWN = Code(
+    "CW736", "transform-frame-unknown", "error", "a frame of a transform does not exist"
+)
+FRAMES_NOT_CONNECTED = Code(
+    "CW737", "frames-not-connected", "error", "no transforms connect two frames"
+)
+TRANSFORM_TIME = Code(
+    "CW738", "transform-time", "error", "a transform is not known at the requested time"
+)

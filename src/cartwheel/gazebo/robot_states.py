@@ -35,6 +35,8 @@ class _Told:
     description: RobotDescription
     prefix: str
     moving: tuple[JointPose, ...]
+    others: tuple[JointPose, ...]
+    """Moving joints whose transforms plugins publish."""
     read: tuple[str, ...]
     """Names of the joints whose positions are read, also those that others mimic."""
     mimics: bool
@@ -148,15 +150,17 @@ class RobotStates:
             if self._are_told(name, children):
                 continue
             by_plugins = _told_by_plugins(description)
-            moving = tuple(
+            turning = [
                 JointPose(description, joint)
                 for joint in joints
-                if (joint.drivable or joint.type == "screw") and joint.name not in by_plugins
-            )
+                if joint.drivable or joint.type == "screw"
+            ]
+            moving = tuple(each for each in turning if each.joint.name not in by_plugins)
+            others = tuple(each for each in turning if each.joint.name in by_plugins)
             mimics = any(each.joint.mimic is not None for each in moving)
             read = description.joints if mimics else [each.joint for each in moving]
             names = tuple(joint.name for joint in read)
-            self._told[name] = _Told(description, prefix, moving, names, mimics, children)
+            self._told[name] = _Told(description, prefix, moving, others, names, mimics, children)
             fixed = [JointPose(description, joint) for joint in joints if joint.type == "fixed"]
             if fixed:
                 static.put((NODE, name), _transforms(0, fixed, {}, prefix))
@@ -188,22 +192,34 @@ class RobotStates:
 
     def _publish(self) -> None:
         assert self._publisher is not None
+        if transforms := self.transforms():
+            self._publisher.publish(message_class("tf2_msgs/msg/TFMessage")(transforms))
+
+    def transforms(self, *, every: bool = False) -> list[Any]:
+        """The ``TransformStamped`` messages of the moving joints, for the current positions.
+
+        Args:
+            every: Also of the joints whose transforms plugins publish.
+        """
         simulation = self._simulation
         placed = set(simulation.scene.joints)
         transforms: list[Any] = []
         for name, told in self._told.items():
-            if not told.moving or name not in simulation.models:
+            joints, read = told.moving, told.read
+            if every and told.others:
+                joints += told.others
+                read += tuple(each.joint.name for each in told.others)
+            if not joints or name not in simulation.models:
                 continue
             positions = {
                 joint: simulation.joint_position(name, joint)
-                for joint in told.read
+                for joint in read
                 if (name, joint) in placed
             }
             if told.mimics:
                 positions = joint_positions(told.description, positions)
-            transforms += _transforms(simulation.time_ns, told.moving, positions, told.prefix)
-        if transforms:
-            self._publisher.publish(message_class("tf2_msgs/msg/TFMessage")(transforms))
+            transforms += _transforms(simulation.time_ns, joints, positions, told.prefix)
+        return transforms
 
 
 def hold_states(session: Session, *, reports: bool = True) -> Callable[[], None]:

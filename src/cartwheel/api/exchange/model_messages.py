@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any, cast, overload
 from cartwheel.api.arguments import text
 from cartwheel.api.handles import Handle
 from cartwheel.api.timing import TIMEOUT
-from cartwheel.graph import Mailbox, Subscription, resolve_name
+from cartwheel.graph import Mailbox, Subscription, resolve_frame, resolve_name
 from cartwheel.messages.typed import Kind, M
 
 if TYPE_CHECKING:
     from cartwheel.api.calling import Goal
     from cartwheel.api.exchange.serving import ServiceServer
+    from cartwheel.api.links import Link
     from cartwheel.api.topics import Topic
     from cartwheel.api.world import World
+    from cartwheel.geometry import Pose
 
 
 class MessagingModel(Handle):
@@ -116,6 +118,17 @@ class MessagingModel(Handle):
     def send_goal(self, action: str, goal: Any = None, **fields: Any) -> Goal:
         """`World.send_goal`, where a name without a leading ``/`` is in the model's namespace."""
         return self._world.send_goal(self._resolved(action, "action"), goal, **fields)
+
+    def transform(self, target: str | Link, source: str | Link, time: float | None = None) -> Pose:
+        """`World.transform`, where a name without a leading ``/`` has the model's frame prefix."""
+        frames = (self._frame(target), self._frame(source))
+        return self._world.transform(*frames, time)
+
+    def _frame(self, frame: str | Link) -> str | Link:
+        if not isinstance(frame, str):
+            return frame
+        with self._world.lock:
+            return resolve_frame(frame, self._world.session.simulation.frame_prefix(self.name))
 
     def _resolved(self, name: str, argument: str = "topic") -> str:
         return resolve_name(text(name, argument), self.namespace)

@@ -1,0 +1,126 @@
+"""Transforms between frames of a world: what a node would look up."""
+
+import pytest
+from tests.coded import raises
+
+import cartwheel as cw
+from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.graph import FRAME_UNKNOWN, TRANSFORM_TIME
+from cartwheel.codes.world import SIMULATION_CLOSED, UNKNOWN_MODEL, VALUE_INVALID
+from cartwheel.errors import GraphError, SimulationError, UnknownNameError
+
+
+@pytest.fixture
+def world(make):
+    return make.world()
+
+
+@pytest.fixture
+def cart(world, rosbots):
+    return world.spawn(rosbots, name="cart", z=0.05)
+
+
+def close(one: cw.Pose, two: cw.Pose, tolerance: float = 1e-9) -> bool:
+    between = one.inverse() @ two
+    return max(map(abs, (*between.position, *between.rpy))) < tolerance
+
+
+def test_links_are_known_at_once_and_as_exact_as_their_poses(world, cart):
+    cart.joints.positions["wheel_left_joint"] = 0.7
+    for link in cart.links:
+        found = world.transform("base_link", cart.link(link))
+        assert close(found, cart.link("base_link").pose.inverse() @ cart.link(link).pose), link
+    assert set(cart.links) <= set(world.frames)
+
+
+def test_the_past_of_a_drive_is_interpolated(world, cart):
+    world.keep_transforms()
+    cart.publish("/part2_cmr/cmd_vel", linear_x=0.5, angular_z=0.4)
+    poses = {}
+    for _ in range(40):
+        world.run(0.05)
+        poses[round(world.time, 2)] = cart.pose
+    for time, pose in poses.items():
+        assert close(world.transform("odom", "base_footprint", time), pose), time
+    between = world.transform("odom", "base_footprint", 1.0123)
+    assert poses[1.0].x < between.x < poses[1.05].x
+    assert world.transform("odom", cart.link("base_link")) == world.transform("odom", "base_link")
+    with raises(TRANSFORM_TIME, GraphError, time=3.0, newest=2.0):
+        world.transform("odom", "base_link", 3.0)
+
+
+def test_frames_of_a_robot_have_its_prefix(world, rosbots):
+    left = world.spawn(rosbots, name="left", namespace="left", frame_prefix="left", z=0.05)
+    other = left.transform("base_link", left.link("camera"))
+    assert other == world.transform("left/base_link", "left/camera")
+    assert other == left.transform("/left/base_link", "camera")
+    with raises(FRAME_UNKNOWN, UnknownNameError, name="base_link"):
+        world.transform("base_link", "left/camera")
+
+
+def test_programs_add_transforms(world, cart):
+    world.keep_transforms()
+    map_to_odom = {
+        "header": {"frame_id": "map"},
+        "child_frame_id": "odom",
+        "transform": {"translation": {"x": 3.0}},
+    }
+    world.publish("/tf_static", transforms=[map_to_odom])
+    world.run(0.5)
+    assert close(world.transform("map", "odom"), cw.Pose((3.0, 0.0, 0.0)))
+    assert abs(world.transform("map", "base_footprint").x - 3.0 - cart.pose.x) < 1e-9
+
+
+def test_time_that_goes_back_takes_the_transforms_with_it(world, cart):
+    world.keep_transforms()
+    cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
+    world.run(1.0)
+    state, then = world.save(), world.transform("odom", "base_link")
+    world.run(1.0)
+    assert world.transform("odom", "base_link") != then
+    world.restore(state)
+    assert world.transform("odom", "base_link") == then
+    with raises(TRANSFORM_TIME, GraphError, newest=1.0):
+        world.transform("odom", "base_link", 1.5)
+    assert world.transform("odom", "base_link", 0.5).x < then.x
+    world.reset()
+    assert "odom" not in world.frames
+    assert close(
+        world.transform("base_link", "wheel_left_link"),
+        cart.link("base_link").pose.inverse() @ cart.link("wheel_left_link").pose,
+    )
+
+
+def test_reading_transforms_changes_nothing(make, rosbots):
+    ends = []
+    for reads in (False, True):
+        world = make.world()
+        cart = world.spawn(rosbots, z=0.05)
+        cart.publish("/part2_cmr/cmd_vel", linear_x=0.5)
+        for _ in range(10):
+            world.run(0.1)
+            if reads:
+                world.transform("base_link", "camera")
+        ends.append((cart.pose, cart.velocity))
+    assert ends[0] == ends[1]
+
+
+def test_nothing_is_published_for_worlds_that_do_not_ask(world, cart):
+    world.run(0.1)
+    assert not {"/tf", "/tf_static"} & {
+        topic.name for topic in world.graph.topics() if topic.subscribers
+    }
+
+
+def test_what_cannot_be_looked_up_is_refused(world, cart):
+    with raises(OPTION_INVALID, name="target"):
+        world.transform(3, "base_link")
+    with raises(VALUE_INVALID, name="seconds"):
+        world.keep_transforms(0.0)
+    gone = cart.link("base_link")
+    cart.delete()
+    with raises(UNKNOWN_MODEL, UnknownNameError, name="cart"):
+        world.transform(gone, "camera")
+    world.close()
+    with raises(SIMULATION_CLOSED, SimulationError):
+        world.transform("base_link", "camera")
