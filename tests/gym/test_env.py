@@ -200,7 +200,7 @@ def test_variations_start_from_the_values_of_the_file(job):
     from cartwheel.batch import Batch
 
     change = vary("rosbots", mass=(2.0, 2.0), friction=(0.3, 0.3), light=(0.5, 0.5),
-                  damping=(3.0, 3.0), pose={"x": (1.0, 1.0)})  # fmt: skip
+                  damping=(3.0, 3.0), effort=(0.5, 0.5), pose={"x": (1.0, 1.0)})  # fmt: skip
     batch = Batch(job.built, 1, act={}, obs={"pose": pose}, vary=change, workers=0)
     world = batch.world(0)
     cart = world.model("rosbots")
@@ -212,6 +212,7 @@ def test_variations_start_from_the_values_of_the_file(job):
         assert cart.link("wheel_left_link").friction == (0.3, 0.3)
         assert cart.joints["wheel_left_joint"].damping == 3 * damping
         assert world.light("sun").intensity == 0.5 * light
+        assert cart.joints["wheel_left_joint"].effort_limit == 10.0
         assert cart.pose.x == pytest.approx(1.0, abs=0.01)
     batch.close()
     assert progress({"pose": np.zeros((1, 3))}, None, {"pose": np.ones((1, 3))}).tolist() == [1.0]

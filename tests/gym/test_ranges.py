@@ -13,7 +13,7 @@ def test_an_unknown_coordinate_is_refused():
     assert '"yaws" does not exist' in str(caught.value)
 
 
-@pytest.mark.parametrize("where", ["mass", "friction", "damping", "light", "pose"])
+@pytest.mark.parametrize("where", ["mass", "friction", "damping", "effort", "light", "pose"])
 @pytest.mark.parametrize("limits", [(1.1, 0.9), (1.0,), 1.0, (0.0, float("inf")), ("a", "b")])
 def test_a_range_has_the_smaller_number_first(where, limits):
     with raises(VALUE_INVALID):

@@ -137,6 +137,25 @@ def test_damping_friction_and_limits_of_joints(robot):
         assert {"dof_damping", "dof_frictionloss"} <= made
 
 
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_efforts_and_velocities_of_joints(robot):
+    world, model = spawned(robot)
+    with world:
+        for limit in (0.5, 30.0, None):
+
+            def limited(limit=limit):
+                for joint in model.joints.names:
+                    model.joints[joint].effort_limit = limit
+
+            made = compare(world, limited)
+            assert "jnt_actfrcrange" in made or robot == "rrbot"
+
+        def slow(joint):
+            return dataclasses.replace(joint, axis=dataclasses.replace(joint.axis, velocity=0.3))
+
+        compare(world, lambda: redescribe(world, model.name, joints=slow))
+
+
 def test_gravity(make):
     world, model = spawned("rosbots.xacro")
     with world:

@@ -3,7 +3,7 @@
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
 from cartwheel.api.contacts import Contact
-from cartwheel.api.joints import Gains, Joint, Joints
+from cartwheel.api.joints import Joint, Joints
 from cartwheel.api.lights import Light
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
@@ -11,6 +11,7 @@ from cartwheel.api.motion import Acceleration, Twist
 from cartwheel.api.pictures import Picture
 from cartwheel.api.plots import Plot
 from cartwheel.api.properties.joint_values import JointValues
+from cartwheel.api.properties.of_joints import Gains
 from cartwheel.api.recordings import RecordedMessage, Recording
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic

@@ -30,6 +30,8 @@ class _Original:
         self.masses = {each: mass for each, mass in masses.items() if mass > 0}
         self.colliding = [each for each in model.links if _collides(model.link(each))]
         self.dampings = {each: model.joints[each].damping for each in model.joints.names}
+        efforts = {each: model.joints[each].effort_limit for each in model.joints.names}
+        self.efforts = {each: effort for each, effort in efforts.items() if effort is not None}
         self.lights = {each: world.light(each).intensity for each in world.lights}
 
 
@@ -47,11 +49,12 @@ class Variation:
     """Changes a model and the light by uniformly distributed random numbers; see `vary`."""
 
     model: str
+    pose: Mapping[str, Range]
     mass: Range | None = None
     friction: Range | None = None
     damping: Range | None = None
+    effort: Range | None = None
     light: Range | None = None
-    pose: Mapping[str, Range] = field(default_factory=dict)
     _originals: Any = field(default_factory=WeakKeyDictionary, repr=False)
 
     def __call__(self, world: World, random: np.random.Generator) -> None:
@@ -75,6 +78,10 @@ class Variation:
             factor = random.uniform(*self.damping)
             for name, damping in original.dampings.items():
                 model.joints[name].damping = damping * factor
+        if self.effort is not None:
+            factor = random.uniform(*self.effort)
+            for name, effort in original.efforts.items():
+                model.joints[name].effort_limit = effort * factor
         if self.light is not None:
             factor = random.uniform(*self.light)
             for name, intensity in original.lights.items():
@@ -108,6 +115,7 @@ def vary(
     mass: Range | None = None,
     friction: Range | None = None,
     damping: Range | None = None,
+    effort: Range | None = None,
     light: Range | None = None,
     pose: Mapping[str, Range] | None = None,
 ) -> Variation:
@@ -120,6 +128,7 @@ def vary(
         mass: Factor on the masses of all links.
         friction: Friction coefficient of all links.
         damping: Factor on the damping of all joints.
+        effort: Factor on the effort limits of all joints, which is the strength of their motors.
         light: Factor on the intensity of all lights.
         pose: Coordinates of the model, m and rad, such as ``{"x": (-1, 1), "yaw": (-3.1, 3.1)}``.
 
@@ -127,7 +136,13 @@ def vary(
         CartwheelError: A range is not two finite numbers, the smaller one first, or a coordinate is
             unknown.
     """
-    factors = {"mass": mass, "friction": friction, "damping": damping, "light": light}
+    factors = {
+        "mass": mass,
+        "friction": friction,
+        "damping": damping,
+        "effort": effort,
+        "light": light,
+    }
     places = dict(pose or {})
     for axis in places:
         if axis not in _AXES:
@@ -135,7 +150,7 @@ def vary(
     for name, limits in (factors | places).items():
         if limits is not None:
             _check_range(name, limits)
-    return Variation(model, mass, friction, damping, light, places)
+    return Variation(model, places, **factors)
 
 
 def _check_range(name: str, limits: Any) -> None:

@@ -36,6 +36,13 @@ class Tuned(Protocol):
     """A dataclass with the fields ``p``, ``i``, ``d``, ``i_min`` and ``i_max``."""
 
 
+class Limited(Protocol):
+    """A motor or controller that limits the commands of a joint."""
+
+    limits: Any
+    """A dataclass with the fields ``lower``, ``upper``, ``velocity`` and ``effort``."""
+
+
 class Clock(Protocol):
     """The time of a simulation."""
 
@@ -77,6 +84,8 @@ class Part(MotorRequests):
         """Names of the actions that plugins of the model have offered."""
         self.tuned: list[tuple[str, Tuned]] = []
         """Joints and their PID controllers."""
+        self.limited: list[tuple[str, Limited]] = []
+        """Joints, and what limits their commands."""
         self.on_seed: list[Callable[[], None]] = []
         """Called after a reset with a new seed, to draw random constants again; see `random`."""
         self._random = RandomNumbers(entry.name)
@@ -194,6 +203,10 @@ class Part(MotorRequests):
         """States that a PID controller moves a joint, so that users can change its gains."""
         self.tuned.append((joint, controller))
 
+    def limit(self, joint: str, controller: Limited) -> None:
+        """States that the commands of a joint are limited, so that users can change the limits."""
+        self.limited.append((joint, controller))
+
     def made(self, make: Callable[[], T]) -> T:
         """Creates a plugin, which owns everything it requests; all of it is undone if creation
         fails.
@@ -237,6 +250,7 @@ class Part(MotorRequests):
             self.handles,
             self.tasks,
             self.tuned,
+            self.limited,
             self.on_seed,
             entry.drives,
             entry.cameras,

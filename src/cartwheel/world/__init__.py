@@ -1,6 +1,7 @@
 """Compiles descriptions to a MuJoCo model."""
 
 from cartwheel.world import mujoco_import  # noqa: F401 - before all others
+from cartwheel.world.actuation import rotor_strength
 from cartwheel.world.additions import reports
 from cartwheel.world.build import (
     Build,
@@ -27,6 +28,7 @@ __all__ = [
     "extend_at_rest",
     "principal_inertial",
     "reports",
+    "rotor_strength",
     "unreadable",
     "unused",
 ]

@@ -7,6 +7,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from cartwheel.description.model import Joint
 from cartwheel.geometry import Pose, quat_from_matrix
 from cartwheel.world import joints
 from cartwheel.world.entry import (
@@ -75,14 +76,23 @@ def _add_motor(spec: mujoco.MjSpec, entry: ModelEntry, motor: Motor) -> None:
     _add_rotor(spec, entry, motor)
 
 
-def _add_rotor(spec: mujoco.MjSpec, entry: ModelEntry, motor: Motor) -> None:
-    """Adds a rotor that turns at a motor's velocity and drags the joint by dry friction."""
-    name = scoped(entry.name, motor.joint, ROTOR)
-    joint = entry.description.joint(motor.joint)
+def rotor_strength(motor: Motor, joint: Joint | None) -> float:
+    """Maximum effort with which a motor holds a velocity or position, N m or N.
+
+    Args:
+        motor: The motor.
+        joint: Its joint.
+    """
     limits = [] if motor.max_effort is None else [motor.max_effort]
     stated = None if joint is None or motor.beyond else joint.axis.effort
     if stated is not None and stated > 0:
         limits.append(stated)
+    return min(limits, default=_STRONGEST)
+
+
+def _add_rotor(spec: mujoco.MjSpec, entry: ModelEntry, motor: Motor) -> None:
+    """Adds a rotor that turns at a motor's velocity and drags the joint by dry friction."""
+    name = scoped(entry.name, motor.joint, ROTOR)
     body = spec.worldbody.add_body(name=name)
     body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
     body.explicitinertial = True
@@ -91,7 +101,7 @@ def _add_rotor(spec: mujoco.MjSpec, entry: ModelEntry, motor: Motor) -> None:
     body.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
     coupling = spec.add_tendon(
         name=name,
-        frictionloss=min(limits, default=_STRONGEST),
+        frictionloss=rotor_strength(motor, entry.description.joint(motor.joint)),
         solref_friction=list(joints.STIFF_REFERENCE),
         solimp_friction=list(joints.STIFF_IMPEDANCE),
     )

@@ -71,7 +71,6 @@ class JointActuator:
         """Name in the description."""
         self.type = joint.type if joint is not None else ""
         self._continuous = self.type == "continuous"
-        self.limits = config.limits
         self.state: JointHandle = part.joint(name, origin=origin)
         self.pids = {config.pid[0]: Pid(config.pid[1])} if config.pid is not None else {}
         self.tune = partial(part.tune, name)
@@ -109,13 +108,32 @@ class JointActuator:
         self.damping = 0.0
         """Decrease of a commanded effort with velocity, N m s/rad or N s/m."""
         self._led = config.led
-        limits = config.limits
+        self._held = position_range(joint)
+        """The limits of the joint itself, rad or m."""
+        self._limits = config.limits
+        self._prepare()
+        part.limit(name, self)
+
+    @property
+    def limits(self) -> JointLimits:
+        """Limits of the commands. A program may change them at any time."""
+        return self._limits
+
+    @limits.setter
+    def limits(self, limits: JointLimits) -> None:
+        ends = limits.lower, limits.upper
+        if ends != (self._limits.lower, self._limits.upper):
+            # A program sets those of the joint and of its controllers.
+            self._held = ends
+        self._limits = limits
+        self._prepare()
+
+    def _prepare(self) -> None:
+        limits = self._limits
         self._slows = limits.soft is not None and math.inf not in (-limits.lower, limits.upper)
         """Whether the maximum velocity depends on the position."""
         self._is_limited = limits != JointLimits()
         self._lower, self._upper, self._fastest = limits.lower, limits.upper, limits.velocity
-        self._held = position_range(joint)
-        """The limits of the joint itself, rad or m."""
         self._lowest, self._highest = cut_range(limits, self._held)
 
     def expect_commands(self, period: float) -> None:
@@ -232,7 +250,7 @@ class JointActuator:
             high = self._fastest
             low = -high
             if self._slows:
-                low, high = velocity_bounds(self.limits, self.state.position)
+                low, high = velocity_bounds(self._limits, self.state.position)
             if low > target:  # noqa: PLR1730
                 target = low
             if high < target:  # noqa: PLR1730
@@ -246,7 +264,7 @@ class JointActuator:
             rate, fastest = self.rate, self._fastest
             target += lead * rate
             if self._slows:
-                target, fastest = limited_position(self.limits, target, self.state.position)
+                target, fastest = limited_position(self._limits, target, self.state.position)
             else:
                 if self._lower > target:  # noqa: PLR1730
                     target = self._lower
@@ -306,7 +324,7 @@ class JointActuator:
 
     def _limited_effort(self, effort: float, damping: float, seconds: float) -> tuple[float, float]:
         """Returns an effort and its damping within the limits; see `limited_effort`."""
-        limits, state = self.limits, self.state
+        limits, state = self._limits, self.state
         position, velocity = state.qpos[state.qposadr], state.qvel[state.dofadr]
         most = limits.velocity
         if limits.soft is not None or (

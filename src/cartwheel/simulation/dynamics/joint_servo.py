@@ -148,6 +148,12 @@ class ServoHandle:
         if self.mode == "velocity":
             self.command_velocity(velocity)
 
+    def strengthen(self, model: Any, strength: float) -> None:
+        """Continues with another maximum effort, N m or N."""
+        self._strength = strength
+        self.weigh(model)
+        self._apply()
+
     def rewind(self) -> None:
         """Returns to the command that it had when the model was spawned, mostly none."""
         assert self._first is not None

@@ -67,6 +67,8 @@ def _with_properties(axis: Axis, other: Axis) -> Axis:
         friction=other.friction,
         lower=other.lower,
         upper=other.upper,
+        effort=other.effort,
+        velocity=other.velocity,
         spring_stiffness=other.spring_stiffness,
         spring_reference=other.spring_reference,
     )

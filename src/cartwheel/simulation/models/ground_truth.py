@@ -17,6 +17,7 @@ from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle, LinkHandle
 from cartwheel.simulation.limits import STRONGEST, number, numbers
 from cartwheel.simulation.models.forces import Forces
+from cartwheel.simulation.models.joint_limits import JointLimits
 from cartwheel.simulation.models.placement import push_off, with_mimics
 from cartwheel.simulation.models.population import Population
 from cartwheel.simulation.models.touches import Touch, Touches
@@ -41,6 +42,7 @@ class GroundTruth:
         self._population = population
         self._forces = forces
         self._touches = Touches(engine)
+        self.limits = JointLimits(engine, population)
         self._links: dict[tuple[str, str], LinkHandle] = {}
         self._joints: dict[tuple[str, str], JointHandle] = {}
         self._model: object = None

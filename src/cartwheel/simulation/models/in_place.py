@@ -24,11 +24,12 @@ from cartwheel.world import (
     exclude_rotors,
     extend_at_rest,
     principal_inertial,
+    rotor_strength,
 )
 from cartwheel.world.additions import Added
 from cartwheel.world.contact import BuiltSurface, friction, reference
 from cartwheel.world.contact_rules import ContactRules, contact_rules
-from cartwheel.world.entry import ModelEntry, collision_of, scoped
+from cartwheel.world.entry import ROTOR, ModelEntry, Motor, collision_of, scoped
 from cartwheel.world.joints import axes_of, limits_of
 from cartwheel.world.pairs import Pair
 from cartwheel.world.visuals import plain_colour
@@ -189,6 +190,24 @@ class InPlace:
             bounds = limits_of(joint, axis, follows=joint.name in entry.mimics)
             model.jnt_limited[index] = bounds is not None
             model.jnt_range[index] = bounds or (0.0, 0.0)
+            most = axis.effort or 0.0
+            model.jnt_actfrclimited[index] = most > 0
+            model.jnt_actfrcrange[index] = (-most, most) if most > 0 else (0.0, 0.0)
+        motor = entry.motors.get(joint.name)
+        if motor is not None:
+            self._set_motor(entry.name, motor, joint)
+
+    def _set_motor(self, name: str, motor: Motor, joint: Joint) -> None:
+        """Limits the effort of a motor; `ServoHandle.strengthen` continues with its command."""
+        model = self._engine.model
+        actuator = mujoco.mj_name2id(model, _OBJ.mjOBJ_ACTUATOR, scoped(name, joint.name))
+        most = motor.max_effort
+        if actuator >= 0:
+            model.actuator_forcelimited[actuator] = most is not None
+            model.actuator_forcerange[actuator] = (0.0, 0.0) if most is None else (-most, most)
+        if motor.mode == "velocity":
+            rotor = mujoco.mj_name2id(model, _OBJ.mjOBJ_TENDON, scoped(name, joint.name, ROTOR))
+            model.tendon_frictionloss[rotor] = rotor_strength(motor, joint)
 
     def _settle(self, *, weighs: bool) -> list[Added]:
         """Computes the constants that depend on masses and damping."""

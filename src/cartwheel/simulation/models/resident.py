@@ -150,6 +150,7 @@ class Resident:
         self.created = ()
         self.drives.clear()
         self.part.handles.clear()
+        self.part.limited.clear()
         for task in self.part.tasks:
             task.forget()  # A handle refers to its task, to wake it.
         self.part.tasks.clear()
