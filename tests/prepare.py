@@ -9,9 +9,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
-from tests.bridges import foxglove_client, ros2_peers, test_ros2_client
+from tests.bridges import foxglove_client, ros2_peers
 from tests.ros1 import conftest as ros1
 
 
@@ -42,28 +41,13 @@ def _ros1() -> str:
     return done.stderr if done.returncode else ""
 
 
-def _ros2_client() -> str:
-    done = test_ros2_client.build()
-    return done.stderr if done.returncode else ""
-
-
-def _build_others() -> bool:
+def _main() -> int:
     built = [_timed("Foxglove's client", _foxglove)]
     if not ros2_peers.REASON:
         built.append(_timed("Fast DDS peer", _fastdds))
     if shutil.which("catkin_make") is not None:
         built.append(_timed("ROS 1 workspace", _ros1))
-    return all(built)
-
-
-def _main() -> int:
-    with ThreadPoolExecutor() as pool:
-        builds = [pool.submit(_build_others)]
-        if shutil.which("cargo") is not None:
-            # The longest.
-            builds.append(pool.submit(_timed, "ROS 2 client", _ros2_client))
-    results = [each.result() for each in builds]
-    return 0 if all(results) else 1
+    return 0 if all(built) else 1
 
 
 if __name__ == "__main__":

