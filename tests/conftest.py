@@ -53,6 +53,8 @@ _BUSY = ("saving", "api")
 """Folders whose tests take long, and use a processor all the time."""
 _SPREAD = ("tests/docs/test_commands.py",)
 """Files whose tests need not run in the same process, and take long together."""
+_TOGETHER = ("tests/viewer/one_page/",)
+"""Folders whose tests run in the same process, because they share what takes long to start."""
 _PLACE = Origin(file="test.sdf", line=1)
 
 # The same examples in each run, however long a busy machine takes to make and to try them.
@@ -146,7 +148,7 @@ def _places(files: Sequence[Path]) -> dict[Path, float]:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """With ``--dist loadfile``, the tests of some files are distributed one by one."""
+    """With ``--dist loadfile``, some files are distributed by tests, and some folders as one."""
     if config.getvalue("dist") != "loadfile":
         return None
     from xdist.scheduler import LoadFileScheduling
@@ -154,7 +156,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     class Scheduling(LoadFileScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = str(super()._split_scope(nodeid))
-            return nodeid if file in _SPREAD else file
+            folder = next((each for each in _TOGETHER if file.startswith(each)), None)
+            return nodeid if file in _SPREAD else folder or file
 
     return Scheduling(config, log)
 

@@ -16,14 +16,19 @@ def simulation(tmp_path_factory):
         yield started
 
 
-@pytest.fixture
-def page(browser, simulation):
+@pytest.fixture(scope="module")
+def shared_page(browser, simulation):
     page = new_page(browser)
     page.goto(f"http://127.0.0.1:{simulation.port}")
-    page.locator(".cw-running").wait_for()
-    assert not page.locator(NOTICE).is_visible()
     yield page
     page.close()
+
+
+@pytest.fixture
+def page(shared_page):
+    shared_page.locator(".cw-running").wait_for()
+    assert not shared_page.locator(NOTICE).is_visible()
+    return shared_page
 
 
 def test_a_silent_simulation_is_not_shown_as_running(page, simulation):

@@ -1,4 +1,4 @@
-"""The scene in a real browser."""
+"""The scene in a real browser: what is drawn, and what a click in it meets."""
 
 import math
 
@@ -10,14 +10,23 @@ from tests.viewer.conftest import (
     count,
     eventually,
     open_page,
+    opened_page,
     project,
+    row,
     screenshot,
     stage,
+    world_panel,
 )
 
 from cartwheel.geometry import Pose
 
 RED, BLUE = 0, 2
+
+
+@pytest.fixture(scope="module")
+def shared_page(browser, arena):
+    with opened_page(browser, arena, drawn=True) as page:
+        yield page
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -86,8 +95,52 @@ def test_links_follow_the_simulation(page, arena):
     eventually(lambda: colours(page)[0] < 0.1 * before, what="the post to leave the picture")
 
 
+def point_at(page, place):
+    """Moves the mouse, and gives the page two pictures to see what is under it."""
+    page.mouse.move(*place)
+    page.evaluate(
+        "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
+
+
+def test_a_click_in_the_scene_selects(page, arena):
+    close_notes(page)
+    box = page.locator("canvas[data-engine]").bounding_box()
+    post = arena.pose("post")
+    point_at(page, project(arena.camera(), (post.x, post.y, 0.6), box))
+    page.mouse.down()
+    page.mouse.up()
+    page.locator("[data-model='post']").wait_for()
+    assert "10 kg" in page.locator("[data-model='post']").inner_text()
+    row(page, "post").click()
+    page.locator("[data-model='post']").wait_for(state="detached")
+
+
+def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
+    close_notes(page)
+    row(page, "post").click()
+    page.locator("[data-model='post']").wait_for()
+    gizmo = world_panel(arena)._gizmo
+    box = page.locator("canvas[data-engine]").bounding_box()
+    post = arena.pose("post")
+    at = lambda z: project(arena.camera(), (post.x, post.y, post.z + z), box)  # noqa: E731
+    tip = 0.85 * gizmo.scale  # where the head of the arrow is thickest
+    point_at(page, at(tip))
+    page.mouse.down()
+    for i in range(1, 9):
+        point_at(page, at(tip + 0.05 * i))
+    eventually(lambda: arena.pose("post").z > 0.3, what="the post in the air")
+    # 0.4 m would be fallen through in 0.29 s.
+    start = arena.ask(lambda: arena.simulation.time_ns)
+    eventually(lambda: arena.ask(lambda: arena.simulation.time_ns) > start + 5 * 10**8)
+    assert arena.pose("post").z > 0.25
+    page.mouse.up()
+    eventually(lambda: arena.pose("post").z < 0.05, what="the fall")
+    row(page, "post").click()
+
+
 def test_two_browsers_see_the_same(browser, arena, page):
-    second = open_page(browser, arena)
+    second = open_page(browser, arena, drawn=True)
     close_notes(page)
     close_notes(second)
     hide_frustum(second)

@@ -1,9 +1,11 @@
 """Keys and buttons in a real browser drive the cart."""
 
 import math
+from urllib.parse import urlsplit
 
 import pytest
-from tests.viewer.conftest import TWIST, close_search, eventually, open_page
+from tests.viewer.browsing import browsing
+from tests.viewer.conftest import TWIST, close_search, eventually
 
 from cartwheel.geometry import Pose
 from cartwheel.viewer.panels.drive import DrivePanel
@@ -97,10 +99,11 @@ def test_typing_does_not_drive(page, arena):
     assert arena.twists == [(0.0, 0.0)]
 
 
-def test_the_cart_stops_when_the_last_browser_closes(browser, arena, page):
+def test_the_cart_stops_when_the_last_browser_closes(page, arena):
     press(page, arena, "i")
-    second = open_page(browser, arena)
-    second.close()
+    with browsing(urlsplit(arena.url).port) as second:
+        second.look()
+        eventually(lambda: len(arena.viewer._page.clients) == 2, what="the second")
     eventually(lambda: len(arena.viewer._page.clients) == 1, what="the second to go")
     assert arena.twists[-1] == (0.5, 0.0), "one browser is still there"
     page.goto("about:blank")

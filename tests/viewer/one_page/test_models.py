@@ -1,16 +1,11 @@
-"""Inserting, selecting, moving and deleting models in a real browser."""
+"""Inserting, moving and deleting models in a real browser."""
 
 import pytest
-from tests.viewer.conftest import CART, close_notes, eventually, project, write
+from tests.viewer.conftest import CART, eventually, row, world_panel, write
 
 from cartwheel.codes.recording import UPLOAD_REFUSED
 from cartwheel.codes.tags import VALUE_INVALID
-from cartwheel.viewer.panels.world import WorldPanel
 from cartwheel.viewer.uploads import MOST_BYTES
-
-
-def world_panel(arena):
-    return arena.viewer._desk.panel(WorldPanel)
 
 
 @pytest.fixture(autouse=True)
@@ -21,10 +16,6 @@ def world_tab(page):
 
 def insert_tab(page):
     page.get_by_text("Insert", exact=True).click()
-
-
-def row(page, name):
-    return page.get_by_role("button", name=name, exact=True)
 
 
 def test_the_palette_puts_a_barrel_in_front_of_the_cart(page, arena):
@@ -87,50 +78,6 @@ def test_a_broken_file_is_explained_and_disturbs_nothing(page, arena, tmp_path):
     assert "/tmp" not in note.first.inner_text()
     assert set(arena.models()) == {"ground_plane", "post", CART}
     eventually(lambda: arena.ask(lambda: arena.simulation.time_ns) > before + 10**8, what="time")
-
-
-def point_at(page, place):
-    """Moves the mouse, and gives the page two pictures to see what is under it."""
-    page.mouse.move(*place)
-    page.evaluate(
-        "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
-    )
-
-
-def test_a_click_in_the_scene_selects(page, arena):
-    close_notes(page)
-    box = page.locator("canvas[data-engine]").bounding_box()
-    post = arena.pose("post")
-    point_at(page, project(arena.camera(), (post.x, post.y, 0.6), box))
-    page.mouse.down()
-    page.mouse.up()
-    page.locator("[data-model='post']").wait_for()
-    assert "10 kg" in page.locator("[data-model='post']").inner_text()
-    row(page, "post").click()
-    page.locator("[data-model='post']").wait_for(state="detached")
-
-
-def test_the_gizmo_lifts_the_post_and_holds_it_until_let_go(page, arena):
-    close_notes(page)
-    row(page, "post").click()
-    page.locator("[data-model='post']").wait_for()
-    gizmo = world_panel(arena)._gizmo
-    box = page.locator("canvas[data-engine]").bounding_box()
-    post = arena.pose("post")
-    at = lambda z: project(arena.camera(), (post.x, post.y, post.z + z), box)  # noqa: E731
-    tip = 0.85 * gizmo.scale  # where the head of the arrow is thickest
-    point_at(page, at(tip))
-    page.mouse.down()
-    for i in range(1, 9):
-        point_at(page, at(tip + 0.05 * i))
-    eventually(lambda: arena.pose("post").z > 0.3, what="the post in the air")
-    # 0.4 m would be fallen through in 0.29 s.
-    start = arena.ask(lambda: arena.simulation.time_ns)
-    eventually(lambda: arena.ask(lambda: arena.simulation.time_ns) > start + 5 * 10**8)
-    assert arena.pose("post").z > 0.25
-    page.mouse.up()
-    eventually(lambda: arena.pose("post").z < 0.05, what="the fall")
-    row(page, "post").click()
 
 
 def test_the_scene_goes_on_as_the_gizmo_is_let_go(page, arena):
