@@ -86,9 +86,9 @@ def main() -> None:
     """Entry point."""
     from playwright.sync_api import sync_playwright
 
-    chromium = shutil.which("chromium")
+    chromium = shutil.which("chromium-headless-shell") or shutil.which("chromium")
     if chromium is None:
-        sys.exit("Chromium is missing: apt-get install chromium")
+        sys.exit("Chromium is missing: apt-get install chromium-headless-shell")
     session = make_session()
     viewer = Viewer(session, port=0)
     pacer = session.pacer()

@@ -99,7 +99,9 @@ has_driver || wanted="$wanted libgl1-mesa-dri"
 [ -z "$wanted" ] || loss="Continuing without: cameras will publish no images."
 if [ "$purpose" = test ]; then
     before=$wanted
-    command -v chromium >/dev/null 2>&1 || wanted="$wanted chromium"
+    # Without windows: half as large.
+    command -v chromium >/dev/null 2>&1 || command -v chromium-headless-shell >/dev/null 2>&1 ||
+        wanted="$wanted chromium-headless-shell"
     command -v Xvfb >/dev/null 2>&1 || wanted="$wanted xvfb"
     # Node needs it, which drives the browser, and slim images do not contain it.
     has_library libatomic.so.1 || wanted="$wanted libatomic1"
