@@ -2,9 +2,7 @@
 
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
-from cartwheel.api.contacts import Contact
 from cartwheel.api.joints import Joint, Joints
-from cartwheel.api.lights import Light
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
 from cartwheel.api.motion import Acceleration, Twist
@@ -13,6 +11,9 @@ from cartwheel.api.plots import Plot
 from cartwheel.api.properties.joint_values import JointValues
 from cartwheel.api.properties.of_joints import Gains
 from cartwheel.api.recordings import RecordedMessage, Recording
+from cartwheel.api.surroundings.contacts import Contact
+from cartwheel.api.surroundings.distances import Clearance, Hit
+from cartwheel.api.surroundings.lights import Light
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
@@ -21,9 +22,11 @@ from cartwheel.saving import State
 __all__ = [
     "Acceleration",
     "Built",
+    "Clearance",
     "Contact",
     "Gains",
     "Goal",
+    "Hit",
     "Hold",
     "Joint",
     "JointValues",

@@ -11,7 +11,7 @@ from cartwheel.geometry import Pose
 from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
-    from cartwheel.api.contacts import Contact
+    from cartwheel.api.surroundings.contacts import Contact
     from cartwheel.api.world import World
     from cartwheel.simulation import Simulation
 

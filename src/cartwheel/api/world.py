@@ -14,7 +14,7 @@ from cartwheel.api.handles import unknown_attribute
 from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
-from cartwheel.api.surroundings import SurroundingWorld
+from cartwheel.api.surroundings.surroundings import SurroundingWorld
 from cartwheel.api.values import instance, invalid
 from cartwheel.codes import codes_matching
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT

@@ -20,6 +20,7 @@ from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.joint_limits import JointLimits
 from cartwheel.simulation.models.placement import push_off, with_mimics
 from cartwheel.simulation.models.population import Population
+from cartwheel.simulation.models.shape_queries import ShapeQueries
 from cartwheel.simulation.models.touches import Touch, Touches
 from cartwheel.world.entry import CameraMount
 
@@ -43,6 +44,9 @@ class GroundTruth:
         self._forces = forces
         self._touches = Touches(engine)
         self.limits = JointLimits(engine, population)
+        self.shapes = ShapeQueries(
+            engine, lambda: [each.entry for each in population.residents.values()]
+        )
         self._links: dict[tuple[str, str], LinkHandle] = {}
         self._joints: dict[tuple[str, str], JointHandle] = {}
         self._model: object = None

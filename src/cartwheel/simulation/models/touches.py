@@ -75,7 +75,7 @@ class Touches:
         engine = self._engine
         if self._model is not engine.model:
             self._model, self._copy, self._copied = engine.model, None, b""
-            self._names = _names(engine.model, entries)
+            self._names = collision_names(engine.model, entries)
         model, data = engine.model, self._data()
         if not data.ncon:
             return []
@@ -123,7 +123,7 @@ class Touches:
         return self._copy
 
 
-def _names(model: Any, entries: Sequence[ModelEntry]) -> list[tuple[str, str, str]]:
+def collision_names(model: Any, entries: Sequence[ModelEntry]) -> list[tuple[str, str, str]]:
     """Model, link and collision of each geom."""
     known = {
         scoped(entry.name, link.name, collision.name): (entry.name, link.name, collision.name)

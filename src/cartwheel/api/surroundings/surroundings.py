@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from cartwheel.api.arguments import text
-from cartwheel.api.contacts import Contact, contacts_between
-from cartwheel.api.lights import Light, described_light
 from cartwheel.api.running import RunningWorld
+from cartwheel.api.surroundings import distances
+from cartwheel.api.surroundings.contacts import Contact, contacts_between
+from cartwheel.api.surroundings.distances import Clearance, Hit
+from cartwheel.api.surroundings.lights import Light, described_light
 from cartwheel.api.values import Vector, vector
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.limits import numbers
@@ -17,6 +20,7 @@ from cartwheel.simulation.limits import numbers
 if TYPE_CHECKING:
     from cartwheel.api.links import Link
     from cartwheel.api.model import Model
+    from cartwheel.api.surroundings.distances import Places
 
 
 class SurroundingWorld(RunningWorld):
@@ -42,6 +46,65 @@ class SurroundingWorld(RunningWorld):
         """
         with self.lock:
             return contacts_between(self.session.simulation, between)
+
+    def ray(
+        self,
+        origin: Vector,
+        direction: Vector,
+        max_range: float = math.inf,
+        *,
+        ignore: Places = (),
+    ) -> Hit | None:
+        """What a ray hits first in the current state, without noise; None if it hits nothing.
+
+        Rays hit collisions, not visuals. A ray that starts within a collision hits its far side.
+
+        Args:
+            origin: m, shape (3,), in the world.
+            direction: Of any length above 0, shape (3,), in world axes.
+            max_range: m.
+            ignore: Models and links that the ray passes, such as the robot where it starts.
+
+        Raises:
+            CartwheelError: A number is out of range, or the direction is zero.
+            UnknownNameError: A model or link does not exist.
+        """
+        with self.lock:
+            return distances.ray(self.session.simulation, origin, direction, max_range, ignore)
+
+    def clearance(
+        self, one: Places, other: Places | None = None, *, ignore: Places = ()
+    ) -> Clearance:
+        """The shortest way between the surfaces of two models or links in the current state.
+
+        Surfaces are those of the collisions. Meshes count as their convex hulls, or as the convex
+        parts into which they are split.
+
+        Args:
+            one: A model or a link, or several.
+            other: The same; None for all other models.
+            ignore: Models and links that do not count, such as ``"ground_plane"``.
+
+        Raises:
+            CartwheelError: There are no two collisions, or only planes.
+            UnknownNameError: A model or link does not exist.
+        """
+        with self.lock:
+            return distances.clearance(self.session.simulation, one, other, ignore)
+
+    def ground_height(self, x: float, y: float, *, below: float = math.inf) -> float:
+        """Height of the highest surface that is fixed to the world, m; NaN without one.
+
+        Args:
+            x: m, in the world.
+            y: m, in the world.
+            below: Only surfaces below this height count, m, such as those under a roof.
+
+        Raises:
+            CartwheelError: A number is out of range.
+        """
+        with self.lock:
+            return distances.ground_height(self.session.simulation, x, y, below)
 
     @property
     def gravity(self) -> Vec3:

@@ -14,7 +14,7 @@ from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
 
 if TYPE_CHECKING:
-    from cartwheel.api.surroundings import SurroundingWorld
+    from cartwheel.api.surroundings.surroundings import SurroundingWorld
     from cartwheel.simulation import Simulation
 
 

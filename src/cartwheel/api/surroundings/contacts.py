@@ -39,7 +39,7 @@ def contacts_between(
     simulation: Simulation, between: str | Model | Link | Sequence[str | Model | Link] | None
 ) -> tuple[Contact, ...]:
     """The contacts in the current state; see `World.contacts`."""
-    sides = [_side(simulation, each) for each in _listed(between)]
+    sides = [side_of(simulation, each) for each in _listed(between)]
     found = []
     for touch in simulation.truth.contacts():
         if not sides or _fits(touch, sides):
@@ -65,7 +65,12 @@ def _listed(
     return between
 
 
-def _side(simulation: Simulation, named: str | Model | Link) -> Side:
+def side_of(simulation: Simulation, named: str | Model | Link) -> Side:
+    """The model or link that a program gives.
+
+    Raises:
+        UnknownNameError: It does not exist.
+    """
     if not isinstance(named, str):
         named = named.scoped_name
     model, separator, link = named.partition("::")

@@ -1,0 +1,1 @@
+"""What surrounds the models of a world: contacts, distances, lights and gravity."""
