@@ -14,6 +14,7 @@ from cartwheel.api.recordings import RecordedMessage, Recording
 from cartwheel.api.surroundings.contacts import Contact
 from cartwheel.api.surroundings.distances import Clearance, Hit
 from cartwheel.api.surroundings.lights import Light
+from cartwheel.api.surroundings.recorded_contacts import ContactRecord, RecordedContact
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
@@ -24,6 +25,7 @@ __all__ = [
     "Built",
     "Clearance",
     "Contact",
+    "ContactRecord",
     "Gains",
     "Goal",
     "Hit",
@@ -36,6 +38,7 @@ __all__ = [
     "Model",
     "Picture",
     "Plot",
+    "RecordedContact",
     "RecordedMessage",
     "Recording",
     "State",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -39,16 +39,45 @@ def contacts_between(
     simulation: Simulation, between: str | Model | Link | Sequence[str | Model | Link] | None
 ) -> tuple[Contact, ...]:
     """The contacts in the current state; see `World.contacts`."""
+    turns = selection(simulation, between)
+    found = simulation.truth.contacts(lambda one, two: turns(one, two) is not None)
+    return tuple(
+        _contact(touch.turned() if turns(touch.first, touch.second) else touch) for touch in found
+    )
+
+
+def selection(
+    simulation: Simulation,
+    between: str | Model | Link | Sequence[str | Model | Link] | None,
+    ignored: Callable[[Place], bool] = lambda _: False,
+) -> Callable[[Place, Place], bool | None]:
+    """A function that returns whether a contact of two collisions is meant, turned; else None.
+
+    Args:
+        simulation: The simulation.
+        between: As for `World.contacts`.
+        ignored: Whether contacts of a collision do not count.
+    """
     sides = [side_of(simulation, each) for each in _listed(between)]
-    found = []
-    for touch in simulation.truth.contacts():
-        if not sides or _fits(touch, sides):
-            found.append(_contact(touch))
-        elif _fits(touch.turned(), sides):
-            found.append(_contact(touch.turned()))
-    return tuple(found)
+    known: dict[tuple[Place, Place], bool | None] = {}
+
+    def turned(one: Place, two: Place) -> bool | None:
+        if ignored(one) or ignored(two):
+            return None
+        if not sides or _fits(one, two, sides):
+            return False
+        return True if _fits(two, one, sides) else None
+
+    def turns(one: Place, two: Place) -> bool | None:
+        if (one, two) not in known:
+            known[one, two] = turned(one, two)
+        return known[one, two]
+
+    return turns
 
 
+Place = tuple[str, str, str]
+"""Names of a model, of a link in it, and of a collision in the link."""
 Side = tuple[str, str | None]
 """A model, and one of its links or None for all."""
 
@@ -81,10 +110,10 @@ def side_of(simulation: Simulation, named: str | Model | Link) -> Side:
     return model, link
 
 
-def _fits(touch: Touch, sides: Sequence[Side]) -> bool:
+def _fits(one: Place, two: Place, sides: Sequence[Side]) -> bool:
     return all(
         model == names[0] and link in (None, names[1])
-        for (model, link), names in zip(sides, (touch.first, touch.second), strict=False)
+        for (model, link), names in zip(sides, (one, two), strict=False)
     )
 
 

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 from cartwheel.api.arguments import text
 from cartwheel.api.running import RunningWorld
 from cartwheel.api.surroundings import distances
-from cartwheel.api.surroundings.contacts import Contact, contacts_between
+from cartwheel.api.surroundings.contacts import Contact, contacts_between, selection
 from cartwheel.api.surroundings.distances import Clearance, Hit
 from cartwheel.api.surroundings.lights import Light, described_light
+from cartwheel.api.surroundings.recorded_contacts import ContactRecord
 from cartwheel.api.values import Vector, vector
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.limits import numbers
@@ -46,6 +47,31 @@ class SurroundingWorld(RunningWorld):
         """
         with self.lock:
             return contacts_between(self.session.simulation, between)
+
+    def record_contacts(
+        self,
+        between: str | Model | Link | Sequence[str | Model | Link] | None = None,
+        *,
+        ignore: Places = (),
+    ) -> ContactRecord:
+        """Observes contacts in each step from now on: when models touch, and with which force.
+
+        Use it in a ``with`` block, or call `ContactRecord.close`. Models that are spawned later
+        count if `between` is None, or by their names. After `reset` or `restore`, contacts that
+        were observed before remain in the record.
+
+        Args:
+            between: As for `contacts`.
+            ignore: Models and links whose contacts do not count, such as ``"ground_plane"``.
+
+        Raises:
+            UnknownNameError: A model or link does not exist.
+            TypeError: `between` contains more than two models or links.
+            SimulationError: The world is closed.
+        """
+        with self.used() as simulation:
+            ignored = distances.among(simulation, ignore)
+            return ContactRecord(simulation, selection(simulation, between, ignored))
 
     def ray(
         self,

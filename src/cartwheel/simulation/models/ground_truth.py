@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -21,7 +21,7 @@ from cartwheel.simulation.models.joint_limits import JointLimits
 from cartwheel.simulation.models.placement import push_off, with_mimics
 from cartwheel.simulation.models.population import Population
 from cartwheel.simulation.models.shape_queries import ShapeQueries
-from cartwheel.simulation.models.touches import Touch, Touches
+from cartwheel.simulation.models.touches import Place, Touch, Touches
 from cartwheel.world.entry import CameraMount
 
 _STILL: Vec3 = (0.0, 0.0, 0.0)
@@ -289,11 +289,14 @@ class GroundTruth:
 
     # -- contacts
 
-    def contacts(self) -> Sequence[Touch]:
-        """All contacts between models and between links, in the current state."""
-        return self._touches.read(
-            [each.entry for each in self._population.residents.values()],
-        )
+    def contacts(self, counts: Callable[[Place, Place], bool] | None = None) -> Sequence[Touch]:
+        """The contacts between models and between links, in the current state.
+
+        Args:
+            counts: Whether a contact of two collisions is returned; None returns all.
+        """
+        entries = [each.entry for each in self._population.residents.values()]
+        return self._touches.read(entries, counts)
 
     def center_of_mass(self, model: str, link: str) -> Array:
         """A link's centre of mass in the world, m, shape (3,)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,10 @@ from cartwheel.world.entry import ModelEntry, collision_of, scoped
 
 _GEOM = mujoco.mjtObj.mjOBJ_GEOM
 _SLEEP = mujoco.mjtEnableBit.mjENBL_SLEEP.value
+
+
+Place = tuple[str, str, str]
+"""Names of a model, a link and a collision."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -66,11 +70,16 @@ class Touches:
         self._copied = b""
         """The state of the last forward pass of the copy."""
 
-    def read(self, entries: Sequence[ModelEntry]) -> list[Touch]:
+    def read(
+        self,
+        entries: Sequence[ModelEntry],
+        counts: Callable[[Place, Place], bool] | None = None,
+    ) -> list[Touch]:
         """The contacts with force in the current state.
 
         Args:
             entries: The models in the world.
+            counts: Whether a contact of two collisions is returned; None returns all.
         """
         engine = self._engine
         if self._model is not engine.model:
@@ -81,6 +90,12 @@ class Touches:
             return []
         contacts = data.contact
         active = np.flatnonzero(contacts.efc_address >= 0)
+        if counts is not None:
+            names, pairs = self._names, contacts.geom[active].tolist()
+            meant = [counts(names[one], names[two]) for one, two in pairs]
+            active = active[np.array(meant, dtype=bool)]
+        if not active.size:
+            return []
         # The rows of a frame are the normal and two tangents. The normal points from the first geom
         # to the second, and the force acts on the second.
         frames = contacts.frame[active].reshape(-1, 3, 3)
