@@ -139,12 +139,9 @@ fi
     exit 1
 }
 
-extras="[test,lint]"
+extras="[test,lint,docs]"
 stamp="$venv/.ready-tools"
-if [ "$purpose" = docs ]; then
-    extras="[docs]"
-    stamp="$venv/.ready-docs"
-elif [ "$purpose" = warp ]; then
+if [ "$purpose" = warp ]; then
     extras="[test,warp]"
     stamp="$venv/.ready-warp"
 elif [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
