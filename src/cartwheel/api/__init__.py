@@ -2,6 +2,7 @@
 
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
+from cartwheel.api.exchange.faults import Fault
 from cartwheel.api.joints import Joint, Joints
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
@@ -26,6 +27,7 @@ __all__ = [
     "Clearance",
     "Contact",
     "ContactRecord",
+    "Fault",
     "Gains",
     "Goal",
     "Hit",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 
-from cartwheel.api.exchange.transforms import FramedWorld
+from cartwheel.api.exchange.faults import FaultyWorld
 from cartwheel.api.values import instance
 from cartwheel.codes.world import RUN_NESTED
 from cartwheel.errors import SimulationError
@@ -13,7 +13,7 @@ from cartwheel.saving import State, restore, save
 from cartwheel.simulation.limits import check_seed
 
 
-class SavingWorld(FramedWorld):
+class SavingWorld(FaultyWorld):
     """The part of `World` that saves, restores and resets its state."""
 
     def save(self) -> State:
@@ -68,6 +68,7 @@ class SavingWorld(FramedWorld):
             simulation.reset(seed=seed)
 
     def _left_out(self) -> Iterator[str]:
+        yield from super()._left_out()
         if self._connections is not None:
             yield "connections and recordings"
 

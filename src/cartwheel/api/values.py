@@ -58,7 +58,12 @@ def instance(value: object, kind: type[T], name: str, example: str) -> T:
 
 
 def scalar(
-    value: SupportsFloat, name: str, *, least: float = -math.inf, above: float = -math.inf
+    value: SupportsFloat,
+    name: str,
+    *,
+    least: float = -math.inf,
+    above: float = -math.inf,
+    most: float = math.inf,
 ) -> float:
     """A finite number.
 
@@ -67,20 +72,26 @@ def scalar(
         name: Its name, for the error.
         least: The smallest number that is allowed.
         above: The number must be larger than this.
+        most: The largest number that is allowed.
 
     Raises:
-        CartwheelError: The value is not a finite number, or is too small.
+        CartwheelError: The value is not a finite number, or is too small or too large.
     """
     try:
-        number = float(value)
+        # A text is most likely a mistake, although Python converts some.
+        number = None if isinstance(value, str | bytes) else float(value)
     except (TypeError, ValueError):
-        raise invalid(name, "must be a number", value) from None
+        number = None
+    if number is None:
+        raise invalid(name, "must be a number", value)
     if not math.isfinite(number):
         raise invalid(name, "must be finite", value)
     if number <= above:
         raise invalid(name, f"must be above {above:g}", value)
     if number < least:
         raise invalid(name, f"must be at least {least:g}", value)
+    if number > most:
+        raise invalid(name, f"must be at most {most:g}", value)
     return number
 
 

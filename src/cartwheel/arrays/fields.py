@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import re
 from collections.abc import Callable, Iterable
 from operator import attrgetter
@@ -73,6 +74,45 @@ def reader(field: str) -> Callable[[Any], float | Array]:
         return found
 
     return read
+
+
+def with_changed(message: Any, field: str, change: Callable[[Array], Array]) -> Any:
+    """A copy of a message with other numbers in a field; parts that are equal are shared.
+
+    Args:
+        message: The message.
+        field: As for `values`, without times.
+        change: Receives the numbers as float64, shape () or (n,), and returns as many. Results for
+            fields of integers are rounded and limited to their range.
+
+    Raises:
+        GraphError: As for `values`, or the field is a time.
+    """
+    steps = _steps(field)
+    _value(message, field, steps)
+    return _rebuilt(message, steps, change, field)
+
+
+def _rebuilt(
+    value: Any, steps: list[str | int], change: Callable[[Array], Array], field: str
+) -> Any:
+    if steps:
+        copied, step = copy.copy(value), steps[0]
+        if isinstance(step, str):
+            made = _rebuilt(getattr(value, step), steps[1:], change, field)
+            setattr(copied, step, made)
+        elif step < len(value):
+            copied[step] = _rebuilt(value[step], steps[1:], change, field)
+        return copied
+    if hasattr(value, "nanosec"):
+        raise _unknown(f'the field "{field}" is a time', field)
+    numbers = np.asarray(value)
+    made = np.asarray(change(numbers.astype(float)))
+    if numbers.dtype.kind in "iu":
+        limits = np.iinfo(numbers.dtype)
+        made = np.clip(np.rint(made), limits.min, limits.max)
+    made = made.astype(numbers.dtype)
+    return made if isinstance(value, np.ndarray) else made.tolist()
 
 
 def _steps(field: str) -> list[str | int]:

@@ -32,6 +32,7 @@ from cartwheel.graph.parameters import Parameters
 from cartwheel.graph.topic import (
     Callback,
     CheckedPublisher,
+    Filter,
     Handler,
     OnError,
     Publisher,
@@ -335,6 +336,16 @@ class Graph:
             if name not in live:
                 raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
             return live[name].info()
+
+    def set_filters(
+        self, name: str, change: Callable[[tuple[Filter, ...]], tuple[Filter, ...]]
+    ) -> None:
+        """Changes the functions through which the messages of a topic pass; see `Interception`."""
+        with self._lock:
+            topic = self._topics.get(name)
+            if topic is not None:
+                topic.filters = change(topic.filters)
+                self._changed(topic)
 
     def latched(self, name: str) -> Any:
         """The message that a latched topic delivers to new subscribers; None if there is none."""

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 Callback = Callable[[Any], None]
 TakeValues = Callable[[Form, tuple[Any, ...]], None]
 """Receives the values of a message instead of the message."""
+Filter = Callable[[Any, Callback], None]
+"""Receives a message, and a function that passes a message on; see `Interception`."""
 Handler = Callable[[Any], Any]
 Qos = Literal["default", "sensor", "latched"]
 TWIST = "geometry_msgs/msg/Twist"
@@ -72,6 +74,8 @@ class Topic:
         self.takers: tuple[tuple[TakeValues, Callback], ...] = ()
         """The subscriptions' functions that receive values, with the callbacks, if all of them have
         one. Otherwise messages are created."""
+        self.filters: tuple[Filter, ...] = ()
+        """Functions through which messages pass before they reach the subscribers."""
         self.latched: Any = None
         self.take: Callback | None = None
         """Receives messages from other threads instead of the subscribers; see
@@ -99,6 +103,8 @@ class Topic:
         self.takers = tuple((take, callback) for take, callback in takers if take is not None)
         if len(self.takers) != len(takers) or any(p.qos == "latched" for p in self.publishers):
             self.takers = ()
+        if self.filters:
+            self.callbacks, self.takers = (self._filtered,), ()
         changed = False
         for publisher in self.publishers:
             wanted = bool(self.subscriptions) or publisher.qos == "latched"
@@ -109,7 +115,7 @@ class Topic:
     def forget(self) -> None:
         """Clears all references when the graph is closed."""
         self.publishers, self.subscriptions, self.callbacks = (), (), ()
-        self.takers = ()
+        self.takers, self.filters = (), ()
         self.latched = self.take = None
         self.failed = _raise
 
@@ -117,6 +123,17 @@ class Topic:
         """Delivers a message to every subscriber. Call it on the owner's thread."""
         for callback in self.callbacks:
             self.hand(callback, message)
+
+    def _filtered(self, message: Any) -> None:
+        self._pass(self.filters, message)
+
+    def _pass(self, filters: tuple[Filter, ...], message: Any) -> None:
+        """Passes a message through filters, and then to every subscriber."""
+        if filters:
+            filters[0](message, partial(self._pass, filters[1:]))
+            return
+        for subscription in self.subscriptions:
+            self.hand(subscription.callback, message)
 
     def hand(self, callback: Callback, message: Any) -> None:
         """Calls one callback. Its errors do not reach the publisher."""

@@ -99,6 +99,9 @@ class Advancing(Models):
                     # A task changed a task, the step length or the time.
                     left = engine.steps_until(target_ns)
                     due = population.schedule.at(engine.step)[2]
+                if alarms.active:
+                    # A task may have added an action.
+                    alarm = alarms.next_step()
             end = engine.step + left
             if change is not None and change < end:
                 end = change

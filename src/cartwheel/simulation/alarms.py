@@ -119,6 +119,11 @@ class Alarms:
             if engine.rewinds != rewinds:
                 break
         self.active = bool(queue)
+        return self.next_step()
+
+    def next_step(self) -> int:
+        """The step of the next action."""
+        engine, queue = self._engine, self._queue
         return engine.step + engine.steps_until(queue[0][0]) if queue else NEVER
 
     def save(self) -> tuple[tuple[Alarm, int, int], ...]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast, overload
 
-from cartwheel.api.arguments import text
+from cartwheel.api.arguments import several, text
 from cartwheel.api.handles import Handle
 from cartwheel.api.timing import TIMEOUT
 from cartwheel.graph import Mailbox, Subscription, resolve_frame, resolve_name
@@ -13,6 +13,7 @@ from cartwheel.messages.typed import Kind, M
 
 if TYPE_CHECKING:
     from cartwheel.api.calling import Goal
+    from cartwheel.api.exchange.faults import Fault
     from cartwheel.api.exchange.serving import ServiceServer
     from cartwheel.api.links import Link
     from cartwheel.api.topics import Topic
@@ -118,6 +119,23 @@ class MessagingModel(Handle):
     def send_goal(self, action: str, goal: Any = None, **fields: Any) -> Goal:
         """`World.send_goal`, where a name without a leading ``/`` is in the model's namespace."""
         return self._world.send_goal(self._resolved(action, "action"), goal, **fields)
+
+    def fault(
+        self,
+        topics: str | Sequence[str],
+        *,
+        drop: float = 0.0,
+        delay: float = 0.0,
+        frozen: bool = False,
+        noise: Mapping[str, float] | None = None,
+        bias: Mapping[str, float] | None = None,
+        change: Callable[[Any], Any] | None = None,
+    ) -> Fault:
+        """`World.fault`, where a name without a leading ``/`` is in the model's namespace."""
+        names = [self._resolved(name, "topics") for name in several(topics, "topics")]
+        return self._world.fault(
+            names, drop=drop, delay=delay, frozen=frozen, noise=noise, bias=bias, change=change
+        )
 
     def transform(self, target: str | Link, source: str | Link, time: float | None = None) -> Pose:
         """`World.transform`, where a name without a leading ``/`` has the model's frame prefix."""
