@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,13 +15,23 @@ from tests.golden.trial import resting_height
 
 import cartwheel as cw
 from cartwheel.description import load_robot, load_world
-from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.model import (
+    CameraIntrinsics,
+    Link,
+    RobotDescription,
+    Sensor,
+    WorldDescription,
+)
 from cartwheel.messages import encode_cdr
 
 ROBOTS = Path(__file__).parents[1] / "golden" / "robots"
 DUE = {2: 0.5, 4: 1.5, 6: 2.5}
 """Steps at which joints, topics and actions get their commands, with the times that `Commands` has
 for them."""
+
+
+IMAGE = (64, 48)
+"""Most pixels of an image in each direction: images of the usual size take most of the time."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +53,28 @@ def traveller(file: Path, height: float | None = None) -> Traveller:
         height: Height at which the robot is spawned, m; None if it is to rest on the ground.
     """
     if file.suffix == ".world":
-        return Traveller(load_world(file))
-    robot = load_robot(file)
+        world = load_world(file)
+        models = tuple(_with_small_images(each) for each in world.models)
+        return Traveller(dataclasses.replace(world, models=models))
+    robot = _with_small_images(load_robot(file))
     return Traveller(
         load_world("empty"), robot, resting_height(robot) if height is None else height
     )
+
+
+def _with_small_images(robot: RobotDescription) -> RobotDescription:
+    def small(lens: CameraIntrinsics) -> CameraIntrinsics:
+        width, height = min(lens.width, IMAGE[0]), min(lens.height, IMAGE[1])
+        return dataclasses.replace(lens, width=width, height=height)
+
+    def sensors(link: Link) -> tuple[Sensor, ...]:
+        return tuple(
+            dataclasses.replace(each, cameras=tuple(map(small, each.cameras)))
+            for each in link.sensors
+        )
+
+    links = (dataclasses.replace(each, sensors=sensors(each)) for each in robot.links)
+    return dataclasses.replace(robot, links=tuple(links))
 
 
 class Journey:

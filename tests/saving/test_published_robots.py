@@ -19,8 +19,6 @@ PARTS = 4
 TIMES = (0.5, 0.25)
 """Seconds until a world is saved, and after: all commands are given. The slowest sensors do not
 publish; `test_robots` looks at these."""
-SHORT = {"turtlebot3_waffle.urdf.xacro": (0.35, 0.1)}
-"""The same of robots with large images."""
 AS_ANOTHER = {"large_model.urdf.xacro"}
 """A chain of 1,200 links, of the same macros as smaller_large_model.urdf.xacro with 40."""
 
@@ -45,7 +43,7 @@ def test_each_robot_of_a_package_continues(package, part, robots, elsewhere):
     left_out, simulated = {}, 0
     for file in of_package[part::PARTS]:
         try:
-            left_out[file] = compare(file, elsewhere, SHORT.get(file.name, TIMES))
+            left_out[file] = compare(file, elsewhere, TIMES)
             simulated += 1
         except cw.CartwheelError as error:
             error.add_note(f"in {file}")
