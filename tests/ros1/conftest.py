@@ -24,6 +24,7 @@ from tests.reserved import free_port
 
 ROOT = Path(__file__).parents[2]
 PYTHON = launching.ROS1_PYTHON
+BUILD = ROOT / "tools" / "build_ros1.sh"
 MARK = "TEST_ROS1"
 OTHER_LANGUAGES = "gencpp:genlisp"
 """Of messages, in which no test has a program; they take half of the build's time."""
@@ -43,18 +44,40 @@ class Overlay:
 
 
 def build() -> subprocess.CompletedProcess[str]:
-    """Builds the overlay; a second process waits for the first."""
+    """Builds the overlay, unless it is built; a second process waits for the first.
+
+    catkin_make takes seconds to find that nothing has changed.
+    """
     venv = Path(sys.executable).parent.parent
-    (ROOT / "ros1" / "build").mkdir(exist_ok=True)
-    with (ROOT / "ros1" / "build" / "tests.lock").open("w") as lock:
+    made = ROOT / "ros1" / "build"
+    made.mkdir(exist_ok=True)
+    sources, built = _sources(venv), made / "tests.sources"
+    with (made / "tests.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        return subprocess.run(
-            [ROOT / "tools" / "build_ros1.sh"],
+        if built.exists() and built.read_text() == sources:
+            return subprocess.CompletedProcess([], 0, "", "")
+        built.unlink(missing_ok=True)
+        done = subprocess.run(
+            [BUILD],
             env={**os.environ, "VENV": str(venv), "ROS_LANG_DISABLE": OTHER_LANGUAGES},
             capture_output=True,
             text=True,
             check=False,
         )
+        if done.returncode == 0:
+            built.write_text(sources)
+        return done
+
+
+def _sources(venv: Path) -> str:
+    """All that an overlay is built from: files with their times and sizes."""
+    found = [f"{venv} {OTHER_LANGUAGES}"]
+    for folder, _, names in os.walk(ROOT / "ros1" / "src", followlinks=True):
+        for file in (Path(folder, name) for name in names):
+            if file.exists():
+                found.append(f"{file} {file.stat().st_mtime_ns} {file.stat().st_size}")
+    found.append(f"{BUILD} {BUILD.stat().st_mtime_ns}")
+    return "\n".join(sorted(found))
 
 
 @pytest.fixture(scope="session", autouse=True)

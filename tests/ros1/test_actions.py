@@ -103,8 +103,9 @@ def test_a_client_of_actionlib(ros: Any, tmp_path: Path) -> None:
     )
     ros.master()
     ros.start(
-        PROGRAM, "run", "arm.urdf", "--controllers", "control.yaml", "--headless", "--ros1"
-    )  # fmt: skip
+        *(PROGRAM, "run", "arm.urdf", "--controllers", "control.yaml"),
+        *("--headless", "--ros1", "--speed", "4"),
+    )
     client = ros.python(CLIENT)
     output, errors = client.communicate(timeout=240)
     assert client.returncode == 0, errors

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.ros1.conftest import PYTHON
 
 URDF = """<robot name="arm"><link name="world"/>
   <link name="beam"><inertial><mass value="1"/>
@@ -27,11 +30,25 @@ TOLD = "told: {type: joint_state_controller/JointStateController, publish_rate: 
 PARAMETERS = f"{HELD}{TOLD}controller_groups: {{both: [held, told], quiet: [told]}}\n"
 
 
+WATCH = """
+import json, sys, rospy
+from controller_manager_msgs.srv import ListControllers
+rospy.init_node("watch")
+name = "/controller_manager/list_controllers"
+rospy.wait_for_service(name)
+ask = rospy.ServiceProxy(name, ListControllers, persistent=True)
+for line in sys.stdin:
+    print(json.dumps({each.name: each.state for each in ask().controller}), flush=True)
+"""
+
+
 class Programs:
-    """Runs the programs, and reads what the first of them lists."""
+    """Runs the programs, and asks for the states of controllers."""
 
     def __init__(self, ros: Any) -> None:
         self._ros = ros
+        # A start of the first program for each question would take half a second.
+        self.watch = ros.start(PYTHON, "-c", WATCH, stdin=subprocess.PIPE)
 
     def __call__(self, name: str, *words: str, status: int = 0) -> str:
         done = self._ros.run(self._path(name), *words, status=status)
@@ -44,20 +61,25 @@ class Programs:
         process: subprocess.Popen[str] = self._ros.start(self._path(name), *words)
         return process
 
+    def listed(self) -> dict[str, str]:
+        """What the first program lists."""
+        lines = [line for line in self("controller_manager", "list").splitlines() if "'" in line]
+        return {line.split()[0].strip("'"): line.split()[-2] for line in lines}
+
     def until(self, **states: str) -> None:
         """Waits until these controllers are loaded, and no others."""
-        lines = {f"'{name}'": state for name, state in states.items()}
 
         def reached() -> bool:
-            listed = self("controller_manager", "list").splitlines()
-            found = {line.split()[0]: line.split()[-2] for line in listed if "'" in line}
-            return found == lines
+            self.watch.stdin.write("\n")
+            self.watch.stdin.flush()
+            found: dict[str, str] = json.loads(self.watch.stdout.readline())
+            return found == states
 
         self._ros.until(reached, f"{states} never came")
 
 
 @pytest.fixture
-def programs(ros: Any) -> Programs:
+def programs(ros: Any) -> Iterator[Programs]:
     ros.master()
     ros.run("rosparam", "set", "/", PARAMETERS)
     cartwheel = Path(sys.executable).with_name("cartwheel")
@@ -65,7 +87,10 @@ def programs(ros: Any) -> Programs:
               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
     spawn = ros.overlay.program("gazebo_ros", "spawn_model")
     ros.run(spawn, "-urdf", "-stdin", "-model", "arm", input=URDF)
-    return Programs(ros)
+    made = Programs(ros)
+    yield made
+    # rospy leaves the end of a program to the program.
+    made.watch.communicate(timeout=120)
 
 
 def test_controllers_are_loaded_switched_and_taken_away(programs: Programs) -> None:
@@ -75,6 +100,7 @@ def test_controllers_are_loaded_switched_and_taken_away(programs: Programs) -> N
     programs.until(held="running")
     programs("controller_group", "spawn", "quiet")
     programs.until(held="stopped", told="running")
+    assert programs.listed() == {"held": "stopped", "told": "running"}
     programs("controller_group", "switch", "both")
     programs.until(held="running", told="running")
     assert programs("controller_group", "list") == (
@@ -86,6 +112,7 @@ def test_controllers_are_loaded_switched_and_taken_away(programs: Programs) -> N
     programs.until(held="running", told="running")
     programs("controller_manager", "kill", "held", "told")
     programs.until()
+    assert programs.listed() == {}
     spawner = programs.start("spawner", "held", "told")
     programs.until(held="running", told="running")
     end(spawner)
