@@ -73,9 +73,9 @@ def _sources(venv: Path) -> str:
     """All that an overlay is built from: files with their times and sizes."""
     found = [f"{venv} {OTHER_LANGUAGES}"]
     for folder, _, names in os.walk(ROOT / "ros1" / "src", followlinks=True):
-        for file in (Path(folder, name) for name in names):
-            if file.exists():
-                found.append(f"{file} {file.stat().st_mtime_ns} {file.stat().st_size}")
+        for file in filter(Path.exists, (Path(folder, name) for name in names)):
+            state = file.stat()
+            found.append(f"{file} {state.st_mtime_ns} {state.st_size}")
     found.append(f"{BUILD} {BUILD.stat().st_mtime_ns}")
     return "\n".join(sorted(found))
 
