@@ -7,8 +7,10 @@ import itertools
 import numpy as np
 import pytest
 
+import cartwheel
 from cartwheel.checks.resting import Surfaces, center_of_mass, rest_of, starting_poses
 from cartwheel.checks.robot import Robot
+from cartwheel.codes.robot import UNBALANCED
 from cartwheel.description import load_text
 from cartwheel.description.model import RobotDescription
 
@@ -269,3 +271,40 @@ def test_wheels_with_limits_many_turns_away_hang_as_well(bench):
     assert {each.severity for each in bench.find(text, "drive-joint-not-continuous")} == {"info"}
     near = text.replace("1000", "180")
     assert {each.severity for each in bench.find(near, "drive-joint-not-continuous")} == {"warning"}
+
+
+def drive(*more):
+    """Two driven wheels beside a body, and further links."""
+    wheel = f'<cylinder radius="{RADIUS}" length="0.02"/>'
+    text = link("base_link", 2, '<box size="0.2 0.1 0.02"/>')
+    for name, y in (("left", 0.1), ("right", -0.1)):
+        text += link(name, 0.2, wheel, "1.5708 0 0") + joint(name, "continuous", f"0 {y} 0")
+    return f"""<robot name="cart">{text}{"".join(more)}<gazebo><plugin name="drive"
+      filename="libgazebo_ros_diff_drive.so"><leftJoint>left_joint</leftJoint>
+      <rightJoint>right_joint</rightJoint><wheelSeparation>0.2</wheelSeparation>
+      <wheelDiameter>{2 * RADIUS}</wheelDiameter></plugin></gazebo></robot>"""
+
+
+def balanced(tmp_path, text):
+    path = tmp_path / "cart.urdf"
+    path.write_text(text)
+    return [each for each in cartwheel.check(path).findings if each.code is UNBALANCED]
+
+
+@pytest.mark.parametrize(("z", "tilt"), [(-0.03, None), (-0.025, None), (-0.005, 0.16)])
+def test_a_robot_whose_casters_are_too_high_tilts(tmp_path, z, tilt):
+    """A ball of 0.02 m at 0.15 m ahead, so its centre should be 0.03 m below the axle."""
+    ball = f'<sphere radius="{BALL}"/>'
+    more = link("ball", 1.0, ball) + joint("ball", "fixed", f"0.15 0 {z}")
+    found = balanced(tmp_path, drive(more))
+    if tilt is None:
+        assert found == []
+        return
+    (finding,) = found
+    # Tangent to the wheel and to the ball: the difference of the radii and heights over 0.15 m.
+    assert finding.values["tilt"] == pytest.approx(tilt, abs=0.02)
+
+
+def test_a_robot_on_two_wheels_is_reported(tmp_path):
+    (finding,) = balanced(tmp_path, drive())
+    assert finding.values["outside"] == 0.0

@@ -3,7 +3,12 @@
 import pytest
 
 import cartwheel
-from cartwheel.codes.robot import CASTER_FRICTION, PLANAR_FRICTION, STEERING_REVERSED
+from cartwheel.codes.robot import (
+    CASTER_FRICTION,
+    PLANAR_FRICTION,
+    STEERING_REVERSED,
+    WHEEL_WITHOUT_COLLISION,
+)
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
 WHEEL = (
@@ -126,3 +131,43 @@ def test_a_robot_that_is_moved_over_the_ground_is_braked_by_its_friction(
 
 def test_friction_brakes_nothing_without_a_plugin_that_moves_the_robot(tmp_path):
     assert found(tmp_path, BODY.format(more=""), PLANAR_FRICTION) == []
+
+
+def test_the_steering_joints_of_a_controller_are_examined(tmp_path):
+    """Joints without limits that turn about the vertical are not wheels of the controller."""
+    forks = "".join(
+        FORK.format(name=name, place=f"0.2 {y} 0", rpy="-1.5708 0 0", axis="0 1 0")
+        + WHEEL.format(name=f"{name}_wheel", parent=name, place="0 0 0").replace("0 1 0", "0 0 1")
+        for name, y in (("one", 0.15), ("two", -0.15))
+    )
+    (tmp_path / "car.yaml").write_text("""controller_manager:
+  ros__parameters:
+    car:
+      type: ackermann_steering_controller/AckermannSteeringController
+car:
+  ros__parameters:
+    wheelbase: 0.4
+    traction_track_width: 0.3
+    steering_track_width: 0.3
+    traction_wheels_radius: 0.1
+    traction_joints_names: [right_joint, left_joint]
+    steering_joints_names: [two_joint, one_joint]
+""")
+    joints = "".join(
+        f'<joint name="{name}_joint"><command_interface name="{kind}"/></joint>'
+        for name, kind in (
+            ("left", "velocity"),
+            ("right", "velocity"),
+            ("one", "position"),
+            ("two", "position"),
+        )
+    )
+    control = (
+        '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
+        f'</plugin></hardware>{joints}</ros2_control><gazebo><plugin name="c" filename='
+        '"gz_ros2_control-system"><parameters>car.yaml</parameters></plugin></gazebo>'
+    )
+    text = BODY.format(more="") + REAR + forks + control
+    findings = found(tmp_path, text, STEERING_REVERSED)
+    assert {each.values["joint"] for each in findings} == {"one_joint", "two_joint"}
+    assert found(tmp_path, text, WHEEL_WITHOUT_COLLISION) == []

@@ -38,7 +38,7 @@ from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import trial, try_robot
 from cartwheel.corpus.diagnosis import _of_drive, faults
 from cartwheel.corpus.trial import _listened
-from cartwheel.corpus.verdict import Drive, Reach, Verdict
+from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.launches import launches_near
 
@@ -946,3 +946,40 @@ def test_another_plugin_that_is_not_loaded_is_not_why_no_controller_starts(tried
 
 def _text(*parts):
     return f'<robot name="robot">{"".join(parts)}</robot>'
+
+
+def test_a_base_whose_wheels_carry_little_is_given_time_to_accelerate(tried):
+    """The wheels carry 5 % of 4 kg at 0.6 m behind the rest, so they slide until it turns."""
+    heavy = BOX.format(name="base", at="0.57 0 0", size="0.3 0.15 0.06").replace("0.02", "0.2")
+    wheels = WHEEL.format(name="left", y=0.1) + WHEEL.format(name="right", y=-0.1)
+    caster = CASTER.format(x=0.6)
+    verdict = tried(heavy + wheels + caster + DRIVE.format(diameter=0.1))
+    (drive,) = verdict.drives
+    assert abs(drive.error) < 0.05
+    assert abs(drive.error_turn) < 0.05
+
+
+def test_a_long_robot_may_settle_further_than_a_short_one():
+    stood = Stand(fixed=False, simulated=2, wall=1, sunk=0.04, tilt=0.02, speed=0, turn=0, size=3.0)
+    assert stood.state == "yes"
+    assert replace(stood, size=0.5).state == "sinks"
+
+
+def test_an_error_that_follows_from_feet_on_the_ground_is_none(tmp_path, tried):
+    """Friction of 2 m g on the foot of a leg 0.3 m long, against a gain of 20 N m/rad."""
+    path = tmp_path / "soft.yaml"
+    path.write_text(PID.format(p=20.0))
+    leg = BOX.format(name="leg", at="0 0 -0.1", size="0.05 0.05 0.6").replace(
+        'mass value="2"', 'mass value="0.3"'
+    )
+    joint = (
+        '<joint name="shoulder" type="revolute"><parent link="base"/><child link="leg"/>'
+        '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
+        '<gazebo reference="leg"><mu1>2</mu1><mu2>2</mu2></gazebo>'
+    )
+    feet = BOX.format(name="base", at="0 0 -0.2", size="0.4 0.4 0.6")
+    drive = ARM[ARM.index("<transmission") :].format(kind="Effort")
+    verdict = tried(feet + leg + joint + drive, controllers=[path])
+    (reach,) = verdict.reaches
+    assert reach.sag > 0.0
+    assert reach.arrived

@@ -14,7 +14,7 @@ from cartwheel.checks.repairs import displaced, mend
 from cartwheel.checks.reported import passed
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rules import RULES
-from cartwheel.checks.stated_sizes import controlled_sides
+from cartwheel.checks.stated_sizes import controlled_sides, controlled_steering
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import codes_of
 from cartwheel.codes.devices import PLUGIN_PARAMETER_UNKNOWN
@@ -131,6 +131,7 @@ def _subject(opened: Opened, given: Sequence[Path]) -> Subject:
     )
     for robot in robots:
         robot.controlled = controlled_sides(subject, robot)
+        robot.steered = controlled_steering(subject, robot)
     return subject
 
 

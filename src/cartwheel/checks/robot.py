@@ -77,6 +77,8 @@ class Robot:
         self._displaced = frozenset(displaced)
         self.controlled: tuple[Sides, ...] = ()
         """The wheels of controllers that drive the base."""
+        self.steered: tuple[str, ...] = ()
+        """Joints that the steering controllers turn."""
 
     @cached_property
     def collisions(self) -> dict[str, list[Solid]]:

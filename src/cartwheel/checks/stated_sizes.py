@@ -14,7 +14,7 @@ from cartwheel.checks.controller_files import Controller, Value
 from cartwheel.checks.robot import Robot, Sides
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST
-from cartwheel.checks.wheels import axle_of, passive_axle, wheel_middle, wheel_place
+from cartwheel.checks.wheels import axle_of, passive_axle, wheel_axis, wheel_middle, wheel_place
 from cartwheel.description.model import PluginTag
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.parameters import SIZES
@@ -26,7 +26,8 @@ TOLERANCE = 0.02
 """Relative tolerance for tyre compression and rounded numbers."""
 LEAST = 0.001
 """Minimum difference in a distance, m; half of it for a wheel."""
-
+_VERTICAL = 0.9
+"""Minimum vertical component of a steering axis."""
 
 Measure = Literal["apart", "base", "reach", "radius", "diameter"]
 """``apart`` is along the axles, ``base`` is at right angles, and ``reach`` is half of their sum."""
@@ -110,9 +111,32 @@ def controlled_sides(subject: Subject, robot: Robot) -> tuple[Sides, ...]:
         for controller in file.controllers
         for one in _of_controller(robot, controller)
         if one.measure == "apart" and one.second
-        if all(robot.joints[name].turns for name in one.first + one.second)
+        if all(_is_wheel(robot, name) for name in one.first + one.second)
     ]
     return tuple(dict.fromkeys(found))
+
+
+def controlled_steering(subject: Subject, robot: Robot) -> tuple[str, ...]:
+    """Joints that the steering controllers of a robot turn."""
+    found = [
+        name
+        for owner, file in subject.control
+        if owner is robot
+        for controller in file.controllers
+        for one in _of_controller(robot, controller)
+        if one.measure == "base"
+        for name in one.first
+        if not _is_wheel(robot, name)
+    ]
+    return tuple(dict.fromkeys(found))
+
+
+def _is_wheel(robot: Robot, name: str) -> bool:
+    """Whether a joint turns without limits, about an axis that is not vertical."""
+    joint = robot.joints[name]
+    if not joint.turns or joint.child not in robot.placed:
+        return joint.turns
+    return abs(float(wheel_axis(robot, joint)[2])) < _VERTICAL
 
 
 def _of_plugin(robot: Robot, tag: PluginTag, size: TagRole) -> Iterator[Stated]:

@@ -20,6 +20,8 @@ _TURNED = 0.1
 """Maximum ratio of y to x between two wheels that are beside each other along x."""
 _BESIDE = 0.1
 """Maximum distance of a wheel from the axle through another one, relative to the track."""
+_SAME = 1e-6
+"""Distance between two joints at the same place, m."""
 CAMBER = 0.5
 """Minimum cosine between a wheel axis and the axle."""
 
@@ -180,7 +182,12 @@ def axle_toward_left(robot: Robot, left: Joint, right: Joint) -> Floats | None:
 def gap_between(robot: Robot, left: Joint, right: Joint) -> Floats:
     """Vector from the right wheel to the left wheel in the model frame, shape (3,), m."""
     places = [np.array(wheel_place(robot, joint).position) for joint in (left, right)]
-    return np.asarray(places[0] - places[1])
+    gap = np.asarray(places[0] - places[1])
+    if np.linalg.norm(gap) < _SAME:
+        # The wheels' shapes are offset from their joints.
+        middles = [np.array(wheel_middle(robot, joint)) for joint in (left, right)]
+        gap = np.asarray(middles[0] - middles[1])
+    return gap
 
 
 def is_legacy(drive: Drive) -> bool:

@@ -147,3 +147,6 @@ WARP_DEVICE_UNUSABLE = Code(
 WARP_UNSUPPORTED = Code(
     "CW646", "warp-unsupported", "error", "a Warp batch cannot simulate a world"
 )
+STEP_SHORTENED = Code(
+    "CW647", "step-shortened", "info", "a controller needs a shorter time step than the default"
+)

@@ -11,7 +11,8 @@ from typing import Any
 
 from cartwheel.api import Model, World
 from cartwheel.corpus.flights import MOST_ACTUATORS
-from cartwheel.corpus.motion import degree, positions, resistance
+from cartwheel.corpus.loads import degree, resistance
+from cartwheel.corpus.motion import positions
 from cartwheel.corpus.thrusters import thruster_topics
 from cartwheel.corpus.verdict import Spin
 from cartwheel.description.model import Joint, RobotDescription

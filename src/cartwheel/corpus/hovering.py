@@ -22,6 +22,11 @@ _GRAVITY = 9.8
 """m/s²."""
 
 
+def climbs(robot: RobotDescription) -> bool:
+    """Whether velocity commands let a robot fly, so that it must leave the ground first."""
+    return any(plugin_named(tag.filename) is MulticopterControl for tag in robot.plugins)
+
+
 def drag_errors(robot: RobotDescription) -> tuple[float, float]:
     """Relative errors of the forward speed and of the yaw rate that follow from the gains.
 

@@ -11,10 +11,11 @@ from cartwheel.api import Model, World
 from cartwheel.checks.robot import Robot
 from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.heading import heading
-from cartwheel.corpus.hovering import drag_errors
+from cartwheel.corpus.hovering import climbs, drag_errors
 from cartwheel.corpus.limits import StatedLimits
+from cartwheel.corpus.loads import grip, held_by, resistance
 from cartwheel.corpus.thrusters import has_thrusters
-from cartwheel.corpus.verdict import Drive, Reach, Stand
+from cartwheel.corpus.verdict import TOLERANCE, Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.devices.drives.drive import Drives
 from cartwheel.dialects.ros_control.controller import Controller
@@ -35,7 +36,13 @@ _SMALLEST = 0.1
 """m; for bases without geometry."""
 _TAKING_OFF = 2.0
 """Time after the message that starts a flight, s."""
+_CLIMB, _CLIMBING = 0.8, 4.0
+"""Speed in m/s and time in s for which an aircraft with velocity control climbs: it may sink while
+it turns, because a propeller's thrust depends on the square of its speed."""
 _MEASURED = 2.0
+_SETTLED = 0.01
+"""Increase from one measurement to the next, relative to the command, below which a base no longer
+accelerates."""
 _RATE = 20.0
 """Rate of commands, Hz."""
 _STEP, _SLIDE = 0.2, 0.02
@@ -73,6 +80,7 @@ def stand(world: World, model: Model, description: RobotDescription, seconds: fl
         tilt=_between(rotate(start.orientation, (0, 0, 1)), rotate(after.orientation, (0, 0, 1))),
         speed=math.dist(before.position, after.position),
         turn=_turned(before, after),
+        size=Robot(description, None).size,
         floats=has_thrusters(description),
     )
 
@@ -161,7 +169,10 @@ def reaches(
         targets = {name: chosen[name] for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
         told += [(taker, joints[name], value) for name, value in targets.items()]
-    held = {joint.name: _held(world, model, joint.name) for _, joint, _ in told}
+    held = {
+        joint.name: held_by(world, model, joint.name) + grip(world, model, description, joint)
+        for _, joint, _ in told
+    }
     coupled = couplings_of(world, model)
     if told:
         world.run(_REACHING)
@@ -197,37 +208,9 @@ def _sag(world: World, model: Model, joint: str, gain: float, held: float) -> fl
     """Error of a proportional controller because of its load, rad or m.
 
     A suspension carries the robot through its wheels, so its load is not gravity at the joint, but
-    what its motor `held` before the command, N m or N.
+    what its motor `held` before the command, N m or N, plus the friction of feet on the ground.
     """
     return max(resistance(world, model, joint)[0], held) / gain if gain > 0 else 0.0
-
-
-def _held(world: World, model: Model, joint: str) -> float:
-    """Effort of a joint's motor, N m or N."""
-    simulation = world.session.simulation
-    simulation.refresh()
-    return abs(float(simulation.data.qfrc_actuator[degree(world, model, joint)]))
-
-
-def resistance(world: World, model: Model, joint: str) -> tuple[float, float]:
-    """What resists the motion of a joint at rest.
-
-    Returns:
-        The load of gravity plus the friction, N m or N, and the inertia about the joint with all
-        joints at 0, kg m² or kg.
-    """
-    simulation = world.session.simulation
-    simulation.refresh()
-    engine, data = simulation.model, simulation.data
-    place = degree(world, model, joint)
-    load = abs(float(data.qfrc_bias[place])) + float(engine.dof_frictionloss[place])
-    return load, float(engine.dof_M0[place])
-
-
-def degree(world: World, model: Model, joint: str) -> int:
-    """Index of a joint's velocity."""
-    simulation = world.session.simulation
-    return int(simulation.model.jnt_dofadr[simulation.engine.joint_id(model.name, joint)])
 
 
 def _driven(
@@ -244,8 +227,42 @@ def _driven(
     world.reset()
     world.run(0.5)
     flying = _take_off(world, topic)
+    if climbs(robot.description):
+        flying = True
+        _drive_on(world, topic, (0.0, 0.0), _CLIMBING, climb=_CLIMB)
     *velocity, speed_up = command
     _drive_on(world, topic, velocity, speed_up)
+    ahead, turned = _measured(world, model, robot, topic, velocity, flying=flying)
+    waited = speed_up + _MEASURED
+    # Wheels that slide because of a small load need long to accelerate the base.
+    while waited < _LONGEST and not all(
+        abs(now - told) <= TOLERANCE * abs(told)
+        for now, told in zip((ahead, turned), velocity, strict=True)
+        if told
+    ):
+        before = ahead, turned
+        ahead, turned = _measured(world, model, robot, topic, velocity, flying=flying)
+        waited += _MEASURED
+        changes = [
+            (now - then) / told
+            for now, then, told in zip((ahead, turned), before, velocity, strict=True)
+            if told
+        ]
+        if max(changes) < _SETTLED:
+            break
+    return ahead, turned
+
+
+def _measured(
+    world: World,
+    model: Model,
+    robot: Robot,
+    topic: TopicInfo,
+    velocity: Sequence[float],
+    *,
+    flying: bool,
+) -> tuple[float, float]:
+    """Forward speed in m/s and turn rate in rad/s, to the left, while a command is published."""
     before, joints = model.pose, positions(world, model)
     _drive_on(world, topic, velocity, _MEASURED)
     after = model.pose
@@ -281,8 +298,15 @@ def positions(world: World, model: Model) -> dict[str, float]:
     return {name: model.joint(name) for owner, name in joints if owner == model.name}
 
 
-def _drive_on(world: World, topic: TopicInfo, command: Sequence[float], seconds: float) -> None:
-    twist = {"linear": {"x": command[0]}, "angular": {"z": command[1]}}
+def _drive_on(
+    world: World,
+    topic: TopicInfo,
+    command: Sequence[float],
+    seconds: float,
+    *,
+    climb: float = 0.0,
+) -> None:
+    twist = {"linear": {"x": command[0], "z": climb}, "angular": {"z": command[1]}}
     for _ in range(round(seconds * _RATE)):
         said: dict[str, Any] = twist
         if topic.type == TWIST_STAMPED:

@@ -14,7 +14,8 @@ from cartwheel.errors import Diagnostic
 TOLERANCE = 0.05
 """Relative tolerance of a commanded velocity."""
 SUNK = 0.02
-"""m; maximum settling of a standing robot, for springs and soft tyres."""
+"""m, or a part of the robot's size if it is longer than 1 m; maximum settling of a standing robot,
+for springs, soft tyres and casters that are lower than the wheels."""
 TILTED = 0.1
 """rad; maximum tilt."""
 RISEN = 0.2
@@ -43,6 +44,8 @@ class Stand:
     """The root's speed during the last second, m/s."""
     turn: float
     """The root's angular speed during the last second, rad/s."""
+    size: float = 0.0
+    """Longest edge of the robot's bounding box, m."""
     floats: bool = False
     """Whether it was tested in water, where it need not stand."""
 
@@ -57,7 +60,7 @@ class Stand:
             return "moves"
         if self.tilt > TILTED:
             return "tips"
-        if abs(self.sunk) > SUNK:
+        if abs(self.sunk) > SUNK * max(1.0, self.size):
             return "sinks" if self.sunk > 0 else "rises"
         return "yes"
 

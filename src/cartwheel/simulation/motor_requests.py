@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -11,7 +12,9 @@ import numpy as np
 from cartwheel.codes import running
 from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import Mimic
+from cartwheel.description.solids import solid_of
 from cartwheel.errors import Origin, PluginError
+from cartwheel.geometry import Array, Pose
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
@@ -22,6 +25,11 @@ _DRIVE_WEIGHTS = 5.0
 """Maximum force of a whole-model servo, as a multiple of the weight: well above any friction."""
 _DRIVE_BAND = 0.05
 """Velocity error at which the servo reaches its maximum force, m/s or rad/s."""
+_UPRIGHT_WEIGHTS = 2.0
+"""Maximum torque of an upright servo, as a multiple of the weight at the height of the centre of
+mass: the friction tilts with at most 1. Ramps still pitch a base that is wider than it is high."""
+_TILT_BAND = 0.01
+"""Roll or pitch rate at which an upright servo reaches its maximum torque, rad/s."""
 _DRIVE_ARM = 0.1
 """Minimum lever arm for the maximum torque, m."""
 _LAST = 1 << 40
@@ -175,7 +183,11 @@ class MotorRequests(Requests):
         self._entry.mimics[joint] = mimic
 
     def body_drive(
-        self, *, gains: tuple[float, float] | None = None, origin: Origin | None = None
+        self,
+        *,
+        gains: tuple[float, float] | None = None,
+        upright: bool = False,
+        origin: Origin | None = None,
     ) -> BodyDriveHandle:
         """A servo that moves the whole model by its canonical link.
 
@@ -184,6 +196,10 @@ class MotorRequests(Requests):
         Args:
             gains: Force gain in N s/m and torque gain in N m s/rad, without a limit. None is as
                 stiff as possible, with at most `_DRIVE_WEIGHTS` times the model's weight.
+            upright: Whether the torque about the vertical also overcomes friction at the farthest
+                collision, and level commands also hold the roll and pitch rates at 0, so that
+                friction at the bottom of the model does not tip it over. The torque is then at most
+                `_UPRIGHT_WEIGHTS` times the weight, at the height of the centre of mass.
             origin: Origin for errors.
 
         Raises:
@@ -215,15 +231,19 @@ class MotorRequests(Requests):
             far = inertial.mass * float(np.sum((np.array(place) - centre) ** 2))
             reach += (far + sum(inertial.diagonal) / 2) / description.mass
         band = _DRIVE_BAND if gains is None else math.inf
+        height, width = self._extent(to_link, poses, centre) if upright else (0.0, 0.0)
         if gains is None:
             force = _DRIVE_WEIGHTS * 9.8 * description.mass / _DRIVE_BAND
-            gains = (force, force * max(_DRIVE_ARM, 2 * reach**0.5))
+            gains = (force, force * max(_DRIVE_ARM, 2 * reach**0.5, width))
+        tilt = _UPRIGHT_WEIGHTS * 9.8 * description.mass * height / _TILT_BAND
         drive = BodyDrive(
             link=link.name,
             centre=(float(centre[0]), float(centre[1]), float(centre[2])),
             force_gain=gains[0],
             torque_gain=gains[1],
             band=band,
+            tilt_gain=tilt,
+            tilt_band=_TILT_BAND,
             number=len(self._entry.drives),
         )
         self._entry.drives.append(drive)
@@ -231,3 +251,26 @@ class MotorRequests(Requests):
         self.handles.append(handle)
         self.schedule(0, before=handle.hold).reads_state = True
         return handle
+
+    def _extent(
+        self, to_link: Pose, poses: Mapping[str, Pose], centre: Array
+    ) -> tuple[float, float]:
+        """Height of the centre of mass above the lowest collision, and distance of the farthest
+        collision from the vertical through it, m.
+
+        Args:
+            to_link: The model's frame in the root link.
+            poses: Poses of the links in the model's frame.
+            centre: Centre of mass in the root link, shape (3,), m.
+        """
+        clouds = [
+            solid.placed(to_link @ poses[link.name])
+            for link in self.description.links
+            for part in link.collisions
+            if (solid := solid_of(part, link.name)) is not None
+        ]
+        if not clouds:
+            return 0.0, 0.0
+        gaps = np.concatenate(clouds) - centre
+        radii = np.hypot(gaps[:, 0], gaps[:, 1])
+        return max(0.0, float(-gaps[:, 2].min())), float(radii.max())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, running, world
 from cartwheel.description.model import CameraIntrinsics, RobotDescription
 from cartwheel.errors import (
     Diagnostic,
@@ -28,6 +28,7 @@ from cartwheel.simulation.handles import (
 )
 from cartwheel.simulation.sensing.rays import RayHandle
 from cartwheel.world.additions import Addition
+from cartwheel.world.build import DEFAULT_STEP
 from cartwheel.world.entry import CameraMount, ModelEntry, scoped
 from cartwheel.world.tyres import axle_of
 
@@ -83,6 +84,26 @@ class Requests:
         )
         self.tasks.append(task)
         return task
+
+    def limit_step(self, seconds: float, why: str, *, origin: Origin | None = None) -> None:
+        """Requests a time step of at most `seconds` in a world that states none.
+
+        Args:
+            seconds: Longest step, s.
+            why: What needs it, as the subject of a message.
+            origin: Origin of the request.
+        """
+        if self._engine.world.physics.max_step_size or seconds >= DEFAULT_STEP:
+            return
+        self._entry.longest_step = min(self._entry.longest_step, seconds)
+        self.report(
+            world.STEP_SHORTENED.diagnostic(
+                f"{why} needs a time step of {1000 * seconds:g} ms, so it is used instead of the "
+                f"default of {1000 * DEFAULT_STEP:g} ms",
+                origin=origin,
+                values={"model": self.name, "step": seconds},
+            )
+        )
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Reports a diagnostic about this model, at startup or at run time."""

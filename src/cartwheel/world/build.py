@@ -108,7 +108,7 @@ def build_visuals(
         WorldError: A visual cannot be built; the error has the origin if it is known.
     """
     entries = list(entries)
-    spec = empty_spec(world)
+    spec = empty_spec(world, step_of(world, entries))
     bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep, without, "visuals")
     try:
         for entry in entries:
@@ -132,7 +132,7 @@ def _built(
     *,
     xml: bool,
 ) -> Build:
-    spec = empty_spec(world)
+    spec = empty_spec(world, step_of(world, entries))
     bodies = BodyBuilder(spec, Assets(spec), spec.option.timestep, without, shapes)
     for entry in entries:
         _check_chain(entry)

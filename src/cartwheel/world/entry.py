@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -63,6 +64,10 @@ class BodyDrive:
     """N m s/rad, about each axis."""
     band: float
     """m/s or rad/s; larger velocity errors are clipped to this value."""
+    tilt_gain: float = 0.0
+    """N m s/rad, about horizontal axes while the drive is level. 0: as for other axes."""
+    tilt_band: float = 0.0
+    """rad/s; larger errors of the roll and pitch rates are clipped to this value."""
     number: int = 0
     """Index in the model: two plugins may push it."""
 
@@ -105,6 +110,8 @@ class ModelEntry:
     """Links whose contacts must stay awake, besides those with contact sensors."""
     attachments: list[str] = field(default_factory=list)
     """Names of initially inactive welds; see `AttachmentHandle`."""
+    longest_step: float = math.inf
+    """Longest time step for a control loop of the model in a world without a stated step, s."""
 
     def copy(self) -> ModelEntry:
         """A copy that later requests do not change."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import mujoco
 import numpy as np
@@ -29,19 +29,20 @@ _LEAST_CELL = 0.2
 """Minimum size of a grid cell, m."""
 
 
-def step_of(world: WorldDescription) -> float:
-    """The step length in s, from the world or the default."""
-    return world.physics.max_step_size or DEFAULT_STEP
+def step_of(world: WorldDescription, entries: Iterable[ModelEntry] = ()) -> float:
+    """The step length in s, from the world, or else the default or what its models need."""
+    stated = world.physics.max_step_size
+    return stated or min((DEFAULT_STEP, *(entry.longest_step for entry in entries)))
 
 
-def empty_spec(world: WorldDescription) -> mujoco.MjSpec:
+def empty_spec(world: WorldDescription, step: float) -> mujoco.MjSpec:
     """A spec with the options, sky and lights of a world, but without models."""
     spec = mujoco.MjSpec()
     spec.modelname = world.name
     spec.compiler.degree = False
     spec.compiler.autolimits = False
     spec.compiler.boundmass = 0
-    spec.option.timestep = step_of(world)
+    spec.option.timestep = step
     spec.option.gravity = list(world.gravity)
     # Solves motors and contacts in one system. The other implicit integrators damp a servo only
     # after the contacts were solved without it, so a driven wheel slips by the difference.

@@ -616,8 +616,8 @@ def test_impossible_inertia_matters_where_it_moves():
     a, b, c = sorted((made.ixx, made.iyy, made.izz))
     assert a + b == pytest.approx(c)
     robot(f'<static>true</static><link name="a">{FLAT}</link>')
-    with raises(INERTIA_IMPOSSIBLE, link="base", moments=(0, 0, 0)):
-        link(POINT)
+    (told,) = link(POINT).diagnostics
+    assert (told.code, told.severity, told.values["link"]) == (INERTIA_IMPOSSIBLE, "info", "base")
     with raises(INERTIA_IMPOSSIBLE, link="base", moments=(-1, 0, 0)):
         link(POINT.replace("<ixx>0", "<ixx>-1"))
     robot(
@@ -845,3 +845,29 @@ def test_a_missing_part_of_a_model_costs_the_part():
     (told,) = found.diagnostics
     assert told.severity == "error"
     assert told.values["left_out"] == "include"
+
+
+def test_ros2_control_of_a_model_is_read():
+    """gz_ros2_control also reads it from SDF."""
+    system = """<ros2_control name="s" type="system"><joint name="j">
+      <command_interface name="velocity"/></joint></ros2_control>"""
+    found = robot(
+        f'<link name="base"/>{system}<model name="inner"><link name="l"/>{system}</model>'
+    )
+    assert [dict(each.attributes)["name"] for each in found.ros2_control] == ["s", "s"]
+    assert found.diagnostics == ()
+
+
+def test_a_moving_link_without_inertia_or_shape_is_a_point_mass():
+    """gz-sim loads it; its demonstrations of steering contain such links."""
+    none = "".join(f"<{name}>0</{name}>" for name in ("ixx", "iyy", "izz"))
+    found = robot(
+        f"""<link name="base"/>
+        <link name="knuckle"><inertial><mass>0.1</mass><inertia>{none}</inertia></inertial></link>
+        <joint name="steer" type="revolute"><parent>base</parent>
+        <child>knuckle</child><axis><xyz>0 0 1</xyz></axis></joint>"""
+    )
+    (told,) = found.diagnostics
+    assert told.code is INERTIA_IMPOSSIBLE
+    assert told.severity == "info"
+    assert found.links[1].inertial.mass == 0.1

@@ -7,7 +7,7 @@ import pytest
 from tests.coded import coded, raises
 from tests.devices.air.multicopters import MOMENT, K, bee, motor, velocity
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, running, world
 from cartwheel.devices.air.geometric_control import RotorConfig, allocation, controls_all
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Pose
@@ -186,3 +186,33 @@ def test_propellers_on_a_line_cannot_turn_it_about_that_line():
     ]
     assert not controls_all(line)
     assert allocation(line)[0] == pytest.approx(0.0)
+
+
+FAST = GAINS.replace("0.3 0.3 0.1", "{k} {k} 0.1")
+
+
+@pytest.mark.parametrize(("change", "milliseconds"), [(0.4, 5), (0.6, 1)])
+def test_a_fast_loop_gets_the_step_of_gazebo(make, change, milliseconds):
+    """A step of 5 ms may change the angular velocity by a half of its error: k T / I = 0.5."""
+    inertia = bee(make, "").link("body").inertial.ixx
+    made = Copter(make, gains=FAST.format(k=change * inertia / 0.005))
+    simulation = made.world.session.simulation
+    assert simulation.step_ns == milliseconds * 1_000_000
+    told = coded(made.world, world.STEP_SHORTENED)
+    assert len(told) == (milliseconds == 1)
+    made.fly(0.1)
+    simulation.delete("bee")
+    assert simulation.step_ns == 5_000_000
+    made.world.run(0.1)
+    assert simulation.time_ns == 200_000_000
+
+
+def test_the_step_of_the_world_stays(make):
+    inertia = bee(make, "").link("body").inertial.ixx
+    plugins = "".join(motor(n, "gz") for n in range(4)) + control(
+        gains=FAST.format(k=200 * inertia)
+    )
+    made = make.world(step=0.004)
+    made.session.spawn(bee(make, plugins))
+    assert made.session.simulation.step_ns == 4_000_000
+    assert coded(made, world.STEP_SHORTENED) == []

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from cartwheel.codes import files, tags
-from cartwheel.description.elements.xml import Node, unread
+from cartwheel.description.elements.xml import Node, to_element, unread
 from cartwheel.description.losses import loss
 from cartwheel.description.model import Element, Joint, Sensor
 from cartwheel.description.sdf.context import Context, read_pose, reference_of, require_name
@@ -140,6 +140,7 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
         relative_to=reference_of(stated),
         origin=included.origin if included is not None else node.origin,
         merge=included.merge if included is not None else False,
+        ros2_control=tuple(to_element(each) for each in node.all("ros2_control")),
     )
     if included is not None:
         model.plugins.extend(included.plugins)
@@ -266,6 +267,7 @@ def _flatten(model: Model, inner: Model) -> None:
         replace(plugin, element=_renamed(plugin.element, names, prefix)) if prefix else plugin
         for plugin in inner.plugins
     ]
+    model.ros2_control += inner.ros2_control
 
 
 def _own_collide(model: Model, inner: Model) -> bool | None:

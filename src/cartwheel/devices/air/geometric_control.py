@@ -13,11 +13,17 @@ from cartwheel.description.model import RobotDescription
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
 from cartwheel.geometry import Array, Vec3, matrix_from_quat
 from cartwheel.messages import zero
+from cartwheel.world.build import DEFAULT_STEP
 
 _PARALLEL = 1e-3
 """Square of the sine of the angle between two axes below which they are parallel."""
 _SMALLEST_RANK = 1e-9
 """Smallest singular value relative to the largest with which motions can be controlled."""
+
+_MOST_CHANGE = 0.5
+"""Largest part of an error of the angular velocity that one step may correct."""
+_FAST_STEP = 0.001
+"""Gazebo's default time step, s."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,11 +90,31 @@ class GeometricControl(Component):
         self._link = part.link(config.link, origin=self.origin)
         self._allocation = np.linalg.pinv(allocation(config.rotors))
         self._mass = total_mass(part.description)
+        self._limit_step()
         self._clear()
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         self.subscribe(config.enable_topic, "std_msgs/msg/Bool", self._on_enable)
         self._motors = [self.advertise(topic, GZ_ACTUATORS) for topic in config.motor_topics]
         part.schedule(0, before=self._control)
+
+    def _limit_step(self) -> None:
+        """Requests the step of Gazebo if the loop of the angular velocity is fast.
+
+        With a gain k and a moment of inertia I, the torque of one step T changes the velocity by
+        k T / I of its error. The delays of the motors and of the step leave room for a half of it.
+        """
+        link = self.part.description.link(self._config.link)
+        moments = link.inertial.diagonal if link is not None and link.inertial is not None else ()
+        fastest = max(
+            (
+                k / moment
+                for k, moment in zip(self._config.rate_gain, moments, strict=False)
+                if moment > 0
+            ),
+            default=0.0,
+        )
+        if fastest * DEFAULT_STEP > _MOST_CHANGE:
+            self.part.limit_step(_FAST_STEP, "the gain of the angular velocity", origin=self.origin)
 
     def reset(self) -> None:
         super().reset()

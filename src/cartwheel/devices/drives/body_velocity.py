@@ -38,7 +38,9 @@ class BodyVelocity(Component):
     def __init__(self, scope: Scope, config: BodyVelocityConfig) -> None:
         super().__init__(scope)
         self._config = config
-        self._servo = self.part.body_drive(gains=config.gains, origin=self.origin)
+        # Forces with gains tilt a model; a velocity that is set does not.
+        upright = config.motion == "planar" and config.gains is None
+        self._servo = self.part.body_drive(gains=config.gains, upright=upright, origin=self.origin)
         self.subscribe(config.topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout is not None:
             self.part.schedule(0, before=self._stop_after_timeout)

@@ -26,6 +26,8 @@ class BodyDriveHandle:
         self._linear_target: Vec3 = (0.0, 0.0, 0.0)
         self._angular_target: Vec3 = (0.0, 0.0, 0.0)
         self._level = True
+        self._bands = (drive.band,) * 6
+        """Largest velocity error of each axis, m/s or rad/s."""
         self._rows = range(0)
         """Actuator ids; empty until the model is compiled."""
         self._holds = False
@@ -60,8 +62,11 @@ class BodyDriveHandle:
         Args:
             linear: m/s; None leaves a direction free.
             angular: rad/s; None leaves a direction free.
-            level: Use axes that follow only the link's heading, with z up.
+            level: Use axes that follow only the link's heading, with z up. The drive's `tilt_gain`
+                then damps rotation about x and y.
         """
+        if level and self.drive.tilt_gain and any(value is not None for value in linear):
+            angular = (angular[0] or 0.0, angular[1] or 0.0, angular[2])
         self._velocity = (*linear, *angular)
         x, y, z, *turn = (value or 0.0 for value in self._velocity)
         self._linear_target, self._angular_target = (x, y, z), (turn[0], turn[1], turn[2])
@@ -75,12 +80,15 @@ class BodyDriveHandle:
 
     def _enable(self) -> None:
         self._holds = bool(self._rows) and self._velocity != _FREE
-        for row, value in zip(self._rows, self._velocity, strict=False):
-            linear = row - self._rows[0] < 3
-            gain = self.drive.force_gain if linear else self.drive.torque_gain
-            if value is None:
-                gain = 0.0
-            self._gain[row, 0], self._bias[row, 2] = gain, -gain
+        drive = self.drive
+        tilt = (drive.torque_gain, drive.band)
+        if self._level and drive.tilt_gain:
+            tilt = (drive.tilt_gain, drive.tilt_band)
+        gains = (*(drive.force_gain,) * 3, tilt[0], tilt[0], drive.torque_gain)
+        self._bands = (*(drive.band,) * 3, tilt[1], tilt[1], drive.band)
+        for row, value, gain in zip(self._rows, self._velocity, gains, strict=False):
+            used = 0.0 if value is None else gain
+            self._gain[row, 0], self._bias[row, 2] = used, -used
 
     def hold(self) -> None:
         """Updates the actuators; called before each step, because they act in world axes."""
@@ -124,10 +132,10 @@ class BodyDriveHandle:
             sy,
             sz,
         )
-        ctrl, band = self._ctrl, self.drive.band
+        ctrl, bands = self._ctrl, self._bands
         for row in range(6):
             # With a limit on the force itself, the servo would overshoot within a step.
-            change = targets[row] - now[row]
+            change, band = targets[row] - now[row], bands[row]
             if change > band:
                 change = band
             elif change < -band:

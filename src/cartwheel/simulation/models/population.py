@@ -216,7 +216,7 @@ class Population:
         built = compiled.build
         self._added = built.added
         engine.replace(built.model, built.alignments, built.bounces, compiled.compile_visuals)
-        step_ns = to_ns(step_of(engine.world))
+        step_ns = to_ns(step_of(engine.world, everything))
         if step_ns != engine.step_ns:
             engine.set_step(step_ns)
         self.residents = residents

@@ -97,3 +97,60 @@ def test_planar_move_of_what_is_fixed_is_refused(make):
     with pytest.raises(PluginError) as caught:
         spawn(make, make.sdf(model))
     assert caught.value.code is running.MODEL_NOT_MOVABLE
+
+
+TALL = """<model name="tall"><link name="base"><pose>0 0 0.501 0 0 0</pose>
+    <inertial><mass>20</mass><inertia><ixx>1.8</ixx><iyy>1.8</iyy><izz>0.3</izz></inertia></inertial>
+    <collision name="c"><geometry><box><size>0.3 0.3 1</size></box></geometry></collision></link>
+    {}</model>"""
+
+
+@pytest.mark.parametrize("command", [{"linear_x": 0.3}, {"linear_y": -0.3}])
+def test_planar_move_does_not_tip_a_tall_box(make, command):
+    """Friction of m g at 0.5 m below the centre of mass exceeds the weight at 0.15 m."""
+    world = make.world()
+    world.session.spawn(make.sdf(TALL.format(PLANAR.format(""))))
+    world.publish("/cmd_vel", **command)
+    world.run(6.0)
+    roll, pitch, _ = world.model("tall").pose.rpy
+    assert abs(roll) < 0.05
+    assert abs(pitch) < 0.05
+    x, y, _ = world.model("tall").pose.position
+    # The friction takes 1/5 of what the servo has: 0.05 / 5 m/s.
+    assert math.hypot(x, y) == pytest.approx(6.0 * 0.29, abs=0.05)
+
+
+def test_planar_move_climbs_a_ramp(make, cart):
+    slope = 0.15
+    ramp = make.box(
+        "ramp",
+        (4, 4, 0.2),
+        static=True,
+        pose=Pose.from_xyz_rpy(
+            (1.0 + 2 * math.cos(slope), 0, 2 * math.sin(slope) - 0.1 / math.cos(slope)),
+            (0, -slope, 0),
+        ),
+    )
+    world = make.world(ramp)
+    world.session.spawn(cart(FOUR, PLANAR.format("")), pose=START)
+    world.publish("/cmd_vel", linear_x=0.5)
+    world.run(5.0)
+    pose = world.model("cart").pose
+    assert pose.x > 2.0
+    assert pose.rpy[1] == pytest.approx(-slope, abs=0.03)
+
+
+def test_planar_move_turns_a_wide_plate_whose_stated_inertia_is_small(make):
+    """Friction of m g at the corners, 0.7 m from the centre, needs m g 0.7 m / 2 or so."""
+    plate = TALL.replace("tall", "plate").replace("0 0 0.501", "0 0 0.02")
+    plate = (
+        plate.replace("0.3 0.3 1", "1 1 0.04").replace("1.8", "0.003").replace(">0.3<", ">0.003<")
+    )
+    world = make.world()
+    world.session.spawn(make.sdf(plate.format(PLANAR.format(""))))
+    world.publish("/cmd_vel", angular_z=0.4)
+    world.run(1.0)
+    before = world.model("plate").pose.yaw
+    world.run(2.0)
+    # The servo has 5 m g 0.71 m at an error of 0.05 rad/s, and the corners slide at 0.71 m.
+    assert (world.model("plate").pose.yaw - before) / 2.0 == pytest.approx(0.39, abs=0.005)

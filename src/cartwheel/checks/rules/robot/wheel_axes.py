@@ -89,6 +89,7 @@ def steering_axes(subject: Subject) -> Iterator[Diagnostic]:
             if each.role == "steering"
             for name in each.joints(tag.element)
         }
+        steered |= dict.fromkeys(robot.steered)
         for name in steered:
             joint = robot.joints.get(name)
             if joint is None or joint.child not in robot.placed:

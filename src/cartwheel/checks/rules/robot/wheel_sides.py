@@ -13,6 +13,7 @@ from cartwheel.checks.wheels import (
     faces_sideways,
     gap_between,
     is_legacy,
+    wheel_middle,
     wheel_pairs,
     wheel_place,
 )
@@ -23,7 +24,9 @@ from cartwheel.errors import Diagnostic
 @rule(robot_codes.WHEELS_SWAPPED)
 def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in wheel_pairs(subject):
-        poses = [wheel_place(robot, joint) for joint in (left, right)]
+        sides = [wheel_place(robot, joint).y for joint in (left, right)]
+        if sides[0] == sides[1]:
+            sides = [wheel_middle(robot, joint)[1] for joint in (left, right)]
         element = drive.left_tag
         gap = gap_between(robot, left, right)
         if element is None or is_legacy(drive):
@@ -40,7 +43,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
             # backwards, but is otherwise correct.
             continue
         else:
-            why = f"at y = {poses[0].y:.3g} m and y = {poses[1].y:.3g} m"
+            why = f"at y = {sides[0]:.3g} m and y = {sides[1]:.3g} m"
         yield robot_codes.WHEELS_SWAPPED.diagnostic(
             message=f'the left wheel joint "{left.name}" is to the right of "{right.name}", {why}',
             values={"left": left.name, "right": right.name},

@@ -85,7 +85,14 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
     if not any(moments):
         shape = inertial_of(list(link.collisions), [WATER] * len(link.collisions), i.origin)
         if shape is None:
-            raise unusable
+            ctx.warn(
+                INERTIA_IMPOSSIBLE,
+                f'link "{link.name}" is a point mass: its inertia is 0',
+                origin=i.origin,
+                severity="info",
+                values={"link": link.name},
+            )
+            return i  # a rotating part without any inertia gets one as a whole
         # About the stated centre of mass, along the link's axes.
         made = replace(weighing(shape, i.mass), pose=Pose(i.pose.position))
         here = (
