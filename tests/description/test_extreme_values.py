@@ -36,13 +36,30 @@ _SAMPLE = 40
 
 
 def _changed(text):
-    """The document with each of its numbers at half of the extremes, the next at the other half.
+    """The document with each of its numbers at some of the extremes.
 
-    Neighbours are numbers of one vector or one element, which the same function reads.
+    The numbers of a vector, which one function reads, have all of them together. Another number has
+    half of them, and its neighbour the other half.
     """
-    for place, found in enumerate(_NUMBER.finditer(text)):
-        for value in _VALUES[place % 2 :: 2]:
-            yield text[: found.start()] + value + text[found.end() :]
+    for count, vector in enumerate(_vectors(text)):
+        parts = min(len(vector), 5) if len(vector) > 2 else 2
+        for place, found in enumerate(vector):
+            first = place if len(vector) > 2 else place + count
+            for value in _VALUES[first % parts :: parts]:
+                yield text[: found.start()] + value + text[found.end() :]
+
+
+def _vectors(text):
+    """Its numbers, those together with only spaces between them."""
+    vectors = []
+    end = None
+    for found in _NUMBER.finditer(text):
+        if end is not None and text[end : found.start()].isspace():
+            vectors[-1].append(found)
+        else:
+            vectors.append([found])
+        end = found.end()
+    return vectors
 
 
 def _refused(error):
