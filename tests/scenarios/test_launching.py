@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from cartwheel.scenarios import Options, Runner, cases_of, digests, launching
-from cartwheel.scenarios.launching import Launched
+from cartwheel.scenarios import Options, Runner, cases_of, digests
+from cartwheel.testing import launching
+from cartwheel.testing.launching import Launched
 
 STUBBORN = """
 import os, signal, subprocess, sys, time

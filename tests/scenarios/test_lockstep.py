@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 import cartwheel as cw
+from cartwheel.api.exchange.lockstep import Lockstep
 from cartwheel.codes.command import COMMAND_EXTRA
 from cartwheel.messages import from_dict
 from cartwheel.scenarios import Options, Runner, cases_of, digests, load_scenario
-from cartwheel.scenarios.lockstep import Lockstep
 
 DRIVE = "/part2_cmr/cmd_vel"
 TWIST = "geometry_msgs/msg/Twist"

@@ -3,6 +3,7 @@
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
 from cartwheel.api.exchange.faults import Fault
+from cartwheel.api.exchange.lockstep import Lockstep
 from cartwheel.api.joints import Joint, Joints
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
@@ -37,6 +38,7 @@ __all__ = [
     "Joints",
     "Light",
     "Link",
+    "Lockstep",
     "Model",
     "Picture",
     "Plot",

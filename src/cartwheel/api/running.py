@@ -118,31 +118,10 @@ class RunningWorld:
 
     # -- time
 
-    def run(self, seconds: float, *, speed: float | None = None) -> None:
-        """Advances the simulation. Without connections, nothing else can change it meanwhile.
-
-        When the method returns, everything that is due at the new time has been published, and
-        drives have executed the commands that they had received. Two runs of 0.5 s give the same
-        results and messages as one run of 1 s.
-
-        Ctrl-C completes the current step, so that a later call can continue.
-
-        Args:
-            seconds: Simulation time, at least 0. If a client, callback or action resets the
-                simulation, it starts again.
-            speed: Target real-time factor; None is that of `pace`, by default as fast as
-                possible.
-
-        Raises:
-            CartwheelError: `seconds` or `speed` is out of range.
-            SimulationError: The simulation diverged, the world is closed, a callback of the same
-                world called the method, or the process was forked while the world was connected.
-            RecordingError: A recording has failed.
-            KeyboardInterrupt: Ctrl-C was pressed.
-        """
-        duration = duration_ns(seconds)
+    def _run_freely(self, duration_ns: int, speed: float | None = None) -> None:
+        """`run`, without lockstep."""
         with self._run() as simulation, self._driver.interruptible() as interruption:
-            self._advance(simulation, duration, speed)
+            self._advance(simulation, duration_ns, speed)
         interruption.raise_pressed()
 
     def _advance(self, simulation: Simulation, duration_ns: int, speed: float | None) -> None:

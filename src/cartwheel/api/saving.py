@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 
-from cartwheel.api.exchange.faults import FaultyWorld
+from cartwheel.api.exchange.lockstep import SteppedWorld
 from cartwheel.api.values import instance
 from cartwheel.codes.world import RUN_NESTED
 from cartwheel.errors import SimulationError
@@ -13,7 +13,7 @@ from cartwheel.saving import State, restore, save
 from cartwheel.simulation.limits import check_seed
 
 
-class SavingWorld(FaultyWorld):
+class SavingWorld(SteppedWorld):
     """The part of `World` that saves, restores and resets its state."""
 
     def save(self) -> State:

@@ -43,6 +43,37 @@ class Timer:
 class TimedWorld(RunningWorld):
     """The part of `World` that advances by steps and until conditions, and schedules actions."""
 
+    _advancer: Callable[[float], None] | None = None
+    """Advances the world by a time, s, in lockstep with another program; see `World.lockstep`."""
+
+    def run(self, seconds: float, *, speed: float | None = None) -> None:
+        """Advances the simulation. Without connections, nothing else can change it meanwhile.
+
+        When the method returns, everything that is due at the new time has been published, and
+        drives have executed the commands that they had received. Two runs of 0.5 s give the same
+        results and messages as one run of 1 s.
+
+        Ctrl-C completes the current step, so that a later call can continue.
+
+        Args:
+            seconds: Simulation time, at least 0. If a client, callback or action resets the
+                simulation, it starts again.
+            speed: Target real-time factor; None is that of `pace`, by default as fast as
+                possible.
+
+        Raises:
+            CartwheelError: `seconds` or `speed` is out of range.
+            SimulationError: The simulation diverged, the world is closed, a callback of the same
+                world called the method, or the process was forked while the world was connected.
+            RecordingError: A recording has failed.
+            KeyboardInterrupt: Ctrl-C was pressed.
+        """
+        duration = duration_ns(seconds)
+        if self._advancer is not None and duration:
+            self._advancer(seconds)
+        else:
+            self._run_freely(duration, speed)
+
     @property
     def step_size(self) -> float:
         """Time step of the physics, s: that of the world file, or set by a client."""
@@ -59,6 +90,9 @@ class TimedWorld(RunningWorld):
             SimulationError: See `run`.
         """
         check_steps(n)
+        if self._advancer is not None:
+            self._advancer(n * self.step_size)
+            return
         with self._run() as simulation, self._driver.interruptible() as interruption:
             self._advance(simulation, n * simulation.step_ns, None)
         interruption.raise_pressed()
@@ -119,10 +153,24 @@ class TimedWorld(RunningWorld):
                 hint="None evaluates the condition after each step.",
                 values={"name": "the period in s", "value": float(period or 0.0)},
             )
+        if self._advancer is not None:
+            return self._until_in_lockstep(holds, limit, pause)
         with self._run() as simulation, self._driver.interruptible() as interruption:
             held = self._run_until(simulation, holds, limit, pause, speed)
         interruption.raise_pressed()
         return held
+
+    def _until_in_lockstep(self, holds: Callable[[], bool], limit: int, pause: int | None) -> bool:
+        assert self._advancer is not None
+        simulation = self.session.simulation
+        end = simulation.time_ns + limit
+        while not holds():
+            left = end - simulation.time_ns
+            if left <= 0:
+                return False
+            step = simulation.step_ns
+            self._advancer(min(max(pause or step, step), max(left, step)) / NANOSECONDS)
+        return True
 
     def _run_until(
         self,

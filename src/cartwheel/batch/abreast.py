@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Protocol
 
-from cartwheel.api.running import RunningWorld
+from cartwheel.api.timing import TimedWorld
 from cartwheel.assembly.driver import Interruption
 from cartwheel.assembly.turn import Turn
 from cartwheel.messages.store import find_with, finding_with
@@ -23,7 +23,7 @@ class Physics(Protocol):
 
 
 def run_abreast(
-    worlds: Sequence[RunningWorld], seconds: float, physics: Physics | None = None
+    worlds: Sequence[TimedWorld], seconds: float, physics: Physics | None = None
 ) -> None:
     """Runs several worlds, with the same results as `World.run` of each.
 
@@ -66,7 +66,7 @@ def run_abreast(
         raise errors[0]
 
 
-def _stop(worlds: Sequence[RunningWorld]) -> None:
+def _stop(worlds: Sequence[TimedWorld]) -> None:
     for world in worlds:
         world.stop()
 
@@ -103,7 +103,7 @@ class Run:
         "types",
     )  # fmt: skip
 
-    def __init__(self, world: RunningWorld, duration_ns: int, errors: list[Exception]) -> None:
+    def __init__(self, world: TimedWorld, duration_ns: int, errors: list[Exception]) -> None:
         self._errors = errors
         self.types = world.session.types
         """Finds message types for the plugins of the world."""

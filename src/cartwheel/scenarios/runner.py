@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from cartwheel.codes.command import LAUNCH_NOT_ALLOWED
 from cartwheel.errors import CartwheelError, fault
 from cartwheel.scenarios.cases import Case, Scenario, place_of, resolved
-from cartwheel.scenarios.launching import Launched, ros2_domain, ros_master
-from cartwheel.scenarios.lockstep import Lockstep
 from cartwheel.scenarios.outcome import Finding, Outcome
 from cartwheel.scenarios.steps import Steps, spawn_options
 from cartwheel.scenarios.trial import Trial
+from cartwheel.testing.launching import Launched, ros2_domain, ros_master
 
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
@@ -192,6 +191,8 @@ class Runner:
         advance = None
         lockstep = None
         if lock:
+            from cartwheel.api.exchange.lockstep import Lockstep
+
             more = {name: lock[name] for name in _LOCKSTEP if name in lock}
             lockstep = Lockstep(
                 world, lock["commands"], check=program.check if program else lambda: None, **more

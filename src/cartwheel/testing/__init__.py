@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from cartwheel.bridges.ros2.plain_node import Node, NodePublisher
+    from cartwheel.testing.launching import Launched, launch
     from cartwheel.testing.matchers import (
         UnmetError,
         joint_reaches,
@@ -21,8 +23,12 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Launched",
+    "Node",
+    "NodePublisher",
     "UnmetError",
     "joint_reaches",
+    "launch",
     "moves",
     "publishes",
     "reaches",
@@ -36,6 +42,14 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(name)
+    if name in ("Node", "NodePublisher"):
+        from cartwheel.bridges.ros2 import plain_node
+
+        return getattr(plain_node, name)
+    if name in ("Launched", "launch"):
+        from cartwheel.testing import launching
+
+        return getattr(launching, name)
     from cartwheel.testing import matchers
 
     return getattr(matchers, name)

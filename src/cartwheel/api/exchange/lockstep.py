@@ -11,13 +11,16 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from types import TracebackType
+from typing import Any, Self
 
+from cartwheel.api.arguments import several
+from cartwheel.api.exchange.faults import FaultyWorld
+from cartwheel.api.values import invalid, scalar
 from cartwheel.codes.command import COMMAND_EXTRA, COMMAND_LATE
 from cartwheel.graph.holding import hold_back, let_pass
-
-if TYPE_CHECKING:
-    from cartwheel.api import World
+from cartwheel.simulation.clock import NANOSECONDS
+from cartwheel.simulation.limits import duration_ns
 
 PERIOD = 0.1
 WALL_TIMEOUT = 5.0
@@ -34,8 +37,68 @@ _MOST = 100
 _TIME_ERROR = 1e-9
 
 
+class SteppedWorld(FaultyWorld):
+    """The part of `World` that runs in lockstep."""
+
+    def lockstep(
+        self,
+        commands: str | Sequence[str],
+        *,
+        period: float = PERIOD,
+        wall_timeout: float = WALL_TIMEOUT,
+        start_timeout: float = START_TIMEOUT,
+        check: Callable[[], None] = lambda: None,
+    ) -> Lockstep:
+        """Runs the world in lockstep with another program from now on, such as a node of ROS.
+
+        In `run`, `step` and `run_until`, simulation time then stops after each period until a
+        message has arrived on each command topic. The messages take effect at that time, so runs
+        are repeatable, however fast the other program is. The lockstep ends with
+        `Lockstep.close`, or with a ``with`` block.
+
+        Args:
+            commands: Topics on which the other program publishes once in each period.
+            period: Simulation time between two messages of a topic, s.
+            wall_timeout: Wall time after which time continues without a message, s.
+            start_timeout: Wall time to wait for the first messages, s.
+            check: Called while the simulation waits; raises an error if the other program has
+                ended.
+
+        Raises:
+            UnknownNameError: A topic does not exist.
+            CartwheelError: A time is not above 0, no topic is given, or the world already runs in
+                lockstep.
+            SimulationError: The world is closed.
+        """
+        topics = several(commands, "commands")
+        if not topics:
+            raise invalid("commands", "must be one or several topics", commands)
+        times = {"period": period, "wall_timeout": wall_timeout, "start_timeout": start_timeout}
+        for name, seconds in times.items():
+            scalar(seconds, name, above=0.0)
+        self.check_open()
+        if self._advancer is not None:
+            error = invalid("lockstep", "must end before another one begins", topics)
+            error.hint = "Use it in a with block."
+            raise error
+        made = Lockstep(
+            self,
+            topics,
+            period=period,
+            wall_timeout=wall_timeout,
+            start_timeout=start_timeout,
+            check=check,
+        )
+        self._advancer = made.advance
+        return made
+
+    def _end(self) -> None:
+        self._advancer = None
+        super()._end()
+
+
 class Lockstep:
-    """Runs a connected world in lockstep with a stack under test.
+    """Runs a connected world in lockstep with a stack under test; see `World.lockstep`.
 
     Args:
         world: The world.
@@ -48,7 +111,7 @@ class Lockstep:
 
     def __init__(
         self,
-        world: World,
+        world: SteppedWorld,
         commands: Sequence[str],
         *,
         period: float = PERIOD,
@@ -63,7 +126,7 @@ class Lockstep:
         self._lock = threading.Lock()
         self._boxes: dict[str, deque[Any]] = {name: deque(maxlen=_MOST) for name in commands}
         self._deliver: dict[str, Callable[[Any], None]] = {}
-        self._due = world.time
+        self._due = self._now
         self._begun = False
         self._told: set[str] = set()
         """Topics with several messages in a period."""
@@ -76,10 +139,31 @@ class Lockstep:
         for name in commands:
             self._deliver[name] = hold_back(world.graph, name, self._taker(name))
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
     def close(self) -> None:
         """Delivers messages at once again."""
         for name in self._deliver:
-            let_pass(self._world.graph, name)
+            let_pass(self._world.session.graph, name)
+        if self._world._advancer == self.advance:
+            self._world._advancer = None
+
+    @property
+    def _now(self) -> float:
+        """Simulation time, s."""
+        return self._simulation.time_ns / NANOSECONDS
+
+    def _run(self, seconds: float) -> None:
+        self._world._run_freely(duration_ns(seconds))
 
     def _taker(self, topic: str) -> Callable[[Any], None]:
         def take(message: Any) -> None:
@@ -103,13 +187,13 @@ class Lockstep:
         while not self._complete() and (left := end - time.monotonic()) > 0:
             if not self._wait(min(_RETRY, left)):
                 periods += 1
-                self._world.run(self._period)
+                self._run(self._period)
         if periods and self._complete():
             took = min(time.monotonic() - begin, self._wall_timeout)
             self._settle(periods + 1, max(_QUIET, took))
         self._release()
         self._begun = True
-        self._due = self._world.time
+        self._due = self._now
 
     def _settle(self, most: int, quiet: float) -> None:
         """Waits for further commands of the start.
@@ -140,15 +224,15 @@ class Lockstep:
         """Advances simulation time, and waits for commands at each end of a period."""
         if not self._begun:
             self.start()
-        end = self._world.time + seconds
-        while self._world.time < end - _TIME_ERROR:
-            if self._world.time >= self._due + self._period - _TIME_ERROR:
+        end = self._now + seconds
+        while self._now < end - _TIME_ERROR:
+            if self._now >= self._due + self._period - _TIME_ERROR:
                 self._due += self._period
                 if not self._wait(self._wall_timeout):
                     self._note_late()
                 self._release()
-            step = min(end, self._due + self._period) - self._world.time
-            self._world.run(max(step, self._simulation.step_ns * 1e-9))
+            step = min(end, self._due + self._period) - self._now
+            self._run(max(step, self._simulation.step_ns * 1e-9))
 
     def _complete(self) -> bool:
         with self._lock:
@@ -184,7 +268,7 @@ class Lockstep:
         self.late += 1
         with self._lock:
             missing = [topic for topic, box in self._boxes.items() if not box]
-        now = self._world.time
+        now = self._now
         if not self.missing:
             self.missing = dict.fromkeys(missing, now)
         self._simulation.report(
@@ -196,7 +280,7 @@ class Lockstep:
         )
 
     def _note_extra(self, topic: str, count: int) -> None:
-        now = self._world.time
+        now = self._now
         self._simulation.report(
             COMMAND_EXTRA.diagnostic(
                 f"{count} messages arrived on {topic} in the period that ended at {now:.3f} s; "

@@ -147,6 +147,29 @@ class Launched:
                     yield process
 
 
+def launch(
+    command: Sequence[str],
+    *,
+    folder: str | Path = ".",
+    environment: Mapping[str, str] | None = None,
+) -> Launched:
+    """Starts a program under test. Use it in a ``with`` block, which ends it.
+
+    Args:
+        command: Program and arguments.
+        folder: Its working directory.
+        environment: Additional environment variables.
+
+    Returns:
+        The program. `Launched.check` raises an error if it has failed, for `World.lockstep`, and
+        `Launched.output` is what it has printed.
+
+    Raises:
+        CartwheelError: The program cannot be started.
+    """
+    return Launched(command, Path(folder), environment or {})
+
+
 @contextlib.contextmanager
 def ros_master(folder: Path) -> Iterator[dict[str, str]]:
     """A ROS master on a free port, in a process group of its own.

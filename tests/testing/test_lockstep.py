@@ -1,0 +1,125 @@
+"""Lockstep with a node in another process, from a test in Python."""
+
+import os
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+from tests.coded import raises
+
+import cartwheel as cw
+from cartwheel.codes.command import LAUNCH_FAILED
+from cartwheel.codes.graph import TOPIC_UNKNOWN
+from cartwheel.codes.world import VALUE_INVALID, WAIT_TIMED_OUT
+from cartwheel.errors import CartwheelError, TimedOutError, UnknownNameError
+from cartwheel.msgs.geometry_msgs import Twist
+from cartwheel.msgs.nav_msgs import Odometry
+from cartwheel.testing import Node, launch, reaches
+
+DRIVE = "/part2_cmr/cmd_vel"
+CONTROLLER = Path(__file__).parents[2] / "examples" / "scenarios" / "ros2_controller.py"
+
+
+@pytest.fixture
+def domain(monkeypatch):
+    """A ROS domain of the test's own."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(60 + os.getpid() % 40))
+
+
+def drive():
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro")
+        world.connect_ros2()
+        with (
+            launch([sys.executable, str(CONTROLLER)]) as program,
+            world.lockstep(DRIVE, check=program.check, wall_timeout=30.0) as lock,
+        ):
+            world.run(0.5)
+            start = world.time
+            world.step(10)
+            world.run_until(lambda: cart.pose.x > 0.5)
+            reached = reaches(cart, (1.5, 0.0), within=0.05, timeout=10)
+            assert lock.late == 0 and program.output == ""
+        return cart.pose, reached - start
+
+
+def test_two_runs_with_a_node_are_equal(domain):
+    """The first commands arrive after any number of periods, in which the cart only settles."""
+    (pose, took), (other, also) = drive(), drive()
+    assert pose.position == pytest.approx(other.position, abs=1e-8)
+    assert pose.yaw == pytest.approx(other.yaw, abs=1e-8)
+    assert took == pytest.approx(also, abs=1e-9)
+
+
+def test_a_program_that_fails_ends_the_run():
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        with (
+            launch([sys.executable, "-c", "import sys; sys.exit('no map')"]) as program,
+            world.lockstep(DRIVE, check=program.check) as lock,
+        ):
+            with raises(LAUNCH_FAILED, CartwheelError, status=1):
+                world.run(1.0)
+            assert program.output.strip() == "no map"
+        lock.close()
+        world.run(0.5)
+
+
+def test_time_runs_freely_again_after_the_block():
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro")
+        stop = threading.Event()
+
+        def command() -> None:
+            # As fast as a node in another process, which does not wait.
+            while not stop.wait(0.001):
+                world.graph.publish(DRIVE, "geometry_msgs/msg/Twist", Twist())
+
+        thread = threading.Thread(target=command)
+        thread.start()
+        try:
+            with world.lockstep(DRIVE, period=0.05):
+                with raises(WAIT_TIMED_OUT, TimedOutError):
+                    world.run_until(lambda: cart.pose.x > 1.0, timeout=0.3)
+                with raises(VALUE_INVALID, name="lockstep"):
+                    world.lockstep(DRIVE)
+        finally:
+            stop.set()
+            thread.join()
+        before = world.time
+        world.run(1.0)
+        assert world.time == pytest.approx(before + 1.0)
+
+
+def test_nodes_exchange_messages(domain):
+    heard, done = [], threading.Event()
+
+    def take(message: Odometry) -> None:
+        heard.append(message.pose.pose.position.x)
+        done.set()
+
+    with Node("one") as one, Node("two") as two:
+        two.subscribe("/place", take, type=Odometry)
+        publisher = one.advertise("place", "nav_msgs/msg/Odometry")
+        assert (publisher.topic, publisher.type) == ("/place", "nav_msgs/msg/Odometry")
+        for _ in range(300):
+            publisher.publish(pose={"pose": {"position": {"x": 2.5}}})
+            if done.wait(0.1):
+                break
+    assert heard[0] == 2.5
+    one.close()
+
+
+def test_what_cannot_run_in_lockstep_is_refused():
+    with cw.World("empty") as world:
+        with raises(TOPIC_UNKNOWN, UnknownNameError, name="/cmd_vel"):
+            world.lockstep("/cmd_vel")
+        world.run(0.1)
+        world.spawn("rosbots.xacro")
+        for name in ("period", "wall_timeout", "start_timeout"):
+            with raises(VALUE_INVALID, name=name):
+                world.lockstep(DRIVE, **{name: 0.0})
+        with raises(VALUE_INVALID, name="commands"):
+            world.lockstep([])
+        world.run(0.1)
