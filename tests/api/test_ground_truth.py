@@ -514,8 +514,11 @@ def test_a_deleted_model_and_a_closed_world(falling):
         lambda: link.push((1, 0, 0)),
         lambda: box.push((1, 0, 0)),
     ):
-        with raises(UNKNOWN_MODEL, name="box"):
+        with raises(UNKNOWN_MODEL, name="box", deleted=True):
             read()
+    with raises(UNKNOWN_MODEL, name="bax") as caught:
+        falling.model("bax")
+    assert "deleted" not in caught.value.values
     falling.close()
     with raises(SIMULATION_CLOSED):
         link.push((1, 0, 0))

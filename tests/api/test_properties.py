@@ -634,16 +634,20 @@ def test_values_that_a_joint_cannot_have(pendulum):
     world, model = pendulum
     hinge = model.joints["hinge"]
     for name in ("damping", "friction"):
-        for value in (-1.0, math.nan, math.inf, "much", None):
+        for value in (-1.0, math.nan, math.inf, "much", "0.5", None):
             with raises(VALUE_INVALID):
                 setattr(hinge, name, value)
+        for values in ("0.5", ["0.5"], [b"1"]):
+            with raises(VALUE_INVALID):
+                setattr(model.joints, name, values)
     for limits in ((1.0, 0.0), (0.0,), (math.nan, 1.0), 3.0):
         with raises(VALUE_INVALID):
             hinge.limits = limits
     with raises(VALUE_INVALID):
         hinge.gains = cw.Gains(math.nan)
-    with raises(VALUE_INVALID):
-        world.gravity = (0, 0)
+    for gravity in ((0, 0), ("0", "0", "-9.8")):
+        with raises(VALUE_INVALID):
+            world.gravity = gravity
 
 
 def test_properties_that_are_missing(make):

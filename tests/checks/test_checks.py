@@ -60,6 +60,18 @@ def test_python_has_the_findings_of_plugins(file):
     assert (result.count("warning"), result.complete) == (1, True)
 
 
+@pytest.mark.parametrize(("tag", "of_sensor"), [("imu", True), ("imux", False)])
+def test_an_element_of_a_sensor_in_a_plugin_is_explained(file, tag, of_sensor):
+    plugin = (
+        f'<gazebo><plugin name="p" filename="libgazebo_ros_imu.so"><{tag}><noise/></{tag}>'
+        "<bodyName>bar</bodyName></plugin></gazebo></robot>"
+    )
+    (finding,) = cartwheel.check(file(GOOD.replace("</robot>", plugin))).findings
+    assert finding.code is devices.PLUGIN_PARAMETER_UNKNOWN
+    assert finding.values["of_sensor"] is of_sensor
+    assert bool(finding.hint) is of_sensor
+
+
 @pytest.mark.parametrize(
     ("plugin", "default"),
     [

@@ -66,6 +66,23 @@ def test_failed_cases_have_reports(command, capsys):
     assert run_command() == 0
 
 
+def test_random_parameters_are_in_the_report_for_servers(command):
+    write(
+        f"{CART}parameters: {{v: {{uniform: [0.2, 0.3]}}, w: [1, 2]}}\nseeds: [7]\n"
+        "duration: 0.1\nexpect: [{publishes: /clock}]\n"
+    )
+    assert command("drive.yaml", "--junit", "out.xml") == 0
+    cases = ElementTree.parse("out.xml").getroot()[0]
+    for case, result in zip(cases, results(), strict=True):
+        found = {each.get("name"): each.get("value") for each in case.iter("property")}
+        assert found == {
+            "v": str(result["parameters"]["v"]),
+            "w": str(result["parameters"]["w"]),
+            "seed": "7",
+        }
+    assert {case.find("properties")[1].get("value") for case in cases} == {"1", "2"}
+
+
 def test_names_from_files_are_escaped_in_the_report(command):
     write("name: <script>alert(1)</script>\nexpect: [{expression: \"'<img>' == ''\"}]\n")
     assert command("drive.yaml") == 1

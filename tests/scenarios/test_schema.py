@@ -24,6 +24,7 @@ MISTAKES = [
     ("steps:\n  - wiat: 1\nexpect: [{moves: a}]\n", 2, {"meant": "wait"}),
     ("seeds: 0\nexpect: [{moves: a}]\n", 1, {"value": 0}),
     ("robots:\n  - name: cart\nexpect: [{moves: a}]\n", 2, {"missing": "robot"}),
+    ("parameters: {a: {range: [1, 2]}}\nexpect: [{moves: a}]\n", 1, {"key": "parameters.a"}),
     ("parameters: {a: 3}\nexpect: [{moves: a}]\n", 1, {"key": "parameters.a"}),
     ("lockstep:\n  ros2: true\nexpect: [{moves: a}]\n", 1, {"missing": "commands"}),
     ("- a\n- b\n", 1, {}),

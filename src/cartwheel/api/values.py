@@ -35,7 +35,9 @@ def array(values: object, shape: tuple[int, ...], name: str) -> Array:
         CartwheelError: The shape is different, or a value is not a finite number.
     """
     try:
-        made = np.array(values, dtype=np.float64)
+        # numpy would convert texts that contain numbers.
+        texts = np.array(values).dtype.kind in "US"
+        made = np.empty(0) if texts else np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
         made = np.empty(0)
     if made.shape != shape or not np.isfinite(made).all():

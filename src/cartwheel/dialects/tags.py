@@ -185,13 +185,26 @@ def _hints(cls: type) -> dict[str, Any]:
     return typing.get_type_hints(cls)
 
 
+_OF_SENSORS = {"imu", "ray", "lidar", "camera", "gps", "magnetometer", "altimeter", "noise"}
+"""Elements of a ``<sensor>``, which some descriptions place in a ``<plugin>``."""
+
+
 def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
     meant = meant_one(element.tag, sorted(known))
+    hint = f"Did you mean <{meant}>?" if meant else ""
+    of_sensor = element.tag in _OF_SENSORS
+    if of_sensor:
+        noise = next((each for each in ("gaussianNoise", "gaussian_noise") if each in known), "")
+        hint = (
+            f"<{element.tag}> is an element of <sensor>: place it beside the <plugin> in a sensor."
+        )
+        if noise:
+            hint += f" The noise of this plugin is <{noise}>."
     return devices.PLUGIN_PARAMETER_UNKNOWN.diagnostic(
         f"<{element.tag}> has no effect: the plugin does not support this tag",
         origin=element.origin,
-        hint=f"Did you mean <{meant}>?" if meant else "",
-        values={"parameter": element.tag, "meant": meant},
+        hint=hint,
+        values={"parameter": element.tag, "meant": meant, "of_sensor": of_sensor},
         mark=f"<{element.tag}",
     )
 

@@ -46,6 +46,13 @@ def _add(suite: ElementTree.Element, outcome: Outcome, file: str) -> None:
             "time": f"{outcome.wall:.3f}",
         },
     )
+    # Random parameters are not in the name.
+    values = {**outcome.parameters, "seed": outcome.seed}
+    properties = ElementTree.SubElement(case, "properties")
+    for name, value in values.items():
+        ElementTree.SubElement(
+            properties, "property", {"name": _in_xml(name), "value": _in_xml(str(value))}
+        )
     if outcome.status == "passed":
         return
     first = outcome.findings[0] if outcome.findings else None

@@ -114,12 +114,13 @@ def _check_any(document: Document, rules: list[dict[str, Any]], value: Any, key:
         chosen = [each for each in fitting if all(name in value for name in each["required"])]
         if not chosen:
             names = list(dict.fromkeys(name for each in fitting for name in each["required"]))
+            ways = list(dict.fromkeys(" and ".join(each["required"]) for each in fitting))
             close = next(
                 (other for name in value if (other := meant_one(name, names, cutoff=0.6))), ""
             )
             raise document.error(
                 key,
-                f"{_subject(key)} requires one of the keys {', '.join(names)}",
+                f"{_subject(key)} requires one of these keys: {', or '.join(ways)}",
                 hint=f'Did you mean "{close}"?' if close else "",
                 values={"meant": close},
             )

@@ -129,7 +129,14 @@ class Steps:
                 if name in step:
                     setattr(model.link(link), name, step[name])
             return
-        _only(step, "set", (*_POSE, "joints", "velocity", "damping", "joint_friction"))
+        of_link = [name for name in _LINK if name in step]
+        allowed = (*_POSE, "joints", "velocity", "damping", "joint_friction")
+        hint = (
+            f"For {of_link[0]}, name a link: set: {model.name}::{model.links[0]}."
+            if of_link
+            else ""
+        )
+        _only(step, "set", allowed, hint=hint)
         if any(name in step for name in _POSE):
             model.pose = _changed(model.pose, step)
         for name, position in step.get("joints", {}).items():
@@ -193,7 +200,7 @@ def _changed(pose: Pose, step: Mapping[str, Any]) -> Pose:
     )
 
 
-def _only(step: Mapping[str, Any], kind: str, allowed: Sequence[str]) -> None:
+def _only(step: Mapping[str, Any], kind: str, allowed: Sequence[str], *, hint: str = "") -> None:
     given = set(step) - {kind}
     wrong = sorted(given - set(allowed))
     if wrong or not given:
@@ -202,6 +209,6 @@ def _only(step: Mapping[str, Any], kind: str, allowed: Sequence[str]) -> None:
             if wrong
             else f'"{kind}: {step[kind]}" changes nothing',
             code=SCENARIO_INVALID,
-            hint=f"Use {', '.join(allowed)}.",
+            hint=hint or f"Use {', '.join(allowed)}.",
             values={"name": wrong[0] if wrong else ""},
         )

@@ -319,9 +319,10 @@ def _side(given: Model | Link | str, name: str) -> str:
 
 def _robot(model: Model) -> str:
     """The name of a model."""
-    from cartwheel.api import Model
+    from cartwheel.api import Link, Model
 
-    return instance(model, Model, "robot", 'world.model("cart")').name
+    name = model.model if isinstance(model, Link) else "cart"
+    return instance(model, Model, "robot", f'world.model("{name}")').name
 
 
 def _topic(world: World | Model, topic: str) -> str:

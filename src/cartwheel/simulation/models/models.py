@@ -23,6 +23,8 @@ from cartwheel.simulation.sensing.line_of_sight import in_sight
 from cartwheel.simulation.snapshot import Scene
 
 _STILL: Vec3 = (0.0, 0.0, 0.0)
+_MOST_DELETED = 10_000
+"""Maximum number of names of deleted models that are kept for errors."""
 
 
 class Models(Run):
@@ -117,6 +119,9 @@ class Models(Run):
         removed = {name: population.resident(name) for name in names}
         kept = {key: each for key, each in population.residents.items() if key not in removed}
         population.compile(kept)
+        if len(population.deleted) >= _MOST_DELETED:
+            population.deleted.clear()
+        population.deleted.update(removed)
         for name, resident in removed.items():
             self.forces.drop(name)
             resident.close()

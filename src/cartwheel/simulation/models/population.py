@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import Diagnostic, Origin, UnknownNameError, WorldError
+from cartwheel.errors import Diagnostic, Origin, WorldError
 from cartwheel.geometry import Pose
 from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
@@ -21,7 +21,7 @@ from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.in_place import InPlace
 from cartwheel.simulation.models.placement import with_mimics
-from cartwheel.simulation.models.resident import Attach, Resident, world_resident
+from cartwheel.simulation.models.resident import Attach, Resident, unknown_model, world_resident
 from cartwheel.simulation.models.rotors import Rotors
 from cartwheel.simulation.models.unique_names import check_model_name, free_name
 from cartwheel.simulation.observer import Observer
@@ -61,6 +61,8 @@ class Population:
         """Whether tasks may have to sleep or wake. Other threads may set it."""
         self._entered: dict[str, Resident] | None = None
         """Models to be compiled at the end of `entering`."""
+        self.deleted: set[str] = set()
+        """Names of models that were deleted, for errors."""
         self._version = 0
         self._added: tuple[Added, ...] = ()
         """What was added to the descriptions of the compiled models."""
@@ -92,7 +94,7 @@ class Population:
             UnknownNameError: The model does not exist.
         """
         if name not in self.residents:
-            raise UnknownNameError("model", name, self.residents, code=world_codes.UNKNOWN_MODEL)
+            raise unknown_model(name, self.residents, self.deleted)
         return self.residents[name]
 
     def owner_of(self, plugin: object) -> Resident | None:

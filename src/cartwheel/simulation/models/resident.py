@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from dataclasses import replace
 from typing import Protocol
 
@@ -10,7 +10,7 @@ from cartwheel.calls import raise_exit
 from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
-from cartwheel.errors import Origin, WorldError, fault
+from cartwheel.errors import Origin, UnknownNameError, WorldError, fault
 from cartwheel.geometry import Pose
 from cartwheel.simulation.dynamics.external_servos import WrenchHandle
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
@@ -38,6 +38,21 @@ class Behaviour(Protocol):
 
 Attach = Callable[[Part], list[Behaviour]]
 """Creates the plugins of a model that is about to be spawned."""
+
+
+def unknown_model(name: str, known: Iterable[str], deleted: Container[str]) -> UnknownNameError:
+    """The error for a model that does not exist, or not any more.
+
+    Args:
+        name: Name of the model.
+        known: Names of the models in the world.
+        deleted: Names of models that were deleted.
+    """
+    error = UnknownNameError("model", name, known, code=world_codes.UNKNOWN_MODEL)
+    if name in deleted:
+        error.hint = f"It was deleted. {error.hint or ''}".strip()
+        error.values = {**error.values, "deleted": True}
+    return error
 
 
 def title(behaviour: object) -> str:
