@@ -27,6 +27,17 @@ MET = [
     f"{CART}{GO}duration: 1\nexpect: [{{expression: \"x('cart') > 0.3 and time <= 1.1\"}}]",
     f"{CART}duration: 1\nexpect: [{{expression: \"count('/imu/data') in range(28, 33)\"}}]",
     f"{CART}duration: 1\nexpect: [{{expression: \"field('/odom', 'header.stamp.sec') < 2\"}}]",
+    f"{POST}duration: 1\n"
+    "expect: [{expression: \"clearance('cart', 'post') > 0.5\", when: always}]",
+    f"{CART}steps: [{{fault: /odom, drop: 1.0}}, {{wait: 1}}, {{end_fault: /odom}}, {{wait: 1}}]\n"
+    "expect: [{expression: \"count('/odom') in range(95, 106)\"}]",
+    f"{CART}steps: [{{fault: /odom, bias: {{pose.pose.position.x: 5}}, delay: 0.1, frozen: true,"
+    " noise: {pose.pose.position.y: 0.1}}, {wait: 1}]\n"
+    "expect: [{expression: \"abs(field('/odom', 'pose.pose.position.x') - 5) < 0.1\"}]",
+    f"{CART}steps: [{{set: cart, effort_limit: {{wheel_left_joint: 0.001}}}},"
+    " {set: cart, effort_limit: {wheel_right_joint: 0.001}},"
+    f" {{publish: {DRIVE}, message: {{linear: {{x: 0.5}}}}}}]\n"
+    "duration: 1\nexpect: [{stays_within: cart, x: [-0.05, 0.05]}]",
     # After the acceleration.
     f"{CART}{GO}duration: 2\nexpect: [{{publishes: /odom, rate: 100, after: 1}}]",
 ]

@@ -13,12 +13,13 @@ import cartwheel as cw
 import cartwheel.testing
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
-from cartwheel.codes.world import VALUE_INVALID
+from cartwheel.codes.world import UNKNOWN_MODEL, VALUE_INVALID
 from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.msgs.sensor_msgs import Image, LaserScan
 from cartwheel.testing import (
     UnmetError,
     joint_reaches,
+    keeps_clear,
     moves,
     publishes,
     reaches,
@@ -55,6 +56,25 @@ def test_reaches_states_the_closest_approach(cart):
     assert values["closest_time"] == pytest.approx(1.25, abs=0.1)
     assert raised.value.time == pytest.approx(3.0)
     assert isinstance(raised.value, AssertionError)
+
+
+def test_a_robot_keeps_clear_of_a_post(cart):
+    """The front of the cart is 0.6 m before its frame, and the post begins at 2.3 m."""
+    base = cart.link("base_link")
+    cart.publish(DRIVE, linear_x=0.5)
+    keeps_clear(cart, "post", distance=0.8, seconds=1.5)
+    keeps_clear(base, distance=0.5, seconds=0.1)
+    with pytest.raises(UnmetError) as raised:
+        keeps_clear(base, cart._world.model("post"), distance=0.5, seconds=5)
+    values = raised.value.values
+    assert values["closest"] == pytest.approx(0.5, abs=0.02) and values["other"] == "post"
+    assert values["closest_time"] == raised.value.time
+    # x = 1.2 m: after 1.2 / 0.5 + 0.25 s.
+    assert raised.value.time == pytest.approx(2.65, abs=0.05)
+    with raises(UNKNOWN_MODEL, UnknownNameError, name="posd"):
+        keeps_clear(cart, "posd")
+    with raises(VALUE_INVALID):
+        keeps_clear(cart._world)
 
 
 def test_reaches_compares_the_yaw(cart):

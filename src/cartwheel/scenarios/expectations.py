@@ -89,6 +89,10 @@ class Expression(Condition):
             value = math.dist(pose_of(one).position, pose_of(other).position)
             return self._noted(f"distance('{one}', '{other}')", value)
 
+        def clearance(one: str, other: str) -> float:
+            value = world.clearance(str(one), str(other)).distance
+            return self._noted(f"clearance('{one}', '{other}')", value)
+
         def joint(model: str, name: str) -> float:
             value = world.model(str(model)).joint(str(name))
             return self._noted(f"joint('{model}', '{name}')", value)
@@ -111,6 +115,7 @@ class Expression(Condition):
             "tilt": tilt_of,
         }
         plain: dict[str, Callable[..., Any]] = {
+            "clearance": clearance,
             "distance": distance,
             "joint": joint,
             "count": count,

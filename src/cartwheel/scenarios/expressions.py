@@ -23,7 +23,7 @@ _WHOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAMES: dict[str, Any] = {**BUILTINS, **MATH}
 CONDITION_NAMES = frozenset(
     {
-        *("count", "distance", "field", "joint", "pitch", "roll"),
+        *("clearance", "count", "distance", "field", "joint", "pitch", "roll"),
         *("tilt", "time", "x", "y", "yaw", "z"),
     }
 )

@@ -20,6 +20,13 @@ HOLD_RATE = 10.0
 """Default rate of a ``hold`` step, Hz."""
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 _LINK = ("mass", "center_of_mass", "friction", "gravity", "color")
+_JOINT = {
+    "damping": "damping",
+    "joint_friction": "friction",
+    "effort_limit": "effort_limit",
+    "velocity_limit": "velocity_limit",
+}
+"""Keys of a step, and properties of `cartwheel.api.Joint`."""
 _LIGHT = {"enabled": "on", "intensity": "intensity", "color": "color"}
 """Keys of a step, and properties of `cartwheel.api.Light`. YAML reads the key ``on`` as true."""
 
@@ -34,6 +41,7 @@ class Steps:
     def __init__(self, place_of: Callable[[str], Any]) -> None:
         self._place_of = place_of
         self._held: dict[str, Callable[[], None]] = {}
+        self._faults: dict[str, Callable[[], None]] = {}
 
     def perform(self, trial: Trial, step: Mapping[str, Any]) -> None:
         """Performs a step.
@@ -73,6 +81,23 @@ class Steps:
         if topic not in self._held:
             raise UnknownNameError("hold", topic, self._held, code=SCENARIO_INVALID)
         self._end_hold(topic)
+
+    def _fault(self, trial: Trial, step: Mapping[str, Any]) -> None:
+        topic = step["fault"]
+        self._end_fault_of(topic)
+        names = ("drop", "delay", "frozen", "noise", "bias")
+        fault = trial.world.fault(topic, **{name: step[name] for name in names if name in step})
+        self._faults[topic] = fault.end
+        trial.ends.append(lambda: self._end_fault_of(topic))
+
+    def _end_fault_of(self, topic: str) -> None:
+        self._faults.pop(topic, lambda: None)()
+
+    def _end_fault(self, trial: Trial, step: Mapping[str, Any]) -> None:  # noqa: ARG002
+        topic = step["end_fault"]
+        if topic not in self._faults:
+            raise UnknownNameError("fault", topic, self._faults, code=SCENARIO_INVALID)
+        self._end_fault_of(topic)
 
     def _call(self, trial: Trial, step: Mapping[str, Any]) -> None:
         graph, name = trial.world.graph, step["call"]
@@ -130,7 +155,7 @@ class Steps:
                     setattr(model.link(link), name, step[name])
             return
         of_link = [name for name in _LINK if name in step]
-        allowed = (*_POSE, "joints", "velocity", "damping", "joint_friction")
+        allowed = (*_POSE, "joints", "velocity", *_JOINT)
         hint = (
             f"For {of_link[0]}, name a link: set: {model.name}::{model.links[0]}."
             if of_link
@@ -141,10 +166,9 @@ class Steps:
             model.pose = _changed(model.pose, step)
         for name, position in step.get("joints", {}).items():
             model.joints.positions[name] = position
-        for name, damping in step.get("damping", {}).items():
-            model.joints[name].damping = damping
-        for name, friction in step.get("joint_friction", {}).items():
-            model.joints[name].friction = friction
+        for key, quantity in _JOINT.items():
+            for name, value in step.get(key, {}).items():
+                setattr(model.joints[name], quantity, value)
         if "velocity" in step:
             from cartwheel.api import Twist
 
@@ -169,8 +193,8 @@ class Steps:
 
 
 _KINDS = (
-    "publish", "hold", "release", "wait", "until", "call", "send_goal", "push", "set",
-    "set_gravity", "set_light", "spawn", "delete",
+    "publish", "hold", "release", "fault", "end_fault", "wait", "until", "call", "send_goal",
+    "push", "set", "set_gravity", "set_light", "spawn", "delete",
 )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from cartwheel.testing.matchers import (
         UnmetError,
         joint_reaches,
+        keeps_clear,
         moves,
         publishes,
         reaches,
@@ -28,6 +29,7 @@ __all__ = [
     "NodePublisher",
     "UnmetError",
     "joint_reaches",
+    "keeps_clear",
     "launch",
     "moves",
     "publishes",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from cartwheel.api.values import instance, invalid
 from cartwheel.errors import Pickled
+from cartwheel.testing.clearing import KeepsClear
 from cartwheel.testing.conditions import (
     Condition,
     JointAt,
@@ -255,6 +256,37 @@ def touches_nothing(
     __tracebackhide__ = True
     sides = _side(robot, "robot"), None if other is None else _side(other, "other")
     _always(_world(robot), Touches(*sides, inverted=True), seconds)
+
+
+def keeps_clear(
+    robot: Model | Link,
+    other: Model | Link | str | None = None,
+    *,
+    distance: float = 0.1,
+    seconds: float = 5.0,
+    ignore: Sequence[str] = ("ground_plane",),
+) -> None:
+    """Runs the world for a time, in which surfaces must keep a distance; see `World.clearance`.
+
+    Args:
+        robot: The model, or one of its links.
+        other: The other model or link; None for all other models.
+        distance: Minimum distance, m.
+        seconds: Simulation time, s.
+        ignore: Models and links that do not count, if `other` is None.
+
+    Raises:
+        UnmetError: They came closer. `values` contains the distance, its time and the other model.
+        UnknownNameError: No model or link has this name.
+        CartwheelError: One of them has no collision.
+    """
+    __tracebackhide__ = True
+    one = _side(robot, "robot")
+    two = None if other is None else _side(other, "other")
+    known = _world(robot).models
+    ignored = [name for name in ignore if name.partition("::")[0] in known] if two is None else []
+    condition = KeepsClear(one, two, distance, ignore=ignored)
+    _always(_world(robot), condition, seconds)
 
 
 def joint_reaches(

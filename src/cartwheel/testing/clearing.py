@@ -1,0 +1,67 @@
+"""Conditions on distances between surfaces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from cartwheel.testing.conditions import Condition
+
+if TYPE_CHECKING:
+    from cartwheel.api import Clearance, World
+
+
+class KeepsClear(Condition):
+    """The surfaces of two models or links keep a distance.
+
+    Args:
+        model: Name of a model, or scoped name of a link.
+        other: The same; None for all other models.
+        distance: Minimum distance, m.
+        ignore: Names of models and links that do not count.
+    """
+
+    def __init__(
+        self, model: str, other: str | None, distance: float, *, ignore: Sequence[str] = ()
+    ) -> None:
+        super().__init__()
+        self.model, self.other, self.distance, self.ignore = model, other, distance, ignore
+        self.closest = math.inf
+        self.closest_time = 0.0
+        self._nearest: Clearance | None = None
+
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        self.holds()
+
+    def holds(self) -> bool:
+        found = self.world.clearance(self.model, self.other, ignore=self.ignore)
+        if found.distance < self.closest:
+            self.closest, self.closest_time = found.distance, self.world.time
+            self._nearest = found
+        return found.distance >= self.distance
+
+    @property
+    def expected(self) -> str:
+        return f"{self.model} keeps {self.distance:g} m from {self.other or 'all other models'}"
+
+    @property
+    def actual(self) -> str:
+        if self._nearest is None:
+            return "no time passed"
+        one, other = (
+            f"{model}::{link}"
+            for model, link in zip(self._nearest.models, self._nearest.links, strict=True)
+        )
+        return f"{one} was {self.closest:.3g} m from {other} at {self.closest_time:.3f} s"
+
+    @property
+    def values(self) -> Mapping[str, float | str | None]:
+        if self._nearest is None:
+            return {}
+        return {
+            "closest": self.closest,
+            "closest_time": self.closest_time,
+            "other": self._nearest.models[1],
+        }
