@@ -9,12 +9,14 @@ from tests.coded import coded, raises
 import cartwheel as cw
 from cartwheel.codes.graph import (
     FIELD_UNKNOWN,
+    FRAME_UNKNOWN,
     FRAMES_SHARED,
     TOPIC_TYPE_MISMATCH,
     TOPIC_UNKNOWN,
+    TRANSFORM_TIME,
 )
 from cartwheel.codes.recording import NOT_A_RECORDING
-from cartwheel.errors import RecordingError, UnknownNameError
+from cartwheel.errors import GraphError, RecordingError, UnknownNameError
 from cartwheel.gazebo.robot_states import hold_states
 from cartwheel.messages import encode_cdr
 from cartwheel.msgs.nav_msgs import Odometry
@@ -124,6 +126,33 @@ def test_a_recording_contains_the_transforms_of_all_links(tmp_path: Path) -> Non
     assert (first.header.frame_id, first.child_frame_id) == ("base", "upper")
     assert first.transform.rotation.z == pytest.approx(math.sin(0.25), abs=1e-3)
     assert len(moving[-1].message.transforms) == 2
+
+
+@pytest.mark.parametrize("file", ["drive.mcap", "drive.bag", "drive.db3"])
+def test_transforms_of_a_recording(tmp_path: Path, file: str) -> None:
+    """They are those of the world, also after more than the 10 s for which a world keeps them."""
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro", z=0.05)
+        cart.publish("/part2_cmr/cmd_vel", linear_x=0.1, angular_z=0.1)
+        world.keep_transforms(60.0)
+        with world.record(tmp_path / file, topics=["/tf", "/tf_static"]):
+            world.run(12.0)
+        with cw.Recording(tmp_path / file) as recording:
+            for time in (0.5, 3.0123, 11.9, None):
+                found = recording.transform("odom", "camera", time)
+                assert found == world.transform("odom", "camera", time)
+            with raises(TRANSFORM_TIME, GraphError, time=13.0):
+                recording.transform("odom", "camera", 13.0)
+            with raises(FRAME_UNKNOWN, UnknownNameError, name="camra", meant="camera"):
+                recording.transform("odom", "camra")
+
+
+def test_a_recording_without_transforms(recorded: tuple[Path, list[cw.RecordedMessage]]) -> None:
+    with (
+        cw.Recording(recorded[0] / "drive.mcap") as recording,
+        raises(TOPIC_UNKNOWN, UnknownNameError, name="/tf"),
+    ):
+        recording.transform("odom", "camera")
 
 
 def test_transforms_are_published_once_something_subscribes() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import functools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, Self, overload
@@ -10,13 +11,15 @@ from typing import Any, Generic, NamedTuple, Self, overload
 import numpy as np
 
 from cartwheel import arrays
+from cartwheel.api.values import scalar
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import RecordedTopic, span_of
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH, TOPIC_UNKNOWN
 from cartwheel.codes.recording import RECORDING_EMPTY
 from cartwheel.errors import GraphError, RecordingError, UnknownNameError
-from cartwheel.geometry import Array
+from cartwheel.geometry import Array, Pose
+from cartwheel.graph.transform_buffer import TransformBuffer
 from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation.clock import NANOSECONDS
 
@@ -200,6 +203,33 @@ class Recording:
             RecordingError: As for `messages`.
         """
         return arrays.values((each.message for each in self.messages(topic)), field)
+
+    def transform(self, target: str, source: str, time: float | None = None) -> Pose:
+        """Pose of the frame `source` in the frame `target`, from the recorded transforms.
+
+        The first call reads all messages on ``/tf`` and ``/tf_static``.
+
+        Args:
+            target: Name of a frame.
+            source: Name of a frame.
+            time: Time of the messages' stamps, s; None for the newest one at which all transforms
+                between the two frames are known.
+
+        Raises:
+            UnknownNameError: A frame does not exist, or the recording contains no transforms.
+            GraphError: The frames are not connected, or not at this time.
+            RecordingError: As for `messages`.
+        """
+        moment = None if time is None else round(scalar(time, "time") * NANOSECONDS)
+        return self._transforms.lookup(target, source, moment)
+
+    @functools.cached_property
+    def _transforms(self) -> TransformBuffer:
+        buffer = TransformBuffer(None)
+        present = [name for name in ("/tf", "/tf_static") if name in self.topics]
+        for each in self.messages(*(present or ["/tf"])):
+            buffer.add(each.message.transforms, static=each.topic == "/tf_static")
+        return buffer
 
     def close(self) -> None:
         """Closes the file."""

@@ -15,6 +15,7 @@ from cartwheel.geometry import Pose, interpolated
 SECOND = 1_000_000_000
 KEPT_NS = 10 * SECOND
 """Time for which transforms are kept, as tf2 does by default."""
+FOREVER_NS = 10**20
 _DEEPEST = 1000
 """Maximum number of frames above a frame, as in tf2. A deeper tree is treated as a cycle."""
 _UNIT = 10e-3
@@ -33,11 +34,12 @@ class TransformBuffer:
     quaternion is ignored; the error for an unknown frame says so.
 
     Args:
-        now_ns: Simulation time at which it begins, for errors.
+        now_ns: Simulation time at which it begins, for errors; None keeps all transforms of the
+            past, such as those of a recording.
     """
 
-    def __init__(self, now_ns: int) -> None:
-        self.kept_ns = KEPT_NS
+    def __init__(self, now_ns: int | None) -> None:
+        self.kept_ns = KEPT_NS if now_ns is not None else FOREVER_NS
         """Older transforms than this before the newest one of a frame are forgotten."""
         self._began_ns = now_ns
         self._moving: dict[str, list[Sample]] = {}
@@ -82,7 +84,8 @@ class TransformBuffer:
 
     def rewind(self, now_ns: int) -> None:
         """Forgets all transforms that are later than the time, at time 0 all but static ones."""
-        self._began_ns = min(self._began_ns, now_ns)
+        if self._began_ns is not None:
+            self._began_ns = min(self._began_ns, now_ns)
         for child, samples in list(self._moving.items()):
             del samples[bisect_right(samples, now_ns, key=_time) if now_ns > 0 else 0 :]
             if not samples:
@@ -192,7 +195,7 @@ class TransformBuffer:
         if frame in self._ignored:
             error.values = {**error.values, "ignored": self._ignored[frame]}
             error.hint = f"Its transforms are ignored: {self._ignored[frame]}."
-        elif not error.values["meant"]:
+        elif self._began_ns is not None and not error.values["meant"]:
             error.hint = (
                 f"{error.hint or ''} Transforms are stored since {self._began_ns / SECOND:.9g} s, "
                 f"and drives publish theirs during a run."
@@ -204,7 +207,7 @@ class TransformBuffer:
         past = time < oldest
         bound = f"the oldest is of {oldest:.9g} s" if past else f"the newest is of {newest:.9g} s"
         hint = "Without a time, the newest one at which all transforms are known is used."
-        if past:
+        if past and self._began_ns is not None:
             hint = (
                 f"Transforms are stored since {self._began_ns / SECOND:.9g} s, "
                 f"for {self.kept_ns / SECOND:g} s; World.keep_transforms stores them earlier and "
