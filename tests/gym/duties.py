@@ -44,3 +44,21 @@ def task(**options: Any) -> Task:
 
 
 FORWARD = np.array([1.0, 0.0], np.float32)
+
+
+def relative(world: cw.World, random: np.random.Generator) -> None:
+    """Changes of all kinds that depend on what they change, or add something."""
+    cart = world.model("rosbots")
+    cart.link("base_link").mass *= float(random.uniform(0.5, 2.0))
+    cart.link("wheel_left_link").friction = cart.link("wheel_left_link").friction[0] * 0.9
+    cart.joints["wheel_left_joint"].damping += 0.01
+    world.gravity = (0.0, 0.0, world.gravity[2] * 1.01)
+    world.light("sun").intensity *= 0.9
+    world.fault("/imu/data", noise={"angular_velocity.z": 0.1})
+    world.subscribe("/odom", print_nothing)
+    world.every(20.0, lambda: cart.push(force=(2.0, 0.0, 0.0), seconds=0.01))
+    world.spawn("object.urdf", name="box", x=3.0 + float(random.uniform(0.0, 1.0)))
+
+
+def print_nothing(message: Any) -> None:
+    """Receives messages."""

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from tests.coded import raises
 
+from cartwheel.codes.graph import SERVICE_TAKEN
 from cartwheel.codes.world import BATCH_INVALID
 
 pytest.importorskip("gymnasium")
 
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
-from tests.gym.duties import FORWARD, pose, progress, task
+from tests.gym.duties import FORWARD, pose, progress, relative, task
 
 from cartwheel.gym import Env, VectorEnv, vary
 
@@ -216,3 +217,53 @@ def test_variations_start_from_the_values_of_the_file(job):
         assert cart.pose.x == pytest.approx(1.0, abs=0.01)
     batch.close()
     assert progress({"pose": np.zeros((1, 3))}, None, {"pose": np.ones((1, 3))}).tolist() == [1.0]
+
+
+def test_relative_changes_do_not_accumulate(job):
+    """An episode depends on its seed, and not on the episodes before it."""
+    env = Env(dataclasses.replace(job, vary=relative))
+    world = env._batch.world(0)
+
+    def drive(made, seed):
+        values = [made.reset(seed=seed)[0]]
+        values += [made.step(FORWARD)[0] for _ in range(4)]
+        return [{name: each.tolist() for name, each in value.items()} for value in values]
+
+    seen, masses = [], []
+    for seed in (7, 7, 8, 7):
+        seen.append(drive(env, seed))
+        masses.append(world.model("rosbots").link("base_link").mass)
+        assert len(world.faults) == 1 and world.models[-1] == "box"
+        left_out = world.save().left_out
+        assert left_out.count("subscriber of /odom") == 1
+        assert sum(each.startswith("action at") for each in left_out) == 1
+    env.close()
+    assert masses[0] == masses[1] == masses[3] != masses[2]
+    assert seen[0] == seen[1] == seen[3] != seen[2]
+    other = Env(dataclasses.replace(job, vary=relative))
+    assert drive(other, 8) == seen[2]
+    other.close()
+
+
+def test_the_checker_of_gymnasium_passes_with_relative_changes(job):
+    env = Env(dataclasses.replace(job, vary=relative))
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".*Box observation space.*")
+        warnings.filterwarnings("ignore", message=".*render.*")
+        check_env(env, skip_render_check=True)
+    env.close()
+
+
+def offers(world, random):
+    world.serve("/lamp", "std_srvs/srv/Trigger", lambda request: {"success": True})
+
+
+def test_what_cannot_be_restored_is_refused_by_name(job):
+    """The service of the first episode would call a function of that episode."""
+    env = None
+    with raises(SERVICE_TAKEN) as caught:
+        env = Env(dataclasses.replace(job, vary=offers))
+        env.reset()
+    assert "/lamp" in str(caught.value)
+    if env is not None:
+        env.close()

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cartwheel.arrays import depth, image, reader
-from cartwheel.batch.plan import Plan, TopicFields, invalid
+from cartwheel.batch.plan import AbsoluteVary, Plan, TopicFields, invalid
+from cartwheel.batch.start import Start
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array
@@ -42,6 +43,7 @@ class Lane:
         self._newest: dict[str, Any] = {}
         self._actions: list[tuple[str, str, Maker, slice]] = []
         self._sources: list[tuple[str, TopicFields | Observer, list[Reader]]] = []
+        self._start: Start | None = None
         try:
             column = 0
             for topic, names in plan.act.items():
@@ -58,6 +60,8 @@ class Lane:
                         self._newest[each.topic] = None
                         self.world.subscribe(each.topic, self._keeper(each.topic))
                 self._sources.append((name, each, readers))
+            if plan.vary is not None and not isinstance(plan.vary, AbsoluteVary):
+                self._start = Start(self.world, plan.vary)
         except BaseException:
             self.world.close()
             raise
@@ -72,11 +76,14 @@ class Lane:
         """Begins anew, with a new seed unless it is None."""
         world, plan = self.world, self._plan
         self._seed = self._seed if seed is None else seed
-        world.reset(seed=seed)
+        if self._start is not None:
+            self._start.begin(world, self._seed)
+        else:
+            world.reset(seed=seed)
+            if plan.vary is not None:
+                plan.vary(world, np.random.default_rng(self._seed))
         for topic in self._newest:
             self._newest[topic] = None
-        if plan.vary is not None:
-            plan.vary(world, np.random.default_rng(self._seed))
 
     def act(self, action: Sequence[float]) -> None:
         """Publishes the actions."""

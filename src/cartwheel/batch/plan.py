@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
@@ -27,6 +28,17 @@ Backend = Literal["mujoco", "warp"]
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
 Vary = Callable[["World", np.random.Generator], None]
 """Changes a world after a reset, with random numbers that depend on the seed of the world."""
+
+
+class AbsoluteVary(ABC):
+    """A `Vary` that sets the same values each time, whatever it has set before.
+
+    The world then need not be restored before, which takes longer than a reset.
+    """
+
+    @abstractmethod
+    def __call__(self, world: World, random: np.random.Generator) -> None:
+        """Changes a world."""
 
 
 @dataclass(frozen=True)

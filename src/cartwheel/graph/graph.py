@@ -337,6 +337,13 @@ class Graph:
                 raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
             return live[name].info()
 
+    def subscriptions(self, node: str) -> tuple[Subscription, ...]:
+        """The subscriptions of a node, by the names of their topics."""
+        with self._lock:
+            return tuple(
+                each for topic in self._live() for each in topic.subscriptions if each.node == node
+            )
+
     def set_filters(
         self, name: str, change: Callable[[tuple[Filter, ...]], tuple[Filter, ...]]
     ) -> None:

@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from cartwheel.api.values import array, invalid
+from cartwheel.batch.plan import AbsoluteVary
 from cartwheel.codes.world import PROPERTY_ABSENT, VALUE_INVALID
 from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.geometry import Pose
@@ -45,7 +46,7 @@ def _collides(link: Link) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Variation:
+class Variation(AbsoluteVary):
     """Changes a model and the light by uniformly distributed random numbers; see `vary`."""
 
     model: str

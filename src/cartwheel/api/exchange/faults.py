@@ -84,13 +84,17 @@ class FaultyWorld(FramedWorld):
                 change=change,
             )
             made.begin([Interception(self.graph, name, made.receiver(name)) for name in names])
-            self._faults = [*(each for each in self._faults if each.active), made]
+            self._faults = [*self.faults, made]
             return made
 
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """The faults that have not ended."""
+        return tuple(each for each in self._faults if each.active)
+
     def _left_out(self) -> Iterator[str]:
-        for each in self._faults:
-            if each.active:
-                yield f"fault of {', '.join(each.topics)}"
+        for each in self.faults:
+            yield f"fault of {', '.join(each.topics)}"
 
 
 class Fault(Sealed):
