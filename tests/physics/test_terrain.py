@@ -49,6 +49,56 @@ def test_balls_come_to_rest_at_the_heights_of_the_image(make, tmp_path):
         assert world.model(name).pose.z == pytest.approx(height + 0.1, abs=5e-3), name
 
 
+def level(make, tmp_path):
+    """A heightmap of 129 x 129 pixels over 20 m, whose surface is at 1 m, except in two corners."""
+    pixels = np.full((129, 129), 128, dtype=np.uint8)
+    pixels[0, 0], pixels[0, 1] = 255, 0
+    Image.fromarray(pixels).save(tmp_path / "level.png")
+    geometry = f"""<geometry><heightmap><uri>file://{tmp_path}/level.png</uri>
+      <size>20 20 {255 / 128}</size></heightmap></geometry>"""
+    return make.sdf(
+        f"""<model name="level"><static>true</static><link name="l">
+        <collision name="c">{geometry}</collision></link></model>"""
+    )
+
+
+def test_boxes_that_fall_on_a_heightmap_stay_flat(make, tmp_path):
+    # They overlap the corners of cells by less than they sink in, where a push to the side would be
+    # the shortest way out.
+    places = [(0.013 * k, 0.007 * k, 0.05 * k) for k in range(10)]
+    boxes = [
+        make.box(f"box{k}", (0.2, 0.2, 0.2), pose=Pose((x + k, y, 1.11 + drop)))
+        for k, (x, y, drop) in enumerate(places)
+    ]
+    world = make.world(level(make, tmp_path), *boxes, ground=None)
+    world.run(2.0)
+    for k, (x, y, drop) in enumerate(places):
+        pose = world.model(f"box{k}").pose
+        assert pose.position == pytest.approx((x + k, y, 1.1), abs=0.01), drop
+        assert pose.rpy == pytest.approx((0, 0, 0), abs=0.02), drop
+
+
+def test_the_clearance_to_a_heightmap(make, tmp_path):
+    boxes = [
+        make.box(f"box{k}", (0.2, 0.2, 0.2), pose=Pose((0.3 + k, 0.0, 1.1 + height)))
+        for k, height in enumerate((-0.01, 0.0005, 0.03, 0.9))
+    ]
+    world = make.world(level(make, tmp_path), hills(make, tmp_path), *boxes, ground=None)
+    for k, height in enumerate((-0.01, 0.0005, 0.03, 0.9)):
+        found = world.clearance(f"box{k}", "level")
+        assert found.distance == pytest.approx(height, abs=1e-5)
+        assert found.points[1][2] == pytest.approx(1.0, abs=1e-5)
+        assert world.clearance("level", f"box{k}").points == found.points[::-1]
+    # In front of the stair, the step is nearer than the floor.
+    probe = make.box("probe", (0.1, 0.1, 0.1), pose=Pose((11.0, 0.2, 1.2)))
+    world = make.world(hills(make, tmp_path), probe, ground=None)
+    before = world.session.simulation.model.hfield_data.copy()
+    found = world.clearance("probe")
+    # It rises by 1 m over a pixel of 0.25 m, from y = 0.5 and z = 0.5.
+    assert found.distance == pytest.approx((0.25 * 1.0 + 0.65 * 0.25) / np.hypot(1.0, 0.25))
+    assert (world.session.simulation.model.hfield_data == before).all()
+
+
 def test_a_hole_in_a_polyline_lets_things_through_and_its_rim_does_not(make):
     ring = make.sdf(
         f'<model name="ring"><static>true</static><pose>0 0 1 0 0 0</pose><link name="l">'

@@ -12,6 +12,7 @@ import numpy as np
 
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.engine import Engine
+from cartwheel.simulation.models.terrain_distance import distance_to_heightmap
 from cartwheel.simulation.models.touches import collision_names
 from cartwheel.world.bodies import COLLISION_GROUP
 from cartwheel.world.entry import ModelEntry
@@ -23,8 +24,9 @@ Chosen = Callable[[Place], bool]
 """Whether a collision counts."""
 
 _PLANE = mujoco.mjtGeom.mjGEOM_PLANE
+_HEIGHTMAP = mujoco.mjtGeom.mjGEOM_HFIELD
 _FARTHEST = 1e6
-"""m; with a much larger limit, MuJoCo finds no distance to a height field."""
+"""m."""
 _ABOVE = 1.0
 """m; height above everything from which the ground is searched."""
 
@@ -127,7 +129,7 @@ class ShapeQueries:
                 if least >= best.distance:
                     break
                 most = min(most, best.distance)  # noqa: PLW2901 - no farther than the best
-            distance = mujoco.mj_geomDistance(model, data, one, other, most, ends)
+            distance = self._distance(one, other, most, ends)
             if distance >= most and best is not None:
                 continue
             start, end = ends[:3].tolist(), ends[3:].tolist()
@@ -137,6 +139,17 @@ class ShapeQueries:
                 points=((start[0], start[1], start[2]), (end[0], end[1], end[2])),
             )
         return best
+
+    def _distance(self, one: int, other: int, most: float, ends: Any) -> float:
+        """Distance between two geoms, m, at most `most`; `ends` receives the nearest points."""
+        model, data = self._engine.model, self._engine.data
+        if model.geom_type[one] == _HEIGHTMAP:
+            return distance_to_heightmap(model, data, one, other, most, ends)
+        if model.geom_type[other] == _HEIGHTMAP:
+            distance = distance_to_heightmap(model, data, other, one, most, ends)
+            ends[:3], ends[3:] = ends[3:].copy(), ends[:3].copy()
+            return distance
+        return float(mujoco.mj_geomDistance(model, data, one, other, most, ends))
 
     def _pairs(
         self, ones: Sequence[int], others: Sequence[int]
@@ -151,7 +164,8 @@ class ShapeQueries:
         endless = planes[ones][:, None] | planes[others][None]
         least = np.where(endless, self._above_planes(ones, others), apart - reach)
         most = np.where(endless, _FARTHEST, np.minimum(apart + reach + _ABOVE, _FARTHEST))
-        both = planes[ones][:, None] & planes[others][None]
+        grounds = planes | (model.geom_type == _HEIGHTMAP)
+        both = grounds[ones][:, None] & grounds[others][None]
         for index in np.argsort(least, axis=None, kind="stable").tolist():
             row, column = divmod(index, len(others))
             if not both[row, column]:
