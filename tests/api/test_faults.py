@@ -29,10 +29,11 @@ def test_a_sensor_is_switched_off_and_on(world, cart):
     world.run(0.5)
     with cart.fault("/odom", drop=1.0) as fault:
         assert fault.active and fault.topics == ("/odom",)
+        assert world.faults == (fault,)
         before = odometry.count
         world.run(0.5)
         assert odometry.count == before > 0
-    assert not fault.active
+    assert not fault.active and world.faults == ()
     world.run(0.5)
     assert odometry.count == pytest.approx(2 * before, abs=2)
     fault.end()

@@ -34,7 +34,7 @@ Numbers = Mapping[str, float]
 class FaultyWorld(FramedWorld):
     """The part of `World` with faults."""
 
-    _faults: Sequence[Fault] = ()
+    _faults: tuple[Fault, ...] = ()
 
     def fault(
         self,
@@ -84,7 +84,7 @@ class FaultyWorld(FramedWorld):
                 change=change,
             )
             made.begin([Interception(self.graph, name, made.receiver(name)) for name in names])
-            self._faults = [*self.faults, made]
+            self._faults = (*self.faults, made)
             return made
 
     @property
