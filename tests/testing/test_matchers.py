@@ -18,6 +18,7 @@ from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.msgs.sensor_msgs import Image, LaserScan
 from cartwheel.testing import (
     UnmetError,
+    holds,
     joint_reaches,
     keeps_clear,
     moves,
@@ -75,6 +76,32 @@ def test_a_robot_keeps_clear_of_a_post(cart):
         keeps_clear(cart, "posd")
     with raises(VALUE_INVALID):
         keeps_clear(cart._world)
+
+
+def test_a_function_stays_true(cart):
+    world = cart._world
+    cart.publish(DRIVE, linear_x=0.5)
+    holds(world, lambda: cart.pose.x < 1.0, seconds=1.0)
+    assert world.time == pytest.approx(1.0)
+    with pytest.raises(UnmetError) as raised:
+        holds(world, lambda w: w.model("cart").pose.x < 1.0, seconds=5.0)
+    # x = 1 m: after 1.0 / 0.5 + 0.25 s.
+    assert raised.value.time == pytest.approx(2.25, abs=0.02)
+    (x,) = raised.value.values.values()
+    assert float(x) == pytest.approx(1.0, abs=0.01)
+    with pytest.raises(UnmetError) as raised:
+        holds(world, bool_of_nothing, seconds=1.0, period=0.1)
+    assert raised.value.values == {}
+    for wrong in ({"condition": 3}, {"seconds": -1.0}, {"period": 0.0}):
+        with pytest.raises(cw.CartwheelError):
+            holds(world, **{"condition": lambda: True, **wrong})
+    world.on(world.time + 0.1, lambda: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        holds(world, lambda: True, seconds=1.0)
+
+
+def bool_of_nothing():
+    return None
 
 
 def test_reaches_compares_the_yaw(cart):

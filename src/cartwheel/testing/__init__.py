@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from cartwheel.testing.launching import Launched, launch
     from cartwheel.testing.matchers import (
         UnmetError,
+        holds,
         joint_reaches,
         keeps_clear,
         moves,
@@ -28,6 +29,7 @@ __all__ = [
     "Node",
     "NodePublisher",
     "UnmetError",
+    "holds",
     "joint_reaches",
     "keeps_clear",
     "launch",

@@ -6,10 +6,9 @@ which is an `AssertionError`, with the expected and the actual values.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from cartwheel.api.values import instance, invalid
 from cartwheel.errors import Pickled
 from cartwheel.testing.clearing import KeepsClear
 from cartwheel.testing.conditions import (
@@ -19,8 +18,10 @@ from cartwheel.testing.conditions import (
     Reaches,
     StaysWithin,
 )
+from cartwheel.testing.holding import Holds
 from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.seeing import Sees
+from cartwheel.testing.subjects import name_of, side_of, topic_of, world_of
 from cartwheel.testing.touching import Touches
 from cartwheel.testing.watching import Watch, When, run
 
@@ -86,8 +87,8 @@ def reaches(
         yaw = target.yaw if yaw is None else yaw
         target = target.position
     __tracebackhide__ = True
-    condition = Reaches(_robot(robot), target, within=within, yaw=yaw, yaw_within=yaw_within)
-    return _until(_world(robot), condition, timeout)
+    condition = Reaches(name_of(robot), target, within=within, yaw=yaw, yaw_within=yaw_within)
+    return _until(world_of(robot), condition, timeout)
 
 
 def stays_within(
@@ -121,8 +122,8 @@ def stays_within(
     __tracebackhide__ = True
     given = {"x": x, "y": y, "z": z, "yaw": yaw}
     limits = {name: each for name, each in given.items() if each is not None}
-    condition = StaysWithin(_robot(robot), limits, tilt=tilt, speed=speed)
-    _always(_world(robot), condition, seconds)
+    condition = StaysWithin(name_of(robot), limits, tilt=tilt, speed=speed)
+    _always(world_of(robot), condition, seconds)
 
 
 def moves(robot: Model, *, distance: float = 0.1, timeout: float = 5.0) -> float:
@@ -140,7 +141,7 @@ def moves(robot: Model, *, distance: float = 0.1, timeout: float = 5.0) -> float
         UnmetError: The model did not move far enough. `values` contains the distance.
     """
     __tracebackhide__ = True
-    return _until(_world(robot), Moves(_robot(robot), distance), timeout)
+    return _until(world_of(robot), Moves(name_of(robot), distance), timeout)
 
 
 def publishes(
@@ -170,8 +171,8 @@ def publishes(
         UnknownNameError: The topic does not exist.
     """
     __tracebackhide__ = True
-    condition = Publishes(_topic(world, topic), rate, tolerance=tolerance)
-    _check(_world(world, "world"), condition, "once" if rate is None else "end", seconds)
+    condition = Publishes(topic_of(world, topic), rate, tolerance=tolerance)
+    _check(world_of(world, "world"), condition, "once" if rate is None else "end", seconds)
     return condition.measured
 
 
@@ -211,9 +212,9 @@ def sees(
             colour to which it belongs.
     """
     __tracebackhide__ = True
-    name = _topic(world, topic)
+    name = topic_of(world, topic)
     condition = Sees(name, range=range, within=within, color=color, share=share, model=model)
-    return _until(_world(world, "world"), condition, timeout)
+    return _until(world_of(world, "world"), condition, timeout)
 
 
 def touches(
@@ -235,8 +236,8 @@ def touches(
         UnknownNameError: No model or link has this name.
     """
     __tracebackhide__ = True
-    condition = Touches(_side(robot, "robot"), None if other is None else _side(other, "other"))
-    return _until(_world(robot), condition, timeout)
+    condition = Touches(side_of(robot, "robot"), None if other is None else side_of(other, "other"))
+    return _until(world_of(robot), condition, timeout)
 
 
 def touches_nothing(
@@ -254,8 +255,37 @@ def touches_nothing(
         UnknownNameError: No model or link has this name.
     """
     __tracebackhide__ = True
-    sides = _side(robot, "robot"), None if other is None else _side(other, "other")
-    _always(_world(robot), Touches(*sides, inverted=True), seconds)
+    sides = side_of(robot, "robot"), None if other is None else side_of(other, "other")
+    _always(world_of(robot), Touches(*sides, inverted=True), seconds)
+
+
+def holds(
+    world: World,
+    condition: Callable[[], object] | Callable[[World], object],
+    *,
+    seconds: float = 5.0,
+    period: float | None = None,
+) -> None:
+    """Runs the world for a time, in which a condition must always hold.
+
+    `World.run_until` runs the world until a condition holds.
+
+    Args:
+        world: The world.
+        condition: Returns a true value while it holds. Takes no arguments, or the world.
+        seconds: Simulation time, s.
+        period: Simulation time between two evaluations, s; None for one step.
+
+    Raises:
+        UnmetError: The condition did not hold. `values` contains, for a lambda, the values that it
+            compares.
+        CartwheelError: An argument is invalid.
+    """
+    __tracebackhide__ = True
+    condition_of = Holds(condition, world)
+    broken = world._until(lambda: not condition_of.holds(), timeout=seconds, period=period)
+    if broken and not condition_of.holds():
+        raise UnmetError(condition_of, world.time)
 
 
 def keeps_clear(
@@ -281,12 +311,12 @@ def keeps_clear(
         CartwheelError: One of them has no collision.
     """
     __tracebackhide__ = True
-    one = _side(robot, "robot")
-    two = None if other is None else _side(other, "other")
-    known = _world(robot).models
+    one = side_of(robot, "robot")
+    two = None if other is None else side_of(other, "other")
+    known = world_of(robot).models
     ignored = [name for name in ignore if name.partition("::")[0] in known] if two is None else []
     condition = KeepsClear(one, two, distance, ignore=ignored)
-    _always(_world(robot), condition, seconds)
+    _always(world_of(robot), condition, seconds)
 
 
 def joint_reaches(
@@ -309,7 +339,7 @@ def joint_reaches(
         UnknownNameError: The joint does not exist.
     """
     __tracebackhide__ = True
-    return _until(_world(robot), JointAt(_robot(robot), joint, position, within=within), timeout)
+    return _until(world_of(robot), JointAt(name_of(robot), joint, position, within=within), timeout)
 
 
 def _until(world: World, condition: Condition, timeout: float) -> float:
@@ -334,43 +364,3 @@ def _check(world: World, condition: Condition, when: When, seconds: float) -> No
         condition.close()
     if not watch.met:
         raise UnmetError(condition, world.time)
-
-
-def _side(given: Model | Link | str, name: str) -> str:
-    """The name of a model, the scoped name of a link, or a pattern for the other side."""
-    from cartwheel.api import Link, Model
-
-    if isinstance(given, Model | Link):
-        return given.scoped_name
-    if name == "other" and isinstance(given, str):
-        return given
-    error = invalid(name, "must be a Model or a Link", given)
-    error.hint = 'Write world.model("cart"), or one of its links.'
-    raise error
-
-
-def _robot(model: Model) -> str:
-    """The name of a model."""
-    from cartwheel.api import Link, Model
-
-    name = model.model if isinstance(model, Link) else "cart"
-    return instance(model, Model, "robot", f'world.model("{name}")').name
-
-
-def _topic(world: World | Model, topic: str) -> str:
-    """The name of a topic, for a model in its namespace."""
-    from cartwheel.api import Model
-    from cartwheel.graph import resolve_name
-
-    return resolve_name(topic, world.namespace) if isinstance(world, Model) else topic
-
-
-def _world(given: World | Model | Link, name: str = "robot") -> World:
-    from cartwheel.api import Link, Model, World
-
-    if isinstance(given, World) and name == "world":
-        return given
-    if isinstance(given, Link):
-        return given._world
-    example = "the world or one of its models" if name == "world" else 'world.model("cart")'
-    return instance(given, Model, name, example)._world
