@@ -8,6 +8,7 @@ from cartwheel.codes.robot import (
     PLANAR_FRICTION,
     STEERING_REVERSED,
     WHEEL_WITHOUT_COLLISION,
+    WHEELS_TOED,
 )
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}"/></inertial>'
@@ -171,3 +172,28 @@ car:
     findings = found(tmp_path, text, STEERING_REVERSED)
     assert {each.values["joint"] for each in findings} == {"one_joint", "two_joint"}
     assert found(tmp_path, text, WHEEL_WITHOUT_COLLISION) == []
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "toe"),
+    [(0.0, 0.0, None), (0.02, -0.02, None), (0.03, 0.0, 0.015), (0.0, -0.02, -0.01)],
+)
+def test_wheels_that_point_to_one_side_are_reported(tmp_path, left, right, toe):
+    """Wheels that point inward by the same angle keep the robot straight."""
+    forks = "".join(
+        FORK.format(name=name, place=f"0.2 {y} 0", rpy="0 0 0", axis="0 0 1")
+        + WHEEL.format(name=f"{name}_wheel", parent=name, place="0 0 0").replace(
+            '<origin xyz="0 0 0"/>', f'<origin xyz="0 0 0" rpy="0 0 {yaw}"/>'
+        )
+        for name, y, yaw in (("one", 0.15, left), ("two", -0.15, right))
+    )
+    plugin = (
+        '<gazebo><plugin name="drive" filename="gz-sim-ackermann-steering-system">'
+        "<left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>"
+        "<left_steering_joint>one_joint</left_steering_joint>"
+        "<right_steering_joint>two_joint</right_steering_joint></plugin></gazebo>"
+    )
+    findings = found(tmp_path, BODY.format(more="") + REAR + forks + plugin, WHEELS_TOED)
+    assert [each.values["toe"] for each in findings] == (
+        [] if toe is None else [pytest.approx(toe)]
+    )

@@ -19,6 +19,7 @@ from cartwheel.codes.devices import (
 )
 from cartwheel.codes.files import INCLUDE_ABSENT
 from cartwheel.codes.robot import (
+    BODY_ON_GROUND,
     DUPLICATE_NAME,
     INERTIA_GEOMETRY_MISMATCH,
     JOINTS_UNDRIVEN,
@@ -32,6 +33,7 @@ from cartwheel.codes.robot import (
     WHEEL_NOT_ROUND,
     WHEEL_SEPARATION_MISMATCH,
     WHEELS_SWAPPED,
+    WHEELS_TOED,
 )
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE, PLUGIN_LEFT_OUT
 from cartwheel.codes.world import SIMULATION_DIVERGED
@@ -983,3 +985,49 @@ def test_an_error_that_follows_from_feet_on_the_ground_is_none(tmp_path, tried):
     (reach,) = verdict.reaches
     assert reach.sag > 0.0
     assert reach.arrived
+
+
+def test_wheels_that_point_to_one_side_explain_a_small_error_to_this_side():
+    toed = WHEELS_TOED.diagnostic("point to the left", values={"joint": "j", "toe": 0.01})
+    assert _of_drive([toed], 1.1, turning=True, arc=True) is toed
+    assert _of_drive([toed], 0.9, turning=True, arc=True) is None
+    assert _of_drive([toed], 1.1, turning=False) is None
+    assert _of_drive([toed], 1.1, turning=True) is None
+
+
+FLAP = (
+    '<link name="flap"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>'
+    '<inertia ixx="0.002" iyy="0.002" izz="0.002"/></inertial><collision>'
+    '<origin xyz="0.1 0 0"/><geometry><box size="0.2 0.1 0.02"/></geometry></collision></link>'
+    '<joint name="flap_joint" type="revolute"><parent link="base"/><child link="flap"/>'
+    '<origin xyz="0.15 0 {z}"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" '
+    'velocity="9"/></joint>'
+)
+
+
+def test_a_part_that_hangs_down_to_the_ground_explains_why_a_base_is_slow(tried):
+    """The wheels' friction is mu m g of their load, and they slide."""
+    slippery = "".join(
+        f'<gazebo reference="{name}"><mu1>0.05</mu1><mu2>0.05</mu2></gazebo>'
+        for name in ("left", "right")
+    )
+    verdict = tried(cart(0.1), FLAP.format(z=0.0), slippery)
+    (drive, *_) = verdict.faults
+    assert (drive.test, drive.code) == ("drive", BODY_ON_GROUND)
+    assert drive.reason.values["link"] == "flap"
+    assert drive.reason.values["joint"] == "flap_joint"
+
+
+def test_a_joint_that_gives_way_explains_why_a_robot_sinks(tmp_path, tried):
+    """A leg that nothing drives folds below a body, beside a joint that a controller holds."""
+    leg = BOX.format(name="leg", at="0 0 -0.15", size="0.02 0.3 0.02").replace(
+        "<collision>", '<collision><origin xyz="0.05 0 -0.3"/>'
+    )
+    knee = (
+        '<joint name="knee" type="revolute"><parent link="base"/><child link="leg"/>'
+        '<axis xyz="0 1 0"/><limit lower="-2" upper="2" effort="9" velocity="9"/></joint>'
+    )
+    verdict = tried(BOX.format(name="base", at="0 0 0", size="0.1 0.1 0.1"), leg, knee)
+    (fault, *_) = verdict.faults
+    assert (fault.test, fault.code) == ("stand", JOINTS_UNDRIVEN)
+    assert fault.reason.values["joints"] == ("knee",)

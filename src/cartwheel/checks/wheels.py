@@ -20,6 +20,8 @@ _TURNED = 0.1
 """Maximum ratio of y to x between two wheels that are beside each other along x."""
 _BESIDE = 0.1
 """Maximum distance of a wheel from the axle through another one, relative to the track."""
+ROUND = 0.7
+"""Minimum ratio of the smallest to the largest width of a round wheel."""
 _SAME = 1e-6
 """Distance between two joints at the same place, m."""
 CAMBER = 0.5

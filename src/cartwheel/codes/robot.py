@@ -204,3 +204,6 @@ LIMIT_UNREACHABLE = Code(
     "error",
     "a joint starts far outside its limits, which it cannot reach",
 )
+WHEELS_TOED = Code(
+    "CW249", "wheels-toed", "info", "steered wheels do not point ahead while they are not steered"
+)

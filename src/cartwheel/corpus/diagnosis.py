@@ -17,6 +17,8 @@ _AGREES = 0.15
 """Relative tolerance between a measured velocity and the one that a mistake predicts."""
 _BRAKED = 0.15
 """Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
+_PULLED = 0.5
+"""Largest part of the turn rate for which wheels that point to one side account."""
 _HEAVY = 1000.0
 """Ratio of a link's stated inertia to the largest possible one."""
 _DRIVING = frozenset(
@@ -187,7 +189,7 @@ def _measured(
     `children` contains the child link of each joint. `idle` is the reason why no controller holds
     the joints; None if one runs or none is needed.
     """
-    said = verdict.diagnostics
+    said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
     if verdict.stand is not None and not verdict.stands:
         fallen = _first(each for each in (*said, *findings()) if _explains_fall(each)) or idle
@@ -265,6 +267,9 @@ def _of_drive(
         expected = [1.0, *(factor for _, factor in factors.values())]
         if min(expected) < ratio < max(expected):
             return next(iter(factors.values()))[0]
+    toed = next((each for each in found if turning and arc and _pulls(each, ratio)), None)
+    if toed is not None:
+        return toed
     codes = _TURNING if turning else _DRIVING
     if 0.0 < ratio < 1.0:
         codes |= {robot.PLANAR_FRICTION}
@@ -275,6 +280,17 @@ def _of_drive(
         # A caster may also brake a base that drives straight ahead.
         codes |= {robot.CASTER_FRICTION}
     return _first(each for each in found if each.code in codes and not _only_measures(each))
+
+
+def _pulls(each: Diagnostic, ratio: float) -> bool:
+    """Whether steered wheels that point to one side explain the turn rate of a small angle."""
+    toe = each.values.get("toe")
+    return (
+        each.code is robot.WHEELS_TOED
+        and isinstance(toe, float)
+        and toe * (ratio - 1.0) > 0
+        and abs(ratio - 1.0) < _PULLED
+    )
 
 
 def _only_measures(each: Diagnostic) -> bool:

@@ -20,6 +20,7 @@ from cartwheel.corpus.flights import flights
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
+from cartwheel.corpus.resting import dragging, gave_way
 from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
@@ -203,8 +204,10 @@ def _moved(
     verdict: Verdict, world: World, model: Model, robot: RobotDescription, standing: float
 ) -> Iterator[Verdict]:
     """The verdict after each part of the test, so that an error keeps earlier results."""
+    before = motion.positions(world, model)
     stood = motion.stand(world, model, robot, standing)
-    verdict = replace(verdict, stand=stood)
+    given_up = [] if stood.fixed else [*gave_way(world, model, Robot(robot, None), before)]
+    verdict = replace(verdict, stand=stood, observed=tuple(given_up))
     yield verdict
     topics, silent = _listened(world)
     verdict = replace(verdict, topics=topics, silent=silent)
@@ -221,6 +224,10 @@ def _moved(
             steered=_steered(robot, started),
         )
         verdict = replace(verdict, drives=tuple(bases))
+        if any(not (drive.follows and drive.turns) for drive in verdict.drives):
+            world.run(_LISTENING)
+            found = dragging(world, model, Robot(robot, None), started)
+            verdict = replace(verdict, observed=(*verdict.observed, *found))
         yield verdict
         verdict = replace(verdict, flights=tuple(flights(world, model, robot)))
         yield verdict

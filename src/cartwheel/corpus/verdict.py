@@ -223,6 +223,8 @@ class Verdict:
     launch: LaunchUse | None = None
     """The launch file whose arguments were used."""
     diagnostics: tuple[Diagnostic, ...] = ()
+    observed: tuple[Diagnostic, ...] = ()
+    """Reasons for failures that were seen in the simulation."""
 
     @property
     def speed(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -187,11 +187,12 @@ class MotorRequests(Requests):
         *,
         gains: tuple[float, float] | None = None,
         upright: bool = False,
+        at: Collection[str] = (),
         origin: Origin | None = None,
     ) -> BodyDriveHandle:
         """A servo that moves the whole model by its canonical link.
 
-        Its force acts at the centre of mass.
+        Its force acts at the centre of mass, or at that of some links.
 
         Args:
             gains: Force gain in N s/m and torque gain in N m s/rad, without a limit. None is as
@@ -200,6 +201,7 @@ class MotorRequests(Requests):
                 collision, and level commands also hold the roll and pitch rates at 0, so that
                 friction at the bottom of the model does not tip it over. The torque is then at most
                 `_UPRIGHT_WEIGHTS` times the weight, at the height of the centre of mass.
+            at: Links at whose centre of mass the force acts; they are fixed to the root link.
             origin: Origin for errors.
 
         Raises:
@@ -236,6 +238,13 @@ class MotorRequests(Requests):
             force = _DRIVE_WEIGHTS * 9.8 * description.mass / _DRIVE_BAND
             gains = (force, force * max(_DRIVE_ARM, 2 * reach**0.5, width))
         tilt = _UPRIGHT_WEIGHTS * 9.8 * description.mass * height / _TILT_BAND
+        pushed = [
+            (each.inertial.mass, (to_link @ poses[each.name]).apply(each.inertial.pose.position))
+            for each in description.links
+            if each.name in at and each.inertial is not None
+        ]
+        if weight := sum(mass for mass, _ in pushed):
+            centre = sum((mass / weight * np.array(place) for mass, place in pushed), np.zeros(3))
         drive = BodyDrive(
             link=link.name,
             centre=(float(centre[0]), float(centre[1]), float(centre[2])),

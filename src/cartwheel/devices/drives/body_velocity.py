@@ -23,6 +23,11 @@ class BodyVelocityConfig:
     freely."""
     timeout: float | None = None
     """Time after which the model stops without a command, s. None: never."""
+    sideways: bool = True
+    """Whether ``linear.y`` is followed; otherwise, it is 0."""
+    pushed: tuple[str, ...] = ()
+    """Links that are fixed to the root link, at whose centre of mass the force acts. Empty: at that
+    of the model."""
     gains: tuple[float, float] | None = None
     """Force per velocity error, N s/m, and torque per angular velocity error, N m s/rad. None: as
     stiff as possible, with a force of at most five times the model's weight."""
@@ -40,7 +45,9 @@ class BodyVelocity(Component):
         self._config = config
         # Forces with gains tilt a model; a velocity that is set does not.
         upright = config.motion == "planar" and config.gains is None
-        self._servo = self.part.body_drive(gains=config.gains, upright=upright, origin=self.origin)
+        self._servo = self.part.body_drive(
+            gains=config.gains, upright=upright, at=config.pushed, origin=self.origin
+        )
         self.subscribe(config.topic, "geometry_msgs/msg/Twist", self._on_command)
         if config.timeout is not None:
             self.part.schedule(0, before=self._stop_after_timeout)
@@ -57,7 +64,7 @@ class BodyVelocity(Component):
         self._received_ns = self.part.time_ns
         linear, angular = message.linear, message.angular
         self._hold(
-            (float(linear.x), float(linear.y), float(linear.z)),
+            (float(linear.x), float(linear.y) * self._config.sideways, float(linear.z)),
             (float(angular.x), float(angular.y), float(angular.z)),
         )
 

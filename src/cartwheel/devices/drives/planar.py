@@ -15,6 +15,12 @@ class PlanarDriveConfig:
     """Topic of the Twist commands."""
     timeout: float | None = None
     """Time after which the model stops without a command, s. None: never."""
+    sideways: bool = True
+    """Whether the sideways velocity of the commands is followed."""
+    gains: tuple[float, float] | None = None
+    """Force per velocity error and torque per yaw rate error; see `BodyVelocityConfig`."""
+    pushed: tuple[str, ...] = ()
+    """Links at whose centre of mass the force acts; see `BodyVelocityConfig`."""
     odometry: OdometryConfig | None
     """The odometry. Its base is the link whose pose is published, or the root link if no link has
     this name. None: nothing is published."""
@@ -29,7 +35,13 @@ class PlanarDrive(Component):
 
     def __init__(self, scope: Scope, config: PlanarDriveConfig) -> None:
         super().__init__(scope)
-        body = BodyVelocityConfig(topic=config.command_topic, timeout=config.timeout)
+        body = BodyVelocityConfig(
+            topic=config.command_topic,
+            timeout=config.timeout,
+            sideways=config.sideways,
+            gains=config.gains,
+            pushed=config.pushed,
+        )
         self.add(BodyVelocity(scope, body))
         if config.odometry is not None:
             self._base = self.link_or_root(config.odometry.base)

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 from cartwheel.codes import devices
 from cartwheel.description.elements.numbers import MOST_RATIO
-from cartwheel.description.model import Mimic
+from cartwheel.description.model import Element, Mimic
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.tags import tag
+from cartwheel.dialects.tags import missing, number, tag
 from cartwheel.errors import PluginError
 from cartwheel.simulation.limits import FARTHEST
 
@@ -74,6 +74,51 @@ class MimicJoint(Plugin[MimicJointParameters]):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class MimicListParameters:
+    mimics: tuple[str, ...] = tag(
+        "mimic",
+        default=(),
+        nested=True,
+        doc="A joint that mimics the joint in the attribute or tag `joint`, with `offset` and "
+        "`multiplier` as for a `<mimic>` in a URDF. The gains and limits of the controller, such "
+        "as `P` and `command_max`, have no effect: the position is mimicked exactly. Repeat the "
+        "tag for each joint.",
+    )
+
+
+class MimicList(Plugin[MimicListParameters]):
+    """Makes the positions of several joints follow those of other joints.
+
+    Original plugin: ``MimicPlugin`` in the package ``seed_r7_gazebo``.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ("libmimic_plugin.so",)
+
+    def configure(self) -> None:
+        for element in self.tag.element.find_all("mimic"):
+            follower, stated = element.text.strip(), _stated(element, "joint")
+            if not follower or stated is None:
+                raise missing("mimic", "joint", element.origin)
+            leader = stated.text.strip()
+            _check_different(self, leader, follower)
+            multiplier, offset = (_stated(element, name) for name in ("multiplier", "offset"))
+            mimic = Mimic(
+                joint=leader,
+                multiplier=1.0 if multiplier is None else number(multiplier, most=MOST_RATIO),
+                offset=0.0 if offset is None else number(offset, most=FARTHEST),
+            )
+            self.part.mimic(follower, mimic, origin=element.origin)
+
+
+def _stated(element: Element, name: str) -> Element | None:
+    """An attribute, or a child of this name; None if there is neither."""
+    text = element.attribute(name)
+    if text is None:
+        return element.find(name)
+    return Element(tag=name, text=text, origin=element.origin)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class DifferentialParameters:
     first: str = tag(
         "jointA", default="left_joint", role="joint", doc="First of the two coupled joints."
@@ -93,11 +138,14 @@ class Differential(Plugin[DifferentialParameters]):
     """Couples two joints so that their angles are always equal, as in a rocker-bogie suspension.
 
     The coupling is rigid. In Gazebo, the joints are coupled by a spring with the stiffness
-    ``<forceConstant>``. Original plugin: ``differential_plugin`` in the package
-    ``leo_gazebo_plugins``.
+    ``<forceConstant>``. Original plugin: ``differential_plugin`` in the packages
+    ``leo_gazebo_plugins`` and ``leo_gz_plugins``.
     """
 
-    filenames: ClassVar[tuple[str, ...]] = ("libleo_gazebo_differential_plugin.so",)
+    filenames: ClassVar[tuple[str, ...]] = (
+        "libleo_gazebo_differential_plugin.so",
+        "libleo_gz_differential_plugin.so",
+    )
 
     def configure(self) -> None:
         config = self.config

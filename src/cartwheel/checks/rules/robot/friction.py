@@ -9,18 +9,22 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.sliding import rolls_only_forward
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import lowest, wheel_joints, wheel_links
+from cartwheel.checks.wheels import ROUND, lowest, wheel_joints, wheel_links, wheel_widths
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
-from cartwheel.description.model import Collision, Link, Sphere
+from cartwheel.description.model import Collision, Joint, Link, Sphere
 from cartwheel.description.solids import solid_of
 from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.dialects.classic.drives.planar_move import PlanarMove
+from cartwheel.dialects.makers.force_based_move import ForceBasedMove
+from cartwheel.dialects.makers.planar_force_move import PlanarForceMove
 from cartwheel.errors import Diagnostic
 
 SLIPPERY = 0.01
 _LEVEL = 0.006
 """m; maximum difference of the heights of parts that touch the same ground."""
+_PLANAR = (PlanarMove, PlanarForceMove, ForceBasedMove)
+"""Plugins that move a robot over the ground without wheels."""
 _LOW = 0.3
 """Friction coefficient of a caster that hardly brakes a robot."""
 
@@ -92,9 +96,7 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
 @rule(robot_codes.PLANAR_FRICTION)
 def planar_friction(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        movers = [
-            tag for tag in robot.description.plugins if plugin_named(tag.filename) is PlanarMove
-        ]
+        movers = [tag for tag in robot.description.plugins if plugin_named(tag.filename) in _PLANAR]
         heights = {
             link.name: height
             for link in robot.description.links
@@ -105,7 +107,7 @@ def planar_friction(subject: Subject) -> Iterator[Diagnostic]:
         ground = min(heights.values())
         for name, height in heights.items():
             holder = robot.inbound.get(robot.rigid_root(name))
-            if height - ground > _LEVEL or (holder is not None and holder.type == "continuous"):
+            if height - ground > _LEVEL or (holder is not None and _rolls(robot, holder)):
                 continue
             mu = robot.links[name].collisions[0].surface.mu1
             if not _brakes(mu):
@@ -163,6 +165,14 @@ def _ground(robot: Robot, wheels: set[str]) -> float | None:
     """The height of the ground below the wheels, m; None if no wheel has a shape."""
     bottoms = (lowest(robot, name) for name in wheels)
     return min((each for each in bottoms if each is not None), default=None)
+
+
+def _rolls(robot: Robot, holder: Joint) -> bool:
+    """Whether a joint holds a round wheel."""
+    if holder.type != "continuous":
+        return False
+    widths = wheel_widths(robot, holder, robot.collisions)
+    return widths is None or bool(widths.min() >= ROUND * widths.max())
 
 
 def _brakes(mu: float | None) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from cartwheel.checks import nodes, plugin_tags
@@ -25,6 +26,8 @@ from cartwheel.geometry import matrix_from_quat
 
 _DOWN = -0.5
 """Cosine of the angle between a steering axis and the vertical."""
+_TOE, _CROOKED = 0.004, 0.2
+"""rad; smallest mean angle of wheels that is reported, and largest angle that is not intended."""
 
 
 @rule(robot_codes.WHEEL_AXIS_MISALIGNED)
@@ -82,15 +85,7 @@ def _not_across(robot: Robot, joint: Joint, toward_left: Floats) -> Diagnostic:
 @rule(robot_codes.STEERING_REVERSED)
 def steering_axes(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
-        steered = {
-            name.strip(): None
-            for tag in robot.description.plugins
-            for each in plugin_tags.roles(tag.filename)
-            if each.role == "steering"
-            for name in each.joints(tag.element)
-        }
-        steered |= dict.fromkeys(robot.steered)
-        for name in steered:
+        for name in _steering(robot):
             joint = robot.joints.get(name)
             if joint is None or joint.child not in robot.placed:
                 continue
@@ -107,3 +102,69 @@ def steering_axes(subject: Subject) -> Iterator[Diagnostic]:
                 place="attribute" if node is not None else "",
                 mark="xyz",
             )
+
+
+@rule(robot_codes.WHEELS_TOED)
+def wheels_toed(subject: Subject) -> Iterator[Diagnostic]:
+    """Steered wheels that do not point ahead on average, although the steering joints are at 0."""
+    for robot in subject.robots:
+        angles = {
+            joint.name: _toe(robot, joint)
+            for name in _steering(robot)
+            for joint in _held(robot, name)
+        }
+        toes = {name: angle for name, angle in angles.items() if abs(angle) < _CROOKED}
+        if not toes or len(toes) < len(angles):
+            continue
+        mean = sum(toes.values()) / len(toes)
+        if abs(mean) < _TOE:
+            continue
+        name = max(toes, key=lambda name: abs(toes[name]))
+        side = "left" if mean > 0 else "right"
+        yield robot_codes.WHEELS_TOED.diagnostic(
+            message=f"with the steering joints at 0, the steered wheels point {_degrees(mean)} to "
+            f'the {side} on average, because the axis of "{name}" is turned by '
+            f"{_degrees(toes[name])}",
+            values={"joint": name, "toe": mean},
+            origin=robot.joints[name].origin,
+            hint="Correct <origin> or <axis> of the joint.",
+        )
+
+
+def _steering(robot: Robot) -> list[str]:
+    """The joints that plugins and controllers steer."""
+    steered = {
+        name.strip(): None
+        for tag in robot.description.plugins
+        for each in plugin_tags.roles(tag.filename)
+        if each.role == "steering"
+        for name in each.joints(tag.element)
+    }
+    return list(steered | dict.fromkeys(robot.steered))
+
+
+def _held(robot: Robot, steering: str) -> list[Joint]:
+    """The wheels' joints that a steering joint carries."""
+    joint = robot.joints.get(steering)
+    if joint is None or joint.child not in robot.placed:
+        return []
+    carried = robot.rigid_groups.get(robot.rigid_root(joint.child), [])
+    return [
+        each
+        for each in robot.joints.values()
+        if each.type == "continuous"
+        and each.parent in carried
+        and each.child in robot.placed
+        and abs(wheel_axis(robot, each)[2]) < CAMBER
+    ]
+
+
+def _toe(robot: Robot, joint: Joint) -> float:
+    """Angle to the left at which a wheel rolls, rad."""
+    x, y, _ = wheel_axis(robot, joint)
+    sign = 1.0 if y >= 0 else -1.0
+    return math.atan2(-sign * x, sign * y)
+
+
+def _degrees(angle: float) -> str:
+    return f"{abs(math.degrees(angle)):.2g}°"

@@ -7,13 +7,11 @@ from collections.abc import Iterator
 from cartwheel.checks import nodes
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import is_across, wheel_joints, wheel_widths
+from cartwheel.checks.wheels import ROUND, is_across, wheel_joints, wheel_widths
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Cylinder
 from cartwheel.errors import Diagnostic
 
-_ROUND = 0.7
-"""Minimum ratio of a wheel's smallest to largest width."""
 _UPRIGHT = {"x": 'rpy="0 1.5708 0"', "y": 'rpy="1.5708 0 0"', "z": 'rpy="0 0 0"'}
 """Rotation that aligns a cylinder with the joint axis, by joint axis."""
 
@@ -27,7 +25,7 @@ def wheel_not_round(subject: Subject) -> Iterator[Diagnostic]:
             # Misaligned axes are reported by another rule.
             if widths is None or not is_across(robot, joint) or not robot.whole(link.name):
                 continue
-            if widths.min() >= _ROUND * widths.max():
+            if widths.min() >= ROUND * widths.max():
                 continue
             collision, text = link.collisions[0] if link.collisions else None, ""
             node = robot.node_at(collision.origin) if collision is not None else None

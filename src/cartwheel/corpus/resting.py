@@ -1,0 +1,150 @@
+"""What a robot rests on and what gave way, after it stood without commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from cartwheel.api import Model, World
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.wheels import ROUND, wheel_axis, wheel_joints, wheel_links, wheel_widths
+from cartwheel.codes import robot as robot_codes
+from cartwheel.corpus.loads import held_by
+from cartwheel.description.model import Joint
+from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.errors import Diagnostic
+
+_CARRIES = 0.1
+"""Smallest part of the weight that is reported."""
+_SLACK = 1e-3
+"""Effort of a joint that nothing holds, relative to the weight at the robot's size."""
+_SLIPPERY = 0.3
+"""Largest friction coefficient of a part that is meant to slide."""
+_SLID, _TURNED = 0.02, 0.2
+"""Motion of a joint that gave way, m and rad."""
+_LEVEL = 0.9
+"""Largest vertical component of the axis of a joint that lifts."""
+_GRAVITY = 9.8
+
+
+def dragging(
+    world: World, model: Model, robot: Robot, started: Sequence[Controller]
+) -> Iterator[Diagnostic]:
+    """Parts of arms without commands that rest on the ground beside the driven wheels.
+
+    Args:
+        world: The world, with the robot at rest.
+        model: The robot in the world.
+        robot: Its description.
+        started: The controllers that run.
+    """
+    nodes = {node for info in world.graph.topics() if info.drives for node in info.subscribers}
+    named = [
+        name
+        for each in started
+        if each.node in nodes
+        for name in each.interfaces
+        if name in robot.joints
+    ]
+    joints = [*wheel_joints(robot), *(robot.joints[name] for name in named)]
+    wheels = {name for joint in joints for name in wheel_links(robot, joint)}
+    loads: dict[str, float] = {}
+    for contact in world.contacts(model.name):
+        if contact.models[1] != model.name:
+            load = abs(float(np.dot(contact.force, contact.normal)))
+            loads[contact.links[0]] = loads.get(contact.links[0], 0.0) + load
+    weight = _GRAVITY * robot.description.mass
+    for name, load in loads.items():
+        holder = _holder(robot, name)
+        if name in wheels or holder is None or load < _CARRIES * weight or not wheels:
+            continue
+        if held_by(world, model, holder.name) > _SLACK * weight * robot.size:
+            continue
+        mu = [each.surface.mu1 for each in robot.links[name].collisions]
+        if all(each is not None and each <= _SLIPPERY for each in mu) or _rolls(world, robot, name):
+            continue
+        yield robot_codes.BODY_ON_GROUND.diagnostic(
+            message=f'link "{name}" rests on the ground and carries {load / weight:.0%} of the '
+            f'weight, because nothing holds joint "{holder.name}" up, so it brakes the robot',
+            severity="info",
+            values={"link": name, "joint": holder.name, "part": load / weight},
+            origin=holder.origin,
+            hint="Command the joint before the robot drives, or add a controller that holds it.",
+        )
+
+
+def gave_way(
+    world: World, model: Model, robot: Robot, before: Mapping[str, float]
+) -> Iterator[Diagnostic]:
+    """Joints without motors that moved while the robot stood.
+
+    Args:
+        world: The world, after the robot stood.
+        model: The robot in the world.
+        robot: Its description.
+        before: Positions of the joints at the start, rad or m.
+    """
+    driven = _driven(world, model)
+    found = {
+        joint.name: abs(model.joint(joint.name) - _within(joint, before[joint.name]))
+        for joint in robot.description.joints
+        if joint.name in before
+        and joint.type in ("revolute", "prismatic")
+        and joint.name not in driven
+        and joint.mimic is None
+        and joint.axis.spring_stiffness == 0
+    }
+    found = {
+        name: way
+        for name, way in found.items()
+        if way > (_SLID if robot.joints[name].type == "prismatic" else _TURNED)
+    }
+    if found:
+        most = max(found, key=lambda name: found[name])
+        names = ", ".join(f'"{name}"' for name in list(found)[:4])
+        more = f" and {len(found) - 4} more" if len(found) > 4 else ""
+        yield robot_codes.JOINTS_UNDRIVEN.diagnostic(
+            f"no controller or plugin drives the joints {names}{more}, so they give way: "
+            f'"{most}" moved by {found[most]:.2g}',
+            values={"joints": tuple(found)},
+            origin=robot.joints[most].origin,
+        )
+
+
+def _within(joint: Joint, position: float) -> float:
+    """The nearest position within the joint's limits, to which it is moved at first."""
+    lower, upper = joint.axis.lower, joint.axis.upper
+    position = position if lower is None else max(position, lower)
+    return position if upper is None else min(position, upper)
+
+
+def _driven(world: World, model: Model) -> set[str]:
+    """The joints that plugins drive."""
+    return {
+        name
+        for entry in world.session.simulation.engine.entries
+        if entry.name == model.name
+        for name in (*entry.motors, *entry.mimics)
+    }
+
+
+def _holder(robot: Robot, link: str) -> Joint | None:
+    """The joint without a spring that lifts a link; None if it is fixed to the body."""
+    joint = robot.inbound.get(robot.rigid_root(link))
+    while joint is not None and joint.type == "continuous":
+        joint = robot.inbound.get(robot.rigid_root(joint.parent))
+    if joint is None or joint.axis.spring_stiffness or joint.child not in robot.placed:
+        return None
+    level = joint.type == "revolute" and abs(wheel_axis(robot, joint)[2]) < _LEVEL
+    return joint if level or joint.type == "prismatic" else None
+
+
+def _rolls(world: World, robot: Robot, link: str) -> bool:
+    """Whether a link is a round wheel that nothing drives."""
+    joint = robot.inbound.get(robot.rigid_root(link))
+    motors = {name for entry in world.session.simulation.engine.entries for name in entry.motors}
+    if joint is None or joint.type != "continuous" or joint.name in motors:
+        return False
+    widths = wheel_widths(robot, joint, robot.collisions)
+    return widths is None or bool(widths.min() >= ROUND * widths.max())
