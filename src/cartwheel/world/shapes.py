@@ -92,8 +92,8 @@ class Assets:
                 size=[x, y, max(high - low, 1e-6), _BELOW],
                 userdata=heights[::-1].ravel().tolist(),
             )
-            # MuJoCo's own method finds contacts that push sideways where a box or a robot falls on a
-            # heightmap, and throws it away.
+            # MuJoCo's native method finds contacts that push sideways where a box or a robot falls
+            # on a heightmap, and throws it away.
             self._spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_NATIVECCD
             self._heightmaps[shape] = (name, low)
         return self._heightmaps[shape]

@@ -55,6 +55,46 @@ def test_models_that_only_touch_are_left_alone(world):
     assert not coded(world, world_codes.MODELS_OVERLAP)
 
 
+PERSON = """<sdf version="1.9"><model name="person"><static>true</static><link name="l">
+  <collision name="c"><geometry><box><size>0.3 0.3 1</size></box></geometry></collision>
+  </link></model></sdf>"""
+
+
+@pytest.mark.parametrize("rate", [200, 50])
+def test_what_an_obstacle_on_a_path_pushes_has_its_speed(world, rate):
+    pushed = world.spawn("box_medium.urdf", name="pushed")
+    person = world.spawn(PERSON, name="person", x=-1.0, z=0.5)
+    world.run(0.2)
+    begin = world.time
+
+    def walk() -> None:
+        person.pose = cw.Pose((-1.0 + 1.3 * (world.time - begin), 0.0, 0.5))
+
+    world.every(rate, walk)
+    world.run(1.5)
+    before = pushed.pose.x
+    speeds = []
+    for _ in range(100):
+        world.step()
+        speeds.append(pushed.velocity.linear[0])
+    assert (pushed.pose.x - before) / (100 * world.step_size) == pytest.approx(1.3, rel=0.1)
+    assert np.mean(speeds) == pytest.approx(1.3, rel=0.1)
+    assert world.clearance(pushed, person).distance > -0.06
+    assert not coded(world, world_codes.MODELS_OVERLAP)
+
+
+def test_an_obstacle_that_jumps_onto_a_model_separates_gently_and_says_so(world):
+    pushed = world.spawn("box_medium.urdf", name="pushed")
+    person = world.spawn(PERSON, name="person", x=-3.0, z=0.5)
+    world.run(1.0)
+    for x in (-2.99, -2.98, -0.1):
+        person.pose = cw.Pose((x, 0.0, 0.5))
+        world.run(0.05)
+    assert fastest(world) <= 2.0
+    assert coded(world, world_codes.MODELS_OVERLAP, model="person")
+    assert abs(pushed.pose.x) < 0.5
+
+
 WALKER = """<robot name="walker"><link name="pelvis"><inertial><mass value="10"/>
   <inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>{}</robot>"""
 LEG = """<link name="{name}"><inertial><origin xyz="0 0 -0.2"/><mass value="2"/>

@@ -11,6 +11,7 @@ import numpy as np
 
 from cartwheel.codes import world as world_codes
 from cartwheel.errors import Diagnostic, Origin
+from cartwheel.geometry import Pose
 
 DEEP = 0.005
 """m; contacts between models that collide in motion are never this deep."""
@@ -18,6 +19,13 @@ _SPEED = 0.5
 """m/s; maximum speed of a model's root and prismatic joints while it overlaps another model."""
 _TURN = 2.0
 """rad/s; maximum for its root and revolute joints."""
+_PATH_NS = 250_000_000
+"""ns; a model that is placed again within this time moves along a path."""
+_FASTEST = 10.0
+"""m/s; a model that would be faster on its path jumps."""
+Speeds = tuple[float, float]
+"""m/s and rad/s."""
+STILL: Speeds = (0.0, 0.0)
 
 
 class Separation:
@@ -34,34 +42,67 @@ class Separation:
         self._slow = slow
         self.roots: set[int] = set()
         """Root bodies of the models that are being separated."""
+        self._most: Speeds = (_SPEED, _TURN)
+        """Their maximum speeds, which are higher if an obstacle pushes them along its path."""
+        self._placed_ns: dict[str, int] = {}
+        """When models that are fixed to the world were last placed."""
 
     def forget(self) -> None:
         """Stops all separations, after a time reset."""
         self.roots.clear()
+        self._placed_ns.clear()
+
+    def along_path(self, name: str, time_ns: int, before: Pose, after: Pose) -> Speeds:
+        """Speeds of a model that a program places again and again; zero at its first place.
+
+        Args:
+            name: A model that is fixed to the world.
+            time_ns: Current time.
+            before: Its last pose.
+            after: Its new pose.
+        """
+        elapsed_ns = time_ns - self._placed_ns.get(name, time_ns)
+        self._placed_ns[name] = time_ns
+        if not 0 < elapsed_ns <= _PATH_NS:
+            return STILL
+        way = before.inverse() @ after
+        angle = 2 * math.atan2(math.hypot(*way.orientation[:3]), abs(way.orientation[3]))
+        speed, turn = math.hypot(*way.position) / elapsed_ns * 1e9, angle / elapsed_ns * 1e9
+        return (speed, turn) if speed <= _FASTEST else STILL
 
     def resume(self, model: Any, data: Any) -> None:
         """Continues after the model was recompiled, with any remaining overlaps."""
         if self.roots:
             self.roots = {root for one, two, _ in _deep(model, data) for root in (one, two)}
 
-    def begin(self, model: Any, data: Any, placed: set[int]) -> list[tuple[str, float]]:
+    def begin(
+        self, model: Any, data: Any, placed: set[int], speeds: Speeds = STILL
+    ) -> list[tuple[str, float]]:
         """Finds overlaps of a model that was just placed.
 
         Args:
             model: The compiled model.
             data: Data after a forward pass.
             placed: Ids of the placed model's root bodies.
+            speeds: Those at which it moves along a path, where it pushes what it meets.
 
         Returns:
-            The bodies that it overlaps, each once, with the depth in m.
+            The bodies that it overlaps, each once, with the depth in m. What is pushed is left out.
         """
         found: dict[str, float] = {}
+        if not self.roots:
+            self._most = (_SPEED, _TURN)
+        if speeds != STILL:
+            # What is pushed must become faster than the obstacle to leave it.
+            speed = speeds[0] + speeds[1] * _reach(model, data, placed)
+            self._most = max(self._most[0], _SPEED + speed), max(self._most[1], _TURN + speeds[1])
         for one, two, depth in _deep(model, data):
             if (one in placed) == (two in placed):
                 continue
             other = two if one in placed else one
             name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, other) or "world"
-            found[name] = max(found.get(name, 0.0), depth)
+            if speeds == STILL:
+                found[name] = max(found.get(name, 0.0), depth)
             if self._slow:
                 self.roots |= {one, two}
         return sorted(found.items())
@@ -76,15 +117,15 @@ class Separation:
                 continue
             start = int(model.jnt_dofadr[joint])
             for part, most in (
-                (slice(start, start + 3), _SPEED),
-                (slice(start + 3, start + 6), _TURN),
+                (slice(start, start + 3), self._most[0]),
+                (slice(start + 3, start + 6), self._most[1]),
             ):
                 speed = float(np.linalg.norm(data.qvel[part]))
                 if speed > most:
                     data.qvel[part] *= most / speed
             # Limbs that are pushed out pull the rest along.
             limbs = slice(start + 6, start + int(model.tree_dofnum[model.body_treeid[root]]))
-            most_of_each = np.where(_turns(model, limbs), _TURN, _SPEED)
+            most_of_each = np.where(_turns(model, limbs), self._most[1], self._most[0])
             data.qvel[limbs] = np.clip(data.qvel[limbs], -most_of_each, most_of_each)
 
 
@@ -112,6 +153,14 @@ def overlap(
             "z": height if floor else None,
         },
     )
+
+
+def _reach(model: Any, data: Any, roots: set[int]) -> float:
+    """How far shapes are from the frames of their root bodies, m."""
+    geoms = np.flatnonzero(np.isin(model.body_rootid[model.geom_bodyid], list(roots)))
+    frames = data.xpos[model.body_rootid[model.geom_bodyid[geoms]]]
+    reach = np.linalg.norm(data.geom_xpos[geoms] - frames, axis=1) + model.geom_rbound[geoms]
+    return float(reach.max(initial=0.0))
 
 
 def _turns(model: Any, dofs: slice) -> Any:

@@ -9,6 +9,7 @@ from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import UnknownNameError
 from cartwheel.geometry import Pose, Vec3
+from cartwheel.simulation.dynamics.separation import STILL, Speeds
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.limits import STRONGEST, check_pose, number, numbers
 from cartwheel.simulation.models.attachments import Attachments
@@ -215,11 +216,19 @@ class Models(Run):
         check_pose(pose, f'model "{name}"')
         self.engine.commanded += 1
         joint = self.engine.joint_id(name, entry.description.canonical_link)
+        speeds = STILL
         if joint < 0:
-            self._population.place(name, pose)
+            speeds = self._place_fixed(name, pose)
         else:
             self.engine.place(joint, pose @ entry.description.canonical_pose)
-        self._population.separate(name)
+        self._population.separate(name, speeds)
+
+    def _place_fixed(self, name: str, pose: Pose) -> Speeds:
+        """Moves a model that is fixed to the world. Returns its speeds if it follows a path."""
+        before = self._population.resident(name).entry.pose
+        self._population.place(name, pose)
+        separation = self._population.separation
+        return separation.along_path(name, self.engine.time_ns, before, pose)
 
     def set_state(
         self, name: str, pose: Pose, *, linear: Vec3 = _STILL, angular: Vec3 = _STILL
@@ -243,11 +252,12 @@ class Models(Run):
         check_pose(pose, f'model "{name}"')
         numbers((*linear, *angular), f'the velocity of model "{name}"')
         self.engine.commanded += 1
+        speeds = STILL
         if self.moves(name):
             place_model(self.engine, entry, pose, linear, angular)
         elif entry.pose != pose:
-            self._population.place(name, pose)
-        self._population.separate(name)
+            speeds = self._place_fixed(name, pose)
+        self._population.separate(name, speeds)
 
     def set_joint_positions(self, name: str, positions: Mapping[str, float]) -> None:
         """Sets the positions of joints with one degree of freedom, rad or m, and stops them.

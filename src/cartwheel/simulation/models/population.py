@@ -13,7 +13,7 @@ from cartwheel.options import NAME
 from cartwheel.simulation.clock import Schedule, Task, to_ns
 from cartwheel.simulation.divergence_watch import Watch
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
-from cartwheel.simulation.dynamics.separation import Separation, overlap
+from cartwheel.simulation.dynamics.separation import STILL, Separation, Speeds, overlap
 from cartwheel.simulation.dynamics.velocity_motor import JointStop, MotorHandle
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle
@@ -355,11 +355,12 @@ class Population:
             *notes.unreadable,
         )
 
-    def separate(self, name: str, *, before: Collection[str] = ()) -> None:
+    def separate(self, name: str, speeds: Speeds = STILL, *, before: Collection[str] = ()) -> None:
         """Starts to separate a model from the models that it overlaps, and reports the overlaps.
 
         Args:
             name: Model name.
+            speeds: Those at which it moves along a path; see `Separation.begin`.
             before: Names of models spawned later, which report their overlaps with this model.
 
         Raises:
@@ -372,9 +373,8 @@ class Population:
             int(engine.model.body_rootid[engine.body_id(name, link.name)])
             for link in description.links
         }
-        overlaps = list(self.separation.begin(engine.model, engine.data, roots))
-        if overlaps:
-            overlaps = [each for each in overlaps if each[0].partition("::")[0] not in before]
+        overlaps = list(self.separation.begin(engine.model, engine.data, roots, speeds))
+        overlaps = [each for each in overlaps if each[0].partition("::")[0] not in before]
         if overlaps:
             height = engine.model_pose(entry).z
             engine.report(overlap(name, height, overlaps, origin=description.origin))

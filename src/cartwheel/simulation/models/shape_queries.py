@@ -116,7 +116,6 @@ class ShapeQueries:
             second: Selects those of the other one, without those of the first.
         """
         self._bind()
-        model, data = self._engine.model, self._engine.data
         ones = [shape for shape in self._shapes if first(self._places[shape])]
         taken = set(ones)
         others = [
@@ -144,9 +143,9 @@ class ShapeQueries:
         """Distance between two geoms, m, at most `most`; `ends` receives the nearest points."""
         model, data = self._engine.model, self._engine.data
         if model.geom_type[one] == _HEIGHTMAP:
-            return distance_to_heightmap(model, data, one, other, most, ends)
+            return distance_to_heightmap(model, data, one, other, most=most, ends=ends)
         if model.geom_type[other] == _HEIGHTMAP:
-            distance = distance_to_heightmap(model, data, other, one, most, ends)
+            distance = distance_to_heightmap(model, data, other, one, most=most, ends=ends)
             ends[:3], ends[3:] = ends[3:].copy(), ends[:3].copy()
             return distance
         return float(mujoco.mj_geomDistance(model, data, one, other, most, ends))

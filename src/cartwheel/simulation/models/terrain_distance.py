@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.geometry import Array
 
 _CELLS = 5
-"""Cells along each side of a tile. MuJoCo compares a shape with at most 50 prisms, two of a cell."""
+"""Cells along each side of a tile. MuJoCo compares a shape with at most 50 prisms: two per cell."""
 _NEAR = 0.1
 """First limit of the distance, as a part of the shape's size. With a limit that is much larger than
 the shape, MuJoCo finds no distance to the prisms that touch it."""
@@ -20,7 +20,7 @@ _NATIVE = int(mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
 
 
 def distance_to_heightmap(
-    model: Any, data: Any, terrain: int, other: int, most: float, ends: Array
+    model: Any, data: Any, terrain: int, other: int, *, most: float, ends: Array
 ) -> float:
     """Distance between a heightmap and another geom, m; `most` if it is larger.
 
