@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import cartwheel.messages
+from cartwheel.messages.convert import TIMES
 from cartwheel.messages.field import Field
 from cartwheel.messages.fields import fields
 from cartwheel.messages.store import store
@@ -47,7 +48,7 @@ def _stub(package: str, names: Iterable[str]) -> str:
     )
     imports = ["from dataclasses import dataclass", "from typing import ClassVar"]
     if "NDArray" in text:
-        imports += ["", "import numpy as np", "from numpy.typing import NDArray"]
+        imports += ["", "import numpy as np", "from numpy.typing import ArrayLike, NDArray"]
     if others:
         imports += ["", *_import(others)]
     return STUB.format(package=package) + "\n".join(imports) + "\n\n" + text + "\n"
@@ -62,27 +63,50 @@ def _import(packages: list[str]) -> list[str]:
 
 def _class(package: str, name: str) -> Iterator[str]:
     """The stub of a class. All fields have default values, which stubs write as an ellipsis."""
-    yield "@dataclass"
+    known = [(field.name, _type(package, field), _given(package, field)) for field in fields(name)]
+    converts = any(kind != given for _, kind, given in known)
+    yield "@dataclass(init=False)" if converts else "@dataclass"
     yield f"class {name.split('/')[2]}:"
     yield "    __msgtype__: ClassVar[str]"
     for constant, _, value in store().fielddefs[name][0]:
         yield f"    {constant}: ClassVar[{type(value).__name__}]"
-    for field in fields(name):
-        yield f"    {field.name}: {_type(package, field)} = ..."
+    for field, kind, _ in known:
+        yield f"    {field}: {kind} = ..."
+    if converts:
+        yield "    def __init__("
+        yield "        self,"
+        for field, _, given in known:
+            line = f"        {field}: {given} = ...,"
+            yield line if len(line) <= 100 else line.replace(" | ", "\n        | ")
+        yield "    ) -> None: ..."
 
 
 def _type(package: str, field: Field) -> str:
-    if field.kind == "message":
-        other, _, rest = field.type.partition("/")
-        one = rest.partition("/")[2]
-        one = one if other == package else f"{other}.{one}"
-    else:
-        one = SCALARS[field.kind]
+    """The type of a field."""
+    one = _one(package, field)
     if not field.array:
         return one
     if field.kind in ("message", "string"):
         return f"list[{one}]"
     return f"NDArray[np.{'bool_' if field.kind == 'bool' else field.type}]"
+
+
+def _given(package: str, field: Field) -> str:
+    """The type of what is accepted for a field when a message is made; see `checked`."""
+    one = _one(package, field)
+    if not field.array:
+        return f"{one} | float" if field.type in TIMES else one
+    if field.kind in ("message", "string"):
+        return f"list[{one}] | tuple[{one}, ...]"
+    return "ArrayLike"
+
+
+def _one(package: str, field: Field) -> str:
+    if field.kind != "message":
+        return SCALARS[field.kind]
+    other, _, rest = field.type.partition("/")
+    name = rest.partition("/")[2]
+    return name if other == package else f"{other}.{name}"
 
 
 def _differences(made: dict[str, Any]) -> list[str]:

@@ -1,5 +1,6 @@
 """Faults of sensors and of communication, at run time."""
 
+import dataclasses
 import pickle
 
 import numpy as np
@@ -9,9 +10,10 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.codes.command import OPTION_INVALID
-from cartwheel.codes.graph import FIELD_UNKNOWN, TOPIC_UNKNOWN
+from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID, TOPIC_UNKNOWN
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, SIMULATION_CLOSED, VALUE_INVALID
 from cartwheel.errors import CartwheelError, GraphError, SimulationError, UnknownNameError
+from cartwheel.msgs.geometry_msgs import Twist
 
 
 @pytest.fixture
@@ -145,6 +147,32 @@ def test_a_function_changes_messages(world, cart):
     with world.fault("/odom", change=every_second):
         world.run(1.0)
     assert odometry.count == pytest.approx(50, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [(lambda m: 5, "int"), (lambda m: Twist(), "Twist"),
+     (lambda m: dataclasses.replace(m, child_frame_id=3), "child_frame_id")],
+)  # fmt: skip
+def test_the_function_returns_messages_of_the_topic(world, cart, wrong, told):
+    odometry = cart.topic("/odom")
+    with world.fault("/odom", change=wrong), raises(FIELD_VALUE_INVALID) as caught:
+        world.run(0.1)
+    assert "/odom" in str(caught.value) and told in str(caught.value)
+    assert odometry.count == 0
+
+
+def test_the_function_may_change_its_argument_and_values_are_converted(world, cart):
+    def change(message):
+        message.child_frame_id = "changed"
+        message.pose.covariance = [1.0] * 36
+        return message
+
+    odometry = cart.topic("/odom")
+    with world.fault("/odom", change=change):
+        world.run(0.1)
+    assert odometry.latest.child_frame_id == "changed"
+    assert odometry.latest.pose.covariance.tolist() == [1.0] * 36
 
 
 def test_an_error_of_the_function_stops_the_run(world, cart):

@@ -20,8 +20,15 @@ from cartwheel.errors import GraphError, RecordingError, UnknownNameError
 from cartwheel.gazebo.robot_states import hold_states
 from cartwheel.messages import encode_cdr
 from cartwheel.msgs.nav_msgs import Odometry
+from cartwheel.msgs.sensor_msgs import BatteryState
 
-TOPICS = ["/odom", "/imu/data", "/scan", "/clock"]
+TOPICS = ["/odom", "/imu/data", "/scan", "/state", "/clock"]
+LASER = """<sdf version="1.9"><model name="laser"><static>true</static><pose>0 0 1 0 0 0</pose>
+<link name="link"><sensor name="scan" type="ray"><update_rate>10</update_rate><ray><scan>
+<horizontal><samples>20</samples><min_angle>-1.1</min_angle><max_angle>1.3</max_angle></horizontal></scan><range>
+<min>0.12</min><max>3.3</max></range></ray><plugin name="p" filename="libgazebo_ros_laser.so">
+<topicName>/scan</topicName></plugin></sensor></link></model></sdf>"""
+"""Its messages have single numbers of 32 bits, unlike those of the cart."""
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +38,10 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[cw.Re
     received: list[cw.RecordedMessage] = []
     with cw.World("walls", seed=3) as world:
         world.spawn("rosbots.xacro", z=0.05)
-        for topic in ("/odom", "/imu/data"):
+        world.spawn(LASER)
+        battery = world.advertise("/state", BatteryState)
+        world.every(10.0, lambda: battery.publish(voltage=12.1 + world.time, charge=math.nan))
+        for topic in ("/odom", "/imu/data", "/scan", "/state"):
             world.subscribe(
                 topic,
                 lambda m, t=topic: received.append(cw.RecordedMessage(world.time, t, m)),
@@ -54,14 +64,15 @@ def test_messages_are_those_that_were_published(
     folder, received = recorded
     with cw.Recording(folder / name) as recording:
         assert recording.complete
-        assert {"/odom", "/imu/data", "/clock"} == set(recording.topics)
+        assert set(TOPICS) == set(recording.topics)
         assert recording.type("/odom") == "nav_msgs/msg/Odometry"
         assert recording.count("/odom") == sum(each.topic == "/odom" for each in received)
         assert (recording.start, recording.end) == pytest.approx((0.0, 1.0), abs=1e-8)
-        read = list(recording.messages("/odom", "/imu/data"))
+        read = list(recording.messages("/odom", "/imu/data", "/scan", "/state"))
         assert [each.topic for each in read] == [each.topic for each in received]
         for one, other in zip(read, received, strict=True):
             assert one.time == pytest.approx(other.time, abs=1e-8)
+            assert one.message == other.message
             if name != "drive.bag":  # a bag has sequence numbers, and no time 0
                 assert encode_cdr(one.message) == encode_cdr(other.message)
         part = list(recording.messages("/odom", start=0.3, end=0.5))

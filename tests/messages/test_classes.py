@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+import math
 import pickle
 import random
 import threading
@@ -11,12 +12,16 @@ import numpy as np
 import pytest
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
+from tests.coded import raises
 from tests.messages.cdr.test_cdr import bundled_types, grown
 
+from cartwheel.codes.graph import FIELD_VALUE_INVALID
 from cartwheel.errors import Origin
 from cartwheel.messages import decode_cdr, encode_cdr, from_dict, message_class, zero
 from cartwheel.messages.classes import Classes
+from cartwheel.messages.convert import checked
 from cartwheel.messages.defaults import STATED
+from cartwheel.messages.fitting import fits
 from cartwheel.messages.library.parsing import parse_definition
 from cartwheel.messages.ros1 import decode_ros1, encode_ros1
 from cartwheel.messages.store import ROS2_DEFINITIONS, definitions
@@ -60,6 +65,37 @@ def test_messages_are_equal_if_their_fields_are() -> None:
     assert with_lists != changed and changed in [with_lists, copy.deepcopy(changed)]
     with pytest.raises(TypeError):
         hash(one)
+
+
+def test_numbers_of_float32_are_those_that_are_sent() -> None:
+    make = message_class("sensor_msgs/msg/Range")
+    made = make(range=0.1, max_range=np.float64(1 / 3), variance=math.nan)
+    assert (made.range, made.max_range) == (float(np.float32(0.1)), float(np.float32(1 / 3)))
+    assert type(made.max_range) is float
+    for again in (
+        decode_cdr(encode_cdr(made), made.__msgtype__),
+        copy.copy(made),
+    ):
+        assert again == made
+    assert decode_ros1(encode_ros1(made), made.__msgtype__).range == made.range
+    made.min_range = 0.3
+    assert not fits(made)
+    assert checked(made).min_range == float(np.float32(0.3)) and fits(checked(made))
+    assert from_dict("std_msgs/msg/Float32", {"data": "1e-3"}).data == float(np.float32(1e-3))
+    # What is not a number is refused when it is published.
+    assert make(range="a", min_range=0.1).min_range == 0.1
+    for wrong in (1e39, -1e39, "a", True):
+        with raises(FIELD_VALUE_INVALID):
+            checked(make(range=wrong))
+    assert checked(make(range=math.inf, variance=2)).range == math.inf
+
+
+def test_nan_equals_nan() -> None:
+    make = message_class("std_msgs/msg/Float64MultiArray")
+    one, other, number = (make(data=np.array([value, 1.0])) for value in (math.nan, math.nan, 0.0))
+    assert one == other != number != one
+    scalar = message_class("std_msgs/msg/Float64")
+    assert scalar(math.nan) == scalar(float("nan")) != scalar(0.0)
 
 
 def test_a_message_of_each_type_equals_its_copy() -> None:

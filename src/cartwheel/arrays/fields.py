@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import re
 from collections.abc import Callable, Iterable
 from operator import attrgetter
@@ -97,11 +98,12 @@ def _rebuilt(
     value: Any, steps: list[str | int], change: Callable[[Array], Array], field: str
 ) -> Any:
     if steps:
-        copied, step = copy.copy(value), steps[0]
+        step = steps[0]
         if isinstance(step, str):
             made = _rebuilt(getattr(value, step), steps[1:], change, field)
-            setattr(copied, step, made)
-        elif step < len(value):
+            return dataclasses.replace(value, **{step: made})
+        copied = copy.copy(value)
+        if step < len(value):
             copied[step] = _rebuilt(value[step], steps[1:], change, field)
         return copied
     if hasattr(value, "nanosec"):

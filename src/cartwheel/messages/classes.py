@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import keyword
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -17,6 +18,7 @@ import numpy as np
 
 from cartwheel.messages.defaults import STATED
 from cartwheel.messages.field import Field, empty, field_of
+from cartwheel.messages.singles import rounding
 
 FILLER = "structure_needs_at_least_one_member"
 """Byte that ROS 2 adds to a message without fields. Its value has no meaning."""
@@ -97,6 +99,7 @@ def _convert(
         for name, value in vars(given).items()
         if name not in _OWN and name not in fields and not callable(value)
     }
+    singles = [field.name for field in described if field.type == "float32" and not field.array]
     values = (0,) if FILLER in fields else (_default(field, make) for field in described)
     return msgspec.defstruct(
         given.__name__,
@@ -108,6 +111,7 @@ def _convert(
             "__eq__": _equal,
             "__ne__": _different,
             "__repr__": _shown,
+            **({"__post_init__": rounding(singles)} if singles else {}),
         },
         module=module,
         eq=False,
@@ -116,7 +120,10 @@ def _convert(
 
 
 def _equal(self: Any, other: Any) -> Any:
-    """Whether two messages have equal fields. Arrays are equal if their shapes and values are."""
+    """Whether two messages have equal fields. Arrays are equal if their shapes and values are.
+
+    Values that are not a number (NaN) are equal.
+    """
     if type(self) is not type(other):
         return NotImplemented
     names = self.__dataclass_fields__
@@ -138,12 +145,22 @@ def _different(self: Any, other: Any) -> Any:
 
 
 def _alike(one: Any, other: Any) -> bool:
-    # As in Python's lists, a value equals itself, even if it is not a number.
     if one is other:
         return True
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return bool(np.array_equal(one, other))
-    return bool(one == other)
+        return np.array_equal(one, other) or (
+            _has_nan(one) and _has_nan(other) and np.array_equal(one, other, equal_nan=True)
+        )
+    return bool(one == other) or (_is_nan(one) and _is_nan(other))
+
+
+def _has_nan(value: Any) -> bool:
+    array = np.asarray(value)
+    return array.dtype.kind == "f" and bool(np.isnan(array).any())
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)
 
 
 def _default(field: Field, make: Callable[[str], Any]) -> Any:

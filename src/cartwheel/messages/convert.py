@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -14,6 +15,7 @@ from cartwheel.messages.classes import FILLER
 from cartwheel.messages.field import Field, empty
 from cartwheel.messages.fields import fields
 from cartwheel.messages.fitting import fits
+from cartwheel.messages.singles import single
 from cartwheel.messages.store import message_class
 from cartwheel.similar_names import meant, suggestion
 
@@ -24,7 +26,7 @@ _ROS1_NAMES: dict[str, dict[str, str | None]] = {
     "sensor_msgs/msg/CameraInfo": {"D": "d", "K": "k", "R": "r", "P": "p"},
 }
 """ROS 1 names of fields, for values pasted from ROS 1. None means that the field is ignored."""
-_TIMES = frozenset({"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"})
+TIMES = frozenset({"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"})
 """Types for which a number of seconds can be given."""
 
 
@@ -201,7 +203,7 @@ def _message(cls: Any, given: Any, path: str, strict: bool) -> Any:
 def _by_name(type_name: str, given: Any, path: str, strict: bool) -> dict[str, Any]:
     """The given values, by the field names of the message classes."""
     names = [field.name for field in fields(type_name)]
-    if type_name in _TIMES and isinstance(given, int | float) and not isinstance(given, bool):
+    if type_name in TIMES and isinstance(given, int | float) and not isinstance(given, bool):
         return _parts(float(given))
     if isinstance(given, Mapping):
         aliases = _ROS1_NAMES.get(type_name, {})
@@ -333,26 +335,26 @@ def _one(field: Field, value: Any, path: str, strict: bool) -> Any:
             values={"field": path.rstrip("."), "value": _shown(value)},
         )
     if field.kind == "float":
-        return _float(value, path, strict)
+        return _float(field, value, path, strict)
     return _int(field, value, path)
 
 
-def _float(value: Any, path: str, strict: bool) -> float:
+def _float(field: Field, value: Any, path: str, strict: bool) -> float:
+    convert = single if field.type == "float32" else float
     if isinstance(value, int | float) and not isinstance(value, bool):
         try:
-            return float(value)
+            return convert(value)
         except OverflowError:
             raise GraphError(
-                f"{path}: {_shown(value)} is too large",
+                f"{path}: {_shown(value)} is too large for {field.type}",
                 code=FIELD_VALUE_INVALID,
                 values={"field": path.rstrip("."), "value": _shown(value)},
             ) from None
     if isinstance(value, str) and not strict:
         # YAML 1.1 reads 1e-3 and nan as strings.
-        try:
-            return float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
-        except ValueError:
-            pass
+        with contextlib.suppress(ValueError):
+            number = float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
+            return _float(field, number, path, strict)
     raise GraphError(
         f"{path}: expected a number, got {_shown(value)}",
         code=FIELD_VALUE_INVALID,

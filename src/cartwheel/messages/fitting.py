@@ -12,6 +12,7 @@ import numpy as np
 
 from cartwheel.messages.field import Field
 from cartwheel.messages.fields import fields
+from cartwheel.messages.singles import is_single
 from cartwheel.messages.store import message_class
 
 Test = Callable[[Any], bool]
@@ -57,11 +58,11 @@ def _condition(field: Field, index: int, names: dict[str, Any]) -> str:
         cls = message_class(field.type)
         names[f"class{index}"], names[f"test{index}"] = cls, _test(cls)
     if not field.array:
-        return _single(field, index, value)
+        return _single(field, index, value, names)
     held = f"v{index}"
     if field.kind in ("message", "string"):
         parts = [f"type({held} := {value}) is list"]
-        parts.append(f"all([{_single(field, index, 'each')} for each in {held}])")
+        parts.append(f"all([{_single(field, index, 'each', names)} for each in {held}])")
     else:
         names[f"dtype{index}"] = np.dtype(field.type)
         parts = [f"type({held} := {value}) is array", f"{held}.dtype == dtype{index}"]
@@ -73,10 +74,14 @@ def _condition(field: Field, index: int, names: dict[str, Any]) -> str:
     return " and ".join(parts)
 
 
-def _single(field: Field, index: int, value: str) -> str:
+def _single(field: Field, index: int, value: str, names: dict[str, Any]) -> str:
     if field.kind == "message":
         held = f"w{index}"
         return f"type({held} := {value}) is class{index} and test{index}({held})"
+    if field.type == "float32":
+        held = f"w{index}"
+        names["is_single"] = is_single
+        return f"type({held} := {value}) in FLOATS and is_single({held})"
     if field.kind == "float":
         return f"type({value}) in FLOATS"
     if field.kind == "int":

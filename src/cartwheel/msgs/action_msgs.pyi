@@ -5,11 +5,16 @@ from typing import ClassVar
 
 from cartwheel.msgs import builtin_interfaces, unique_identifier_msgs
 
-@dataclass
+@dataclass(init=False)
 class GoalInfo:
     __msgtype__: ClassVar[str]
     goal_id: unique_identifier_msgs.UUID = ...
     stamp: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        goal_id: unique_identifier_msgs.UUID = ...,
+        stamp: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
 @dataclass
 class GoalStatus:
@@ -24,17 +29,21 @@ class GoalStatus:
     goal_info: GoalInfo = ...
     status: int = ...
 
-@dataclass
+@dataclass(init=False)
 class GoalStatusArray:
     __msgtype__: ClassVar[str]
     status_list: list[GoalStatus] = ...
+    def __init__(
+        self,
+        status_list: list[GoalStatus] | tuple[GoalStatus, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class CancelGoal_Request:
     __msgtype__: ClassVar[str]
     goal_info: GoalInfo = ...
 
-@dataclass
+@dataclass(init=False)
 class CancelGoal_Response:
     __msgtype__: ClassVar[str]
     ERROR_NONE: ClassVar[int]
@@ -43,3 +52,8 @@ class CancelGoal_Response:
     ERROR_GOAL_TERMINATED: ClassVar[int]
     return_code: int = ...
     goals_canceling: list[GoalInfo] = ...
+    def __init__(
+        self,
+        return_code: int = ...,
+        goals_canceling: list[GoalInfo] | tuple[GoalInfo, ...] = ...,
+    ) -> None: ...

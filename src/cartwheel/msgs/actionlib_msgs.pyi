@@ -5,11 +5,16 @@ from typing import ClassVar
 
 from cartwheel.msgs import builtin_interfaces, std_msgs
 
-@dataclass
+@dataclass(init=False)
 class GoalID:
     __msgtype__: ClassVar[str]
     stamp: builtin_interfaces.Time = ...
     id: str = ...
+    def __init__(
+        self,
+        stamp: builtin_interfaces.Time | float = ...,
+        id: str = ...,
+    ) -> None: ...
 
 @dataclass
 class GoalStatus:
@@ -28,8 +33,13 @@ class GoalStatus:
     status: int = ...
     text: str = ...
 
-@dataclass
+@dataclass(init=False)
 class GoalStatusArray:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     status_list: list[GoalStatus] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        status_list: list[GoalStatus] | tuple[GoalStatus, ...] = ...,
+    ) -> None: ...

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import (
     actionlib_msgs,
@@ -42,7 +42,7 @@ class FollowJointTrajectoryActionResult:
     status: actionlib_msgs.GoalStatus = ...
     result: FollowJointTrajectoryResult = ...
 
-@dataclass
+@dataclass(init=False)
 class FollowJointTrajectoryFeedback:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -50,14 +50,29 @@ class FollowJointTrajectoryFeedback:
     desired: trajectory_msgs.JointTrajectoryPoint = ...
     actual: trajectory_msgs.JointTrajectoryPoint = ...
     error: trajectory_msgs.JointTrajectoryPoint = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        desired: trajectory_msgs.JointTrajectoryPoint = ...,
+        actual: trajectory_msgs.JointTrajectoryPoint = ...,
+        error: trajectory_msgs.JointTrajectoryPoint = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class FollowJointTrajectoryGoal:
     __msgtype__: ClassVar[str]
     trajectory: trajectory_msgs.JointTrajectory = ...
     path_tolerance: list[JointTolerance] = ...
     goal_tolerance: list[JointTolerance] = ...
     goal_time_tolerance: builtin_interfaces.Duration = ...
+    def __init__(
+        self,
+        trajectory: trajectory_msgs.JointTrajectory = ...,
+        path_tolerance: list[JointTolerance] | tuple[JointTolerance, ...] = ...,
+        goal_tolerance: list[JointTolerance] | tuple[JointTolerance, ...] = ...,
+        goal_time_tolerance: builtin_interfaces.Duration | float = ...,
+    ) -> None: ...
 
 @dataclass
 class FollowJointTrajectoryResult:
@@ -142,7 +157,7 @@ class JointControllerState:
     i_clamp: float = ...
     antiwindup: bool = ...
 
-@dataclass
+@dataclass(init=False)
 class JointJog:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -150,6 +165,14 @@ class JointJog:
     displacements: NDArray[np.float64] = ...
     velocities: NDArray[np.float64] = ...
     duration: float = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        displacements: ArrayLike = ...,
+        velocities: ArrayLike = ...,
+        duration: float = ...,
+    ) -> None: ...
 
 @dataclass
 class JointTolerance:
@@ -187,7 +210,7 @@ class JointTrajectoryActionResult:
     status: actionlib_msgs.GoalStatus = ...
     result: JointTrajectoryResult = ...
 
-@dataclass
+@dataclass(init=False)
 class JointTrajectoryControllerState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -195,6 +218,14 @@ class JointTrajectoryControllerState:
     desired: trajectory_msgs.JointTrajectoryPoint = ...
     actual: trajectory_msgs.JointTrajectoryPoint = ...
     error: trajectory_msgs.JointTrajectoryPoint = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        desired: trajectory_msgs.JointTrajectoryPoint = ...,
+        actual: trajectory_msgs.JointTrajectoryPoint = ...,
+        error: trajectory_msgs.JointTrajectoryPoint = ...,
+    ) -> None: ...
 
 @dataclass
 class JointTrajectoryFeedback:
@@ -209,7 +240,7 @@ class JointTrajectoryGoal:
 class JointTrajectoryResult:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class PidState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -225,6 +256,22 @@ class PidState:
     i_max: float = ...
     i_min: float = ...
     output: float = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        timestep: builtin_interfaces.Duration | float = ...,
+        error: float = ...,
+        error_dot: float = ...,
+        p_error: float = ...,
+        i_error: float = ...,
+        d_error: float = ...,
+        p_term: float = ...,
+        i_term: float = ...,
+        d_term: float = ...,
+        i_max: float = ...,
+        i_min: float = ...,
+        output: float = ...,
+    ) -> None: ...
 
 @dataclass
 class PointHeadAction:
@@ -259,7 +306,7 @@ class PointHeadFeedback:
     __msgtype__: ClassVar[str]
     pointing_angle_error: float = ...
 
-@dataclass
+@dataclass(init=False)
 class PointHeadGoal:
     __msgtype__: ClassVar[str]
     target: geometry_msgs.PointStamped = ...
@@ -267,6 +314,14 @@ class PointHeadGoal:
     pointing_frame: str = ...
     min_duration: builtin_interfaces.Duration = ...
     max_velocity: float = ...
+    def __init__(
+        self,
+        target: geometry_msgs.PointStamped = ...,
+        pointing_axis: geometry_msgs.Vector3 = ...,
+        pointing_frame: str = ...,
+        min_duration: builtin_interfaces.Duration | float = ...,
+        max_velocity: float = ...,
+    ) -> None: ...
 
 @dataclass
 class PointHeadResult:
@@ -308,12 +363,18 @@ class SingleJointPositionFeedback:
     velocity: float = ...
     error: float = ...
 
-@dataclass
+@dataclass(init=False)
 class SingleJointPositionGoal:
     __msgtype__: ClassVar[str]
     position: float = ...
     min_duration: builtin_interfaces.Duration = ...
     max_velocity: float = ...
+    def __init__(
+        self,
+        position: float = ...,
+        min_duration: builtin_interfaces.Duration | float = ...,
+        max_velocity: float = ...,
+    ) -> None: ...
 
 @dataclass
 class SingleJointPositionResult:
@@ -328,15 +389,26 @@ class QueryCalibrationState_Response:
     __msgtype__: ClassVar[str]
     is_calibrated: bool = ...
 
-@dataclass
+@dataclass(init=False)
 class QueryTrajectoryState_Request:
     __msgtype__: ClassVar[str]
     time: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        time: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class QueryTrajectoryState_Response:
     __msgtype__: ClassVar[str]
     name: list[str] = ...
     position: NDArray[np.float64] = ...
     velocity: NDArray[np.float64] = ...
     acceleration: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        name: list[str] | tuple[str, ...] = ...,
+        position: ArrayLike = ...,
+        velocity: ArrayLike = ...,
+        acceleration: ArrayLike = ...,
+    ) -> None: ...

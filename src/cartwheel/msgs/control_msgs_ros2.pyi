@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import (
     builtin_interfaces,
@@ -15,7 +15,7 @@ from cartwheel.msgs import (
     unique_identifier_msgs,
 )
 
-@dataclass
+@dataclass(init=False)
 class FollowJointTrajectory_Feedback:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -27,6 +27,18 @@ class FollowJointTrajectory_Feedback:
     multi_dof_desired: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...
     multi_dof_actual: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...
     multi_dof_error: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        desired: trajectory_msgs.JointTrajectoryPoint = ...,
+        actual: trajectory_msgs.JointTrajectoryPoint = ...,
+        error: trajectory_msgs.JointTrajectoryPoint = ...,
+        multi_dof_joint_names: list[str] | tuple[str, ...] = ...,
+        multi_dof_desired: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+        multi_dof_actual: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+        multi_dof_error: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+    ) -> None: ...
 
 @dataclass
 class FollowJointTrajectory_FeedbackMessage:
@@ -45,7 +57,7 @@ class FollowJointTrajectory_GetResult_Response:
     status: int = ...
     result: FollowJointTrajectory_Result = ...
 
-@dataclass
+@dataclass(init=False)
 class FollowJointTrajectory_Goal:
     __msgtype__: ClassVar[str]
     trajectory: trajectory_msgs.JointTrajectory = ...
@@ -55,6 +67,18 @@ class FollowJointTrajectory_Goal:
     goal_tolerance: list[JointTolerance] = ...
     component_goal_tolerance: list[JointComponentTolerance] = ...
     goal_time_tolerance: builtin_interfaces.Duration = ...
+    def __init__(
+        self,
+        trajectory: trajectory_msgs.JointTrajectory = ...,
+        multi_dof_trajectory: trajectory_msgs.MultiDOFJointTrajectory = ...,
+        path_tolerance: list[JointTolerance] | tuple[JointTolerance, ...] = ...,
+        component_path_tolerance: list[JointComponentTolerance]
+        | tuple[JointComponentTolerance, ...] = ...,
+        goal_tolerance: list[JointTolerance] | tuple[JointTolerance, ...] = ...,
+        component_goal_tolerance: list[JointComponentTolerance]
+        | tuple[JointComponentTolerance, ...] = ...,
+        goal_time_tolerance: builtin_interfaces.Duration | float = ...,
+    ) -> None: ...
 
 @dataclass
 class FollowJointTrajectory_Result:
@@ -74,11 +98,16 @@ class FollowJointTrajectory_SendGoal_Request:
     goal_id: unique_identifier_msgs.UUID = ...
     goal: FollowJointTrajectory_Goal = ...
 
-@dataclass
+@dataclass(init=False)
 class FollowJointTrajectory_SendGoal_Response:
     __msgtype__: ClassVar[str]
     accepted: bool = ...
     stamp: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        accepted: bool = ...,
+        stamp: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
 @dataclass
 class GripperCommand_Feedback:
@@ -124,11 +153,16 @@ class GripperCommand_SendGoal_Request:
     goal_id: unique_identifier_msgs.UUID = ...
     goal: GripperCommand_Goal = ...
 
-@dataclass
+@dataclass(init=False)
 class GripperCommand_SendGoal_Response:
     __msgtype__: ClassVar[str]
     accepted: bool = ...
     stamp: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        accepted: bool = ...,
+        stamp: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
 @dataclass
 class ParallelGripperCommand_Feedback:
@@ -170,18 +204,29 @@ class ParallelGripperCommand_SendGoal_Request:
     goal_id: unique_identifier_msgs.UUID = ...
     goal: ParallelGripperCommand_Goal = ...
 
-@dataclass
+@dataclass(init=False)
 class ParallelGripperCommand_SendGoal_Response:
     __msgtype__: ClassVar[str]
     accepted: bool = ...
     stamp: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        accepted: bool = ...,
+        stamp: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class DynamicJointState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     joint_names: list[str] = ...
     interface_values: list[InterfaceValue] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        interface_values: list[InterfaceValue] | tuple[InterfaceValue, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class GripperCommand:
@@ -189,11 +234,16 @@ class GripperCommand:
     position: float = ...
     max_effort: float = ...
 
-@dataclass
+@dataclass(init=False)
 class InterfaceValue:
     __msgtype__: ClassVar[str]
     interface_names: list[str] = ...
     values: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        interface_names: list[str] | tuple[str, ...] = ...,
+        values: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class JointComponentTolerance:
@@ -217,7 +267,7 @@ class JointTolerance:
     velocity: float = ...
     acceleration: float = ...
 
-@dataclass
+@dataclass(init=False)
 class JointTrajectoryControllerState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -232,6 +282,21 @@ class JointTrajectoryControllerState:
     multi_dof_error: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...
     multi_dof_output: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...
     speed_scaling_factor: float = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        reference: trajectory_msgs.JointTrajectoryPoint = ...,
+        feedback: trajectory_msgs.JointTrajectoryPoint = ...,
+        error: trajectory_msgs.JointTrajectoryPoint = ...,
+        output: trajectory_msgs.JointTrajectoryPoint = ...,
+        multi_dof_joint_names: list[str] | tuple[str, ...] = ...,
+        multi_dof_reference: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+        multi_dof_feedback: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+        multi_dof_error: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+        multi_dof_output: trajectory_msgs.MultiDOFJointTrajectoryPoint = ...,
+        speed_scaling_factor: float = ...,
+    ) -> None: ...
 
 @dataclass
 class MecanumDriveControllerState:
@@ -243,18 +308,29 @@ class MecanumDriveControllerState:
     front_right_wheel_velocity: float = ...
     reference_velocity: geometry_msgs.Twist = ...
 
-@dataclass
+@dataclass(init=False)
 class MultiDOFCommand:
     __msgtype__: ClassVar[str]
     dof_names: list[str] = ...
     values: NDArray[np.float64] = ...
     values_dot: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        dof_names: list[str] | tuple[str, ...] = ...,
+        values: ArrayLike = ...,
+        values_dot: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MultiDOFStateStamped:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     dof_states: list[SingleDOFState] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        dof_states: list[SingleDOFState] | tuple[SingleDOFState, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class SingleDOFState:
@@ -268,7 +344,7 @@ class SingleDOFState:
     time_step: float = ...
     output: float = ...
 
-@dataclass
+@dataclass(init=False)
 class SteeringControllerStatus:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -277,3 +353,12 @@ class SteeringControllerStatus:
     steer_positions: NDArray[np.float64] = ...
     linear_velocity_command: NDArray[np.float64] = ...
     steering_angle_command: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        traction_wheels_position: ArrayLike = ...,
+        traction_wheels_velocity: ArrayLike = ...,
+        steer_positions: ArrayLike = ...,
+        linear_velocity_command: ArrayLike = ...,
+        steering_angle_command: ArrayLike = ...,
+    ) -> None: ...

@@ -5,15 +5,23 @@ from typing import ClassVar
 
 from cartwheel.msgs import builtin_interfaces, std_msgs
 
-@dataclass
+@dataclass(init=False)
 class ControllerState:
     __msgtype__: ClassVar[str]
     name: str = ...
     state: str = ...
     type: str = ...
     claimed_resources: list[HardwareInterfaceResources] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        state: str = ...,
+        type: str = ...,
+        claimed_resources: list[HardwareInterfaceResources]
+        | tuple[HardwareInterfaceResources, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ControllerStatistics:
     __msgtype__: ClassVar[str]
     name: str = ...
@@ -25,37 +33,68 @@ class ControllerStatistics:
     variance_time: builtin_interfaces.Duration = ...
     num_control_loop_overruns: int = ...
     time_last_control_loop_overrun: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        name: str = ...,
+        type: str = ...,
+        timestamp: builtin_interfaces.Time | float = ...,
+        running: bool = ...,
+        max_time: builtin_interfaces.Duration | float = ...,
+        mean_time: builtin_interfaces.Duration | float = ...,
+        variance_time: builtin_interfaces.Duration | float = ...,
+        num_control_loop_overruns: int = ...,
+        time_last_control_loop_overrun: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ControllersStatistics:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     controller: list[ControllerStatistics] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        controller: list[ControllerStatistics] | tuple[ControllerStatistics, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class HardwareInterfaceResources:
     __msgtype__: ClassVar[str]
     hardware_interface: str = ...
     resources: list[str] = ...
+    def __init__(
+        self,
+        hardware_interface: str = ...,
+        resources: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ListControllerTypes_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class ListControllerTypes_Response:
     __msgtype__: ClassVar[str]
     types: list[str] = ...
     base_classes: list[str] = ...
+    def __init__(
+        self,
+        types: list[str] | tuple[str, ...] = ...,
+        base_classes: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ListControllers_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class ListControllers_Response:
     __msgtype__: ClassVar[str]
     controller: list[ControllerState] = ...
+    def __init__(
+        self,
+        controller: list[ControllerState] | tuple[ControllerState, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class LoadController_Request:
@@ -77,7 +116,7 @@ class ReloadControllerLibraries_Response:
     __msgtype__: ClassVar[str]
     ok: bool = ...
 
-@dataclass
+@dataclass(init=False)
 class SwitchController_Request:
     __msgtype__: ClassVar[str]
     BEST_EFFORT: ClassVar[int]
@@ -87,6 +126,14 @@ class SwitchController_Request:
     strictness: int = ...
     start_asap: bool = ...
     timeout: float = ...
+    def __init__(
+        self,
+        start_controllers: list[str] | tuple[str, ...] = ...,
+        stop_controllers: list[str] | tuple[str, ...] = ...,
+        strictness: int = ...,
+        start_asap: bool = ...,
+        timeout: float = ...,
+    ) -> None: ...
 
 @dataclass
 class SwitchController_Response:

@@ -5,13 +5,18 @@ from typing import ClassVar
 
 from cartwheel.msgs import builtin_interfaces, lifecycle_msgs
 
-@dataclass
+@dataclass(init=False)
 class ChainConnection:
     __msgtype__: ClassVar[str]
     name: str = ...
     reference_interfaces: list[str] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        reference_interfaces: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ControllerState:
     __msgtype__: ClassVar[str]
     name: str = ...
@@ -27,8 +32,24 @@ class ControllerState:
     exported_state_interfaces: list[str] = ...
     reference_interfaces: list[str] = ...
     chain_connections: list[ChainConnection] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        state: str = ...,
+        type: str = ...,
+        is_async: bool = ...,
+        update_rate: int = ...,
+        claimed_interfaces: list[str] | tuple[str, ...] = ...,
+        required_command_interfaces: list[str] | tuple[str, ...] = ...,
+        required_state_interfaces: list[str] | tuple[str, ...] = ...,
+        is_chainable: bool = ...,
+        is_chained: bool = ...,
+        exported_state_interfaces: list[str] | tuple[str, ...] = ...,
+        reference_interfaces: list[str] | tuple[str, ...] = ...,
+        chain_connections: list[ChainConnection] | tuple[ChainConnection, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class HardwareComponentState:
     __msgtype__: ClassVar[str]
     name: str = ...
@@ -40,6 +61,18 @@ class HardwareComponentState:
     state: lifecycle_msgs.State = ...
     command_interfaces: list[HardwareInterface] = ...
     state_interfaces: list[HardwareInterface] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        type: str = ...,
+        is_async: bool = ...,
+        rw_rate: int = ...,
+        class_type: str = ...,
+        plugin_name: str = ...,
+        state: lifecycle_msgs.State = ...,
+        command_interfaces: list[HardwareInterface] | tuple[HardwareInterface, ...] = ...,
+        state_interfaces: list[HardwareInterface] | tuple[HardwareInterface, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class HardwareInterface:
@@ -73,39 +106,57 @@ class ConfigureController_Response:
 class ListControllerTypes_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class ListControllerTypes_Response:
     __msgtype__: ClassVar[str]
     types: list[str] = ...
     base_classes: list[str] = ...
+    def __init__(
+        self,
+        types: list[str] | tuple[str, ...] = ...,
+        base_classes: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ListControllers_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class ListControllers_Response:
     __msgtype__: ClassVar[str]
     controller: list[ControllerState] = ...
+    def __init__(
+        self,
+        controller: list[ControllerState] | tuple[ControllerState, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ListHardwareComponents_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class ListHardwareComponents_Response:
     __msgtype__: ClassVar[str]
     component: list[HardwareComponentState] = ...
+    def __init__(
+        self,
+        component: list[HardwareComponentState] | tuple[HardwareComponentState, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ListHardwareInterfaces_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class ListHardwareInterfaces_Response:
     __msgtype__: ClassVar[str]
     command_interfaces: list[HardwareInterface] = ...
     state_interfaces: list[HardwareInterface] = ...
+    def __init__(
+        self,
+        command_interfaces: list[HardwareInterface] | tuple[HardwareInterface, ...] = ...,
+        state_interfaces: list[HardwareInterface] | tuple[HardwareInterface, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class LoadController_Request:
@@ -139,7 +190,7 @@ class SetHardwareComponentState_Response:
     ok: bool = ...
     state: lifecycle_msgs.State = ...
 
-@dataclass
+@dataclass(init=False)
 class SwitchController_Request:
     __msgtype__: ClassVar[str]
     BEST_EFFORT: ClassVar[int]
@@ -151,6 +202,14 @@ class SwitchController_Request:
     strictness: int = ...
     activate_asap: bool = ...
     timeout: builtin_interfaces.Duration = ...
+    def __init__(
+        self,
+        activate_controllers: list[str] | tuple[str, ...] = ...,
+        deactivate_controllers: list[str] | tuple[str, ...] = ...,
+        strictness: int = ...,
+        activate_asap: bool = ...,
+        timeout: builtin_interfaces.Duration | float = ...,
+    ) -> None: ...
 
 @dataclass
 class SwitchController_Response:

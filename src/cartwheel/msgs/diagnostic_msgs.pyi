@@ -5,13 +5,18 @@ from typing import ClassVar
 
 from cartwheel.msgs import std_msgs
 
-@dataclass
+@dataclass(init=False)
 class DiagnosticArray:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     status: list[DiagnosticStatus] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        status: list[DiagnosticStatus] | tuple[DiagnosticStatus, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class DiagnosticStatus:
     __msgtype__: ClassVar[str]
     OK: ClassVar[int]
@@ -23,6 +28,14 @@ class DiagnosticStatus:
     message: str = ...
     hardware_id: str = ...
     values: list[KeyValue] = ...
+    def __init__(
+        self,
+        level: int = ...,
+        name: str = ...,
+        message: str = ...,
+        hardware_id: str = ...,
+        values: list[KeyValue] | tuple[KeyValue, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class KeyValue:

@@ -9,7 +9,7 @@ class BoolParameter:
     name: str = ...
     value: bool = ...
 
-@dataclass
+@dataclass(init=False)
 class Config:
     __msgtype__: ClassVar[str]
     bools: list[BoolParameter] = ...
@@ -17,14 +17,29 @@ class Config:
     strs: list[StrParameter] = ...
     doubles: list[DoubleParameter] = ...
     groups: list[GroupState] = ...
+    def __init__(
+        self,
+        bools: list[BoolParameter] | tuple[BoolParameter, ...] = ...,
+        ints: list[IntParameter] | tuple[IntParameter, ...] = ...,
+        strs: list[StrParameter] | tuple[StrParameter, ...] = ...,
+        doubles: list[DoubleParameter] | tuple[DoubleParameter, ...] = ...,
+        groups: list[GroupState] | tuple[GroupState, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ConfigDescription:
     __msgtype__: ClassVar[str]
     groups: list[Group] = ...
     max: Config = ...
     min: Config = ...
     dflt: Config = ...
+    def __init__(
+        self,
+        groups: list[Group] | tuple[Group, ...] = ...,
+        max: Config = ...,
+        min: Config = ...,
+        dflt: Config = ...,
+    ) -> None: ...
 
 @dataclass
 class DoubleParameter:
@@ -32,7 +47,7 @@ class DoubleParameter:
     name: str = ...
     value: float = ...
 
-@dataclass
+@dataclass(init=False)
 class Group:
     __msgtype__: ClassVar[str]
     name: str = ...
@@ -40,6 +55,14 @@ class Group:
     parameters: list[ParamDescription] = ...
     parent: int = ...
     id: int = ...
+    def __init__(
+        self,
+        name: str = ...,
+        type: str = ...,
+        parameters: list[ParamDescription] | tuple[ParamDescription, ...] = ...,
+        parent: int = ...,
+        id: int = ...,
+    ) -> None: ...
 
 @dataclass
 class GroupState:

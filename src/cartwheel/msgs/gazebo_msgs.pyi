@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces, geometry_msgs, std_msgs, trajectory_msgs
 
-@dataclass
+@dataclass(init=False)
 class ContactState:
     __msgtype__: ClassVar[str]
     info: str = ...
@@ -19,12 +19,28 @@ class ContactState:
     contact_positions: list[geometry_msgs.Vector3] = ...
     contact_normals: list[geometry_msgs.Vector3] = ...
     depths: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        info: str = ...,
+        collision1_name: str = ...,
+        collision2_name: str = ...,
+        wrenches: list[geometry_msgs.Wrench] | tuple[geometry_msgs.Wrench, ...] = ...,
+        total_wrench: geometry_msgs.Wrench = ...,
+        contact_positions: list[geometry_msgs.Vector3] | tuple[geometry_msgs.Vector3, ...] = ...,
+        contact_normals: list[geometry_msgs.Vector3] | tuple[geometry_msgs.Vector3, ...] = ...,
+        depths: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ContactsState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     states: list[ContactState] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        states: list[ContactState] | tuple[ContactState, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class EntityState:
@@ -42,12 +58,18 @@ class LinkState:
     twist: geometry_msgs.Twist = ...
     reference_frame: str = ...
 
-@dataclass
+@dataclass(init=False)
 class LinkStates:
     __msgtype__: ClassVar[str]
     name: list[str] = ...
     pose: list[geometry_msgs.Pose] = ...
     twist: list[geometry_msgs.Twist] = ...
+    def __init__(
+        self,
+        name: list[str] | tuple[str, ...] = ...,
+        pose: list[geometry_msgs.Pose] | tuple[geometry_msgs.Pose, ...] = ...,
+        twist: list[geometry_msgs.Twist] | tuple[geometry_msgs.Twist, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ModelState:
@@ -57,14 +79,20 @@ class ModelState:
     twist: geometry_msgs.Twist = ...
     reference_frame: str = ...
 
-@dataclass
+@dataclass(init=False)
 class ModelStates:
     __msgtype__: ClassVar[str]
     name: list[str] = ...
     pose: list[geometry_msgs.Pose] = ...
     twist: list[geometry_msgs.Twist] = ...
+    def __init__(
+        self,
+        name: list[str] | tuple[str, ...] = ...,
+        pose: list[geometry_msgs.Pose] | tuple[geometry_msgs.Pose, ...] = ...,
+        twist: list[geometry_msgs.Twist] | tuple[geometry_msgs.Twist, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ODEJointProperties:
     __msgtype__: ClassVar[str]
     damping: NDArray[np.float64] = ...
@@ -77,6 +105,19 @@ class ODEJointProperties:
     fudge_factor: NDArray[np.float64] = ...
     fmax: NDArray[np.float64] = ...
     vel: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        damping: ArrayLike = ...,
+        hiStop: ArrayLike = ...,
+        loStop: ArrayLike = ...,
+        erp: ArrayLike = ...,
+        cfm: ArrayLike = ...,
+        stop_erp: ArrayLike = ...,
+        stop_cfm: ArrayLike = ...,
+        fudge_factor: ArrayLike = ...,
+        fmax: ArrayLike = ...,
+        vel: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class ODEPhysics:
@@ -92,12 +133,18 @@ class ODEPhysics:
     erp: float = ...
     max_contacts: int = ...
 
-@dataclass
+@dataclass(init=False)
 class PerformanceMetrics:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     real_time_factor: float = ...
     sensors: list[SensorPerformanceMetric] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        real_time_factor: float = ...,
+        sensors: list[SensorPerformanceMetric] | tuple[SensorPerformanceMetric, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class SensorPerformanceMetric:
@@ -107,14 +154,20 @@ class SensorPerformanceMetric:
     real_update_rate: float = ...
     fps: float = ...
 
-@dataclass
+@dataclass(init=False)
 class WheelSlip:
     __msgtype__: ClassVar[str]
     name: list[str] = ...
     lateral_slip: NDArray[np.float64] = ...
     longitudinal_slip: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        name: list[str] | tuple[str, ...] = ...,
+        lateral_slip: ArrayLike = ...,
+        longitudinal_slip: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class WorldState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -122,8 +175,16 @@ class WorldState:
     pose: list[geometry_msgs.Pose] = ...
     twist: list[geometry_msgs.Twist] = ...
     wrench: list[geometry_msgs.Wrench] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        name: list[str] | tuple[str, ...] = ...,
+        pose: list[geometry_msgs.Pose] | tuple[geometry_msgs.Pose, ...] = ...,
+        twist: list[geometry_msgs.Twist] | tuple[geometry_msgs.Twist, ...] = ...,
+        wrench: list[geometry_msgs.Wrench] | tuple[geometry_msgs.Wrench, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ApplyBodyWrench_Request:
     __msgtype__: ClassVar[str]
     body_name: str = ...
@@ -132,6 +193,15 @@ class ApplyBodyWrench_Request:
     wrench: geometry_msgs.Wrench = ...
     start_time: builtin_interfaces.Time = ...
     duration: builtin_interfaces.Duration = ...
+    def __init__(
+        self,
+        body_name: str = ...,
+        reference_frame: str = ...,
+        reference_point: geometry_msgs.Point = ...,
+        wrench: geometry_msgs.Wrench = ...,
+        start_time: builtin_interfaces.Time | float = ...,
+        duration: builtin_interfaces.Duration | float = ...,
+    ) -> None: ...
 
 @dataclass
 class ApplyBodyWrench_Response:
@@ -139,13 +209,20 @@ class ApplyBodyWrench_Response:
     success: bool = ...
     status_message: str = ...
 
-@dataclass
+@dataclass(init=False)
 class ApplyJointEffort_Request:
     __msgtype__: ClassVar[str]
     joint_name: str = ...
     effort: float = ...
     start_time: builtin_interfaces.Time = ...
     duration: builtin_interfaces.Duration = ...
+    def __init__(
+        self,
+        joint_name: str = ...,
+        effort: float = ...,
+        start_time: builtin_interfaces.Time | float = ...,
+        duration: builtin_interfaces.Duration | float = ...,
+    ) -> None: ...
 
 @dataclass
 class ApplyJointEffort_Response:
@@ -153,7 +230,7 @@ class ApplyJointEffort_Response:
     success: bool = ...
     status_message: str = ...
 
-@dataclass
+@dataclass(init=False)
 class ApplyLinkWrench_Request:
     __msgtype__: ClassVar[str]
     link_name: str = ...
@@ -162,6 +239,15 @@ class ApplyLinkWrench_Request:
     wrench: geometry_msgs.Wrench = ...
     start_time: builtin_interfaces.Time = ...
     duration: builtin_interfaces.Duration = ...
+    def __init__(
+        self,
+        link_name: str = ...,
+        reference_frame: str = ...,
+        reference_point: geometry_msgs.Point = ...,
+        wrench: geometry_msgs.Wrench = ...,
+        start_time: builtin_interfaces.Time | float = ...,
+        duration: builtin_interfaces.Duration | float = ...,
+    ) -> None: ...
 
 @dataclass
 class ApplyLinkWrench_Response:
@@ -229,7 +315,7 @@ class GetJointProperties_Request:
     __msgtype__: ClassVar[str]
     joint_name: str = ...
 
-@dataclass
+@dataclass(init=False)
 class GetJointProperties_Response:
     __msgtype__: ClassVar[str]
     REVOLUTE: ClassVar[int]
@@ -244,6 +330,15 @@ class GetJointProperties_Response:
     rate: NDArray[np.float64] = ...
     success: bool = ...
     status_message: str = ...
+    def __init__(
+        self,
+        type: int = ...,
+        damping: ArrayLike = ...,
+        position: ArrayLike = ...,
+        rate: ArrayLike = ...,
+        success: bool = ...,
+        status_message: str = ...,
+    ) -> None: ...
 
 @dataclass
 class GetLightProperties_Request:
@@ -297,19 +392,25 @@ class GetLinkState_Response:
 class GetModelList_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class GetModelList_Response:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     model_names: list[str] = ...
     success: bool = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        model_names: list[str] | tuple[str, ...] = ...,
+        success: bool = ...,
+    ) -> None: ...
 
 @dataclass
 class GetModelProperties_Request:
     __msgtype__: ClassVar[str]
     model_name: str = ...
 
-@dataclass
+@dataclass(init=False)
 class GetModelProperties_Response:
     __msgtype__: ClassVar[str]
     parent_model_name: str = ...
@@ -321,6 +422,18 @@ class GetModelProperties_Response:
     is_static: bool = ...
     success: bool = ...
     status_message: str = ...
+    def __init__(
+        self,
+        parent_model_name: str = ...,
+        canonical_body_name: str = ...,
+        body_names: list[str] | tuple[str, ...] = ...,
+        geom_names: list[str] | tuple[str, ...] = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        child_model_names: list[str] | tuple[str, ...] = ...,
+        is_static: bool = ...,
+        success: bool = ...,
+        status_message: str = ...,
+    ) -> None: ...
 
 @dataclass
 class GetModelState_Request:
@@ -356,7 +469,7 @@ class GetPhysicsProperties_Response:
 class GetWorldProperties_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class GetWorldProperties_Response:
     __msgtype__: ClassVar[str]
     sim_time: float = ...
@@ -364,6 +477,14 @@ class GetWorldProperties_Response:
     rendering_enabled: bool = ...
     success: bool = ...
     status_message: str = ...
+    def __init__(
+        self,
+        sim_time: float = ...,
+        model_names: list[str] | tuple[str, ...] = ...,
+        rendering_enabled: bool = ...,
+        success: bool = ...,
+        status_message: str = ...,
+    ) -> None: ...
 
 @dataclass
 class JointRequest_Request:
@@ -470,13 +591,20 @@ class SetLinkState_Response:
     success: bool = ...
     status_message: str = ...
 
-@dataclass
+@dataclass(init=False)
 class SetModelConfiguration_Request:
     __msgtype__: ClassVar[str]
     model_name: str = ...
     urdf_param_name: str = ...
     joint_names: list[str] = ...
     joint_positions: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        model_name: str = ...,
+        urdf_param_name: str = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        joint_positions: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class SetModelConfiguration_Response:

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import std_msgs
 
-@dataclass
+@dataclass(init=False)
 class ODEJointProperties:
     __msgtype__: ClassVar[str]
     damping: NDArray[np.float64] = ...
@@ -21,6 +21,19 @@ class ODEJointProperties:
     fudge_factor: NDArray[np.float64] = ...
     fmax: NDArray[np.float64] = ...
     vel: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        damping: ArrayLike = ...,
+        hi_stop: ArrayLike = ...,
+        lo_stop: ArrayLike = ...,
+        erp: ArrayLike = ...,
+        cfm: ArrayLike = ...,
+        stop_erp: ArrayLike = ...,
+        stop_cfm: ArrayLike = ...,
+        fudge_factor: ArrayLike = ...,
+        fmax: ArrayLike = ...,
+        vel: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class SetJointProperties_Request:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import std_msgs
 
@@ -20,11 +20,16 @@ class AccelStamped:
     header: std_msgs.Header = ...
     accel: Accel = ...
 
-@dataclass
+@dataclass(init=False)
 class AccelWithCovariance:
     __msgtype__: ClassVar[str]
     accel: Accel = ...
     covariance: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        accel: Accel = ...,
+        covariance: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class AccelWithCovarianceStamped:
@@ -70,10 +75,14 @@ class PointStamped:
     header: std_msgs.Header = ...
     point: Point = ...
 
-@dataclass
+@dataclass(init=False)
 class Polygon:
     __msgtype__: ClassVar[str]
     points: list[Point32] = ...
+    def __init__(
+        self,
+        points: list[Point32] | tuple[Point32, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class PolygonInstance:
@@ -106,11 +115,16 @@ class Pose2D:
     y: float = ...
     theta: float = ...
 
-@dataclass
+@dataclass(init=False)
 class PoseArray:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     poses: list[Pose] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        poses: list[Pose] | tuple[Pose, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class PoseStamped:
@@ -118,11 +132,16 @@ class PoseStamped:
     header: std_msgs.Header = ...
     pose: Pose = ...
 
-@dataclass
+@dataclass(init=False)
 class PoseWithCovariance:
     __msgtype__: ClassVar[str]
     pose: Pose = ...
     covariance: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        pose: Pose = ...,
+        covariance: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class PoseWithCovarianceStamped:
@@ -169,11 +188,16 @@ class TwistStamped:
     header: std_msgs.Header = ...
     twist: Twist = ...
 
-@dataclass
+@dataclass(init=False)
 class TwistWithCovariance:
     __msgtype__: ClassVar[str]
     twist: Twist = ...
     covariance: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        twist: Twist = ...,
+        covariance: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class TwistWithCovarianceStamped:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import std_msgs
 
@@ -16,7 +16,7 @@ class Altimeter:
     pressure: float = ...
     qnh: float = ...
 
-@dataclass
+@dataclass(init=False)
 class MotorCommand:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -24,14 +24,27 @@ class MotorCommand:
     torque: NDArray[np.float32] = ...
     frequency: NDArray[np.float32] = ...
     voltage: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        force: ArrayLike = ...,
+        torque: ArrayLike = ...,
+        frequency: ArrayLike = ...,
+        voltage: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MotorPWM:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     pwm: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        pwm: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MotorStatus:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -40,10 +53,25 @@ class MotorStatus:
     voltage: NDArray[np.float32] = ...
     frequency: NDArray[np.float32] = ...
     current: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        on: bool = ...,
+        running: bool = ...,
+        voltage: ArrayLike = ...,
+        frequency: ArrayLike = ...,
+        current: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Supply:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     voltage: NDArray[np.float32] = ...
     current: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        voltage: ArrayLike = ...,
+        current: ArrayLike = ...,
+    ) -> None: ...

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import std_msgs
 
@@ -38,7 +38,7 @@ class MotorPower:
     ON: ClassVar[int]
     state: int = ...
 
-@dataclass
+@dataclass(init=False)
 class SensorState:
     __msgtype__: ClassVar[str]
     BUMPER_RIGHT: ClassVar[int]
@@ -82,6 +82,26 @@ class SensorState:
     over_current: int = ...
     digital_input: int = ...
     analog_input: NDArray[np.uint16] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        time_stamp: int = ...,
+        bumper: int = ...,
+        wheel_drop: int = ...,
+        cliff: int = ...,
+        left_encoder: int = ...,
+        right_encoder: int = ...,
+        left_pwm: int = ...,
+        right_pwm: int = ...,
+        buttons: int = ...,
+        charger: int = ...,
+        battery: int = ...,
+        bottom: ArrayLike = ...,
+        current: ArrayLike = ...,
+        over_current: int = ...,
+        digital_input: int = ...,
+        analog_input: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class WheelDropEvent:

@@ -4,14 +4,21 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import std_msgs
 
-@dataclass
+@dataclass(init=False)
 class Actuators:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     angles: NDArray[np.float64] = ...
     angular_velocities: NDArray[np.float64] = ...
     normalized: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        angles: ArrayLike = ...,
+        angular_velocities: ArrayLike = ...,
+        normalized: ArrayLike = ...,
+    ) -> None: ...

@@ -4,19 +4,26 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces, geometry_msgs, std_msgs
 
-@dataclass
+@dataclass(init=False)
 class GridCells:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     cell_width: float = ...
     cell_height: float = ...
     cells: list[geometry_msgs.Point] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        cell_width: float = ...,
+        cell_height: float = ...,
+        cells: list[geometry_msgs.Point] | tuple[geometry_msgs.Point, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MapMetaData:
     __msgtype__: ClassVar[str]
     map_load_time: builtin_interfaces.Time = ...
@@ -24,13 +31,27 @@ class MapMetaData:
     width: int = ...
     height: int = ...
     origin: geometry_msgs.Pose = ...
+    def __init__(
+        self,
+        map_load_time: builtin_interfaces.Time | float = ...,
+        resolution: float = ...,
+        width: int = ...,
+        height: int = ...,
+        origin: geometry_msgs.Pose = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class OccupancyGrid:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     info: MapMetaData = ...
     data: NDArray[np.int8] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        info: MapMetaData = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class Odometry:
@@ -40,8 +61,13 @@ class Odometry:
     pose: geometry_msgs.PoseWithCovariance = ...
     twist: geometry_msgs.TwistWithCovariance = ...
 
-@dataclass
+@dataclass(init=False)
 class Path:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     poses: list[geometry_msgs.PoseStamped] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        poses: list[geometry_msgs.PoseStamped] | tuple[geometry_msgs.PoseStamped, ...] = ...,
+    ) -> None: ...

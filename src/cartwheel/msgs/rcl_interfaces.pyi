@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces
 
@@ -22,13 +22,18 @@ class IntegerRange:
     to_value: int = ...
     step: int = ...
 
-@dataclass
+@dataclass(init=False)
 class ListParametersResult:
     __msgtype__: ClassVar[str]
     names: list[str] = ...
     prefixes: list[str] = ...
+    def __init__(
+        self,
+        names: list[str] | tuple[str, ...] = ...,
+        prefixes: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Log:
     __msgtype__: ClassVar[str]
     DEBUG: ClassVar[int]
@@ -43,6 +48,16 @@ class Log:
     file: str = ...
     function: str = ...
     line: int = ...
+    def __init__(
+        self,
+        stamp: builtin_interfaces.Time | float = ...,
+        level: int = ...,
+        name: str = ...,
+        msg: str = ...,
+        file: str = ...,
+        function: str = ...,
+        line: int = ...,
+    ) -> None: ...
 
 @dataclass
 class LoggerLevel:
@@ -62,7 +77,7 @@ class Parameter:
     name: str = ...
     value: ParameterValue = ...
 
-@dataclass
+@dataclass(init=False)
 class ParameterDescriptor:
     __msgtype__: ClassVar[str]
     name: str = ...
@@ -73,8 +88,19 @@ class ParameterDescriptor:
     dynamic_typing: bool = ...
     floating_point_range: list[FloatingPointRange] = ...
     integer_range: list[IntegerRange] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        type: int = ...,
+        description: str = ...,
+        additional_constraints: str = ...,
+        read_only: bool = ...,
+        dynamic_typing: bool = ...,
+        floating_point_range: list[FloatingPointRange] | tuple[FloatingPointRange, ...] = ...,
+        integer_range: list[IntegerRange] | tuple[IntegerRange, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ParameterEvent:
     __msgtype__: ClassVar[str]
     stamp: builtin_interfaces.Time = ...
@@ -82,13 +108,27 @@ class ParameterEvent:
     new_parameters: list[Parameter] = ...
     changed_parameters: list[Parameter] = ...
     deleted_parameters: list[Parameter] = ...
+    def __init__(
+        self,
+        stamp: builtin_interfaces.Time | float = ...,
+        node: str = ...,
+        new_parameters: list[Parameter] | tuple[Parameter, ...] = ...,
+        changed_parameters: list[Parameter] | tuple[Parameter, ...] = ...,
+        deleted_parameters: list[Parameter] | tuple[Parameter, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ParameterEventDescriptors:
     __msgtype__: ClassVar[str]
     new_parameters: list[ParameterDescriptor] = ...
     changed_parameters: list[ParameterDescriptor] = ...
     deleted_parameters: list[ParameterDescriptor] = ...
+    def __init__(
+        self,
+        new_parameters: list[ParameterDescriptor] | tuple[ParameterDescriptor, ...] = ...,
+        changed_parameters: list[ParameterDescriptor] | tuple[ParameterDescriptor, ...] = ...,
+        deleted_parameters: list[ParameterDescriptor] | tuple[ParameterDescriptor, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class ParameterType:
@@ -104,7 +144,7 @@ class ParameterType:
     PARAMETER_DOUBLE_ARRAY: ClassVar[int]
     PARAMETER_STRING_ARRAY: ClassVar[int]
 
-@dataclass
+@dataclass(init=False)
 class ParameterValue:
     __msgtype__: ClassVar[str]
     type: int = ...
@@ -117,6 +157,19 @@ class ParameterValue:
     integer_array_value: NDArray[np.int64] = ...
     double_array_value: NDArray[np.float64] = ...
     string_array_value: list[str] = ...
+    def __init__(
+        self,
+        type: int = ...,
+        bool_value: bool = ...,
+        integer_value: int = ...,
+        double_value: float = ...,
+        string_value: str = ...,
+        byte_array_value: ArrayLike = ...,
+        bool_array_value: ArrayLike = ...,
+        integer_array_value: ArrayLike = ...,
+        double_array_value: ArrayLike = ...,
+        string_array_value: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class SetLoggerLevelsResult:
@@ -130,64 +183,105 @@ class SetParametersResult:
     successful: bool = ...
     reason: str = ...
 
-@dataclass
+@dataclass(init=False)
 class DescribeParameters_Request:
     __msgtype__: ClassVar[str]
     names: list[str] = ...
+    def __init__(
+        self,
+        names: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class DescribeParameters_Response:
     __msgtype__: ClassVar[str]
     descriptors: list[ParameterDescriptor] = ...
+    def __init__(
+        self,
+        descriptors: list[ParameterDescriptor] | tuple[ParameterDescriptor, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetParameterTypes_Request:
     __msgtype__: ClassVar[str]
     names: list[str] = ...
+    def __init__(
+        self,
+        names: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetParameterTypes_Response:
     __msgtype__: ClassVar[str]
     types: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        types: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetParameters_Request:
     __msgtype__: ClassVar[str]
     names: list[str] = ...
+    def __init__(
+        self,
+        names: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetParameters_Response:
     __msgtype__: ClassVar[str]
     values: list[ParameterValue] = ...
+    def __init__(
+        self,
+        values: list[ParameterValue] | tuple[ParameterValue, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ListParameters_Request:
     __msgtype__: ClassVar[str]
     DEPTH_RECURSIVE: ClassVar[int]
     prefixes: list[str] = ...
     depth: int = ...
+    def __init__(
+        self,
+        prefixes: list[str] | tuple[str, ...] = ...,
+        depth: int = ...,
+    ) -> None: ...
 
 @dataclass
 class ListParameters_Response:
     __msgtype__: ClassVar[str]
     result: ListParametersResult = ...
 
-@dataclass
+@dataclass(init=False)
 class SetParametersAtomically_Request:
     __msgtype__: ClassVar[str]
     parameters: list[Parameter] = ...
+    def __init__(
+        self,
+        parameters: list[Parameter] | tuple[Parameter, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class SetParametersAtomically_Response:
     __msgtype__: ClassVar[str]
     result: SetParametersResult = ...
 
-@dataclass
+@dataclass(init=False)
 class SetParameters_Request:
     __msgtype__: ClassVar[str]
     parameters: list[Parameter] = ...
+    def __init__(
+        self,
+        parameters: list[Parameter] | tuple[Parameter, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class SetParameters_Response:
     __msgtype__: ClassVar[str]
     results: list[SetParametersResult] = ...
+    def __init__(
+        self,
+        results: list[SetParametersResult] | tuple[SetParametersResult, ...] = ...,
+    ) -> None: ...

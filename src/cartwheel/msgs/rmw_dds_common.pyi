@@ -4,23 +4,39 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-@dataclass
+@dataclass(init=False)
 class Gid:
     __msgtype__: ClassVar[str]
     data: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class NodeEntitiesInfo:
     __msgtype__: ClassVar[str]
     node_namespace: str = ...
     node_name: str = ...
     reader_gid_seq: list[Gid] = ...
     writer_gid_seq: list[Gid] = ...
+    def __init__(
+        self,
+        node_namespace: str = ...,
+        node_name: str = ...,
+        reader_gid_seq: list[Gid] | tuple[Gid, ...] = ...,
+        writer_gid_seq: list[Gid] | tuple[Gid, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ParticipantEntitiesInfo:
     __msgtype__: ClassVar[str]
     gid: Gid = ...
     node_entities_info_seq: list[NodeEntitiesInfo] = ...
+    def __init__(
+        self,
+        gid: Gid = ...,
+        node_entities_info_seq: list[NodeEntitiesInfo] | tuple[NodeEntitiesInfo, ...] = ...,
+    ) -> None: ...

@@ -39,12 +39,18 @@ class EntityFactory:
     pose: geometry_msgs.Pose = ...
     relative_to: str = ...
 
-@dataclass
+@dataclass(init=False)
 class LogicalCameraImage:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     pose: geometry_msgs.Pose = ...
     model: list[LogicalCameraImageModel] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        pose: geometry_msgs.Pose = ...,
+        model: list[LogicalCameraImageModel] | tuple[LogicalCameraImageModel, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class LogicalCameraImageModel:
@@ -52,7 +58,7 @@ class LogicalCameraImageModel:
     name: str = ...
     pose: geometry_msgs.Pose = ...
 
-@dataclass
+@dataclass(init=False)
 class WorldControl:
     __msgtype__: ClassVar[str]
     pause: bool = ...
@@ -61,6 +67,15 @@ class WorldControl:
     reset: WorldReset = ...
     seed: int = ...
     run_to_sim_time: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        pause: bool = ...,
+        step: bool = ...,
+        multi_step: int = ...,
+        reset: WorldReset = ...,
+        seed: int = ...,
+        run_to_sim_time: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
 @dataclass
 class WorldReset:

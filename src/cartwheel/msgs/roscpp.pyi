@@ -13,10 +13,14 @@ class Logger:
 class GetLoggers_Request:
     __msgtype__: ClassVar[str]
 
-@dataclass
+@dataclass(init=False)
 class GetLoggers_Response:
     __msgtype__: ClassVar[str]
     loggers: list[Logger] = ...
+    def __init__(
+        self,
+        loggers: list[Logger] | tuple[Logger, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class SetLoggerLevel_Request:

@@ -5,12 +5,16 @@ from typing import ClassVar
 
 from cartwheel.msgs import builtin_interfaces, std_msgs
 
-@dataclass
+@dataclass(init=False)
 class Clock:
     __msgtype__: ClassVar[str]
     clock: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        clock: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Log:
     __msgtype__: ClassVar[str]
     DEBUG: ClassVar[int]
@@ -26,3 +30,14 @@ class Log:
     function: str = ...
     line: int = ...
     topics: list[str] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        level: int = ...,
+        name: str = ...,
+        msg: str = ...,
+        file: str = ...,
+        function: str = ...,
+        line: int = ...,
+        topics: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces, geometry_msgs, std_msgs
 
-@dataclass
+@dataclass(init=False)
 class BatteryState:
     __msgtype__: ClassVar[str]
     POWER_SUPPLY_STATUS_UNKNOWN: ClassVar[int]
@@ -50,8 +50,27 @@ class BatteryState:
     cell_temperature: NDArray[np.float32] = ...
     location: str = ...
     serial_number: str = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        voltage: float = ...,
+        temperature: float = ...,
+        current: float = ...,
+        charge: float = ...,
+        capacity: float = ...,
+        design_capacity: float = ...,
+        percentage: float = ...,
+        power_supply_status: int = ...,
+        power_supply_health: int = ...,
+        power_supply_technology: int = ...,
+        present: bool = ...,
+        cell_voltage: ArrayLike = ...,
+        cell_temperature: ArrayLike = ...,
+        location: str = ...,
+        serial_number: str = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class CameraInfo:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -65,19 +84,44 @@ class CameraInfo:
     binning_x: int = ...
     binning_y: int = ...
     roi: RegionOfInterest = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        height: int = ...,
+        width: int = ...,
+        distortion_model: str = ...,
+        d: ArrayLike = ...,
+        k: ArrayLike = ...,
+        r: ArrayLike = ...,
+        p: ArrayLike = ...,
+        binning_x: int = ...,
+        binning_y: int = ...,
+        roi: RegionOfInterest = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class ChannelFloat32:
     __msgtype__: ClassVar[str]
     name: str = ...
     values: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        values: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class CompressedImage:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     format: str = ...
     data: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        format: str = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class FluidPressure:
@@ -93,7 +137,7 @@ class Illuminance:
     illuminance: float = ...
     variance: float = ...
 
-@dataclass
+@dataclass(init=False)
 class Image:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -103,8 +147,18 @@ class Image:
     is_bigendian: int = ...
     step: int = ...
     data: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        height: int = ...,
+        width: int = ...,
+        encoding: str = ...,
+        is_bigendian: int = ...,
+        step: int = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Imu:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -114,8 +168,18 @@ class Imu:
     angular_velocity_covariance: NDArray[np.float64] = ...
     linear_acceleration: geometry_msgs.Vector3 = ...
     linear_acceleration_covariance: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        orientation: geometry_msgs.Quaternion = ...,
+        orientation_covariance: ArrayLike = ...,
+        angular_velocity: geometry_msgs.Vector3 = ...,
+        angular_velocity_covariance: ArrayLike = ...,
+        linear_acceleration: geometry_msgs.Vector3 = ...,
+        linear_acceleration_covariance: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class JointState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -123,13 +187,27 @@ class JointState:
     position: NDArray[np.float64] = ...
     velocity: NDArray[np.float64] = ...
     effort: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        name: list[str] | tuple[str, ...] = ...,
+        position: ArrayLike = ...,
+        velocity: ArrayLike = ...,
+        effort: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Joy:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     axes: NDArray[np.float32] = ...
     buttons: NDArray[np.int32] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        axes: ArrayLike = ...,
+        buttons: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class JoyFeedback:
@@ -141,17 +219,25 @@ class JoyFeedback:
     id: int = ...
     intensity: float = ...
 
-@dataclass
+@dataclass(init=False)
 class JoyFeedbackArray:
     __msgtype__: ClassVar[str]
     array: list[JoyFeedback] = ...
+    def __init__(
+        self,
+        array: list[JoyFeedback] | tuple[JoyFeedback, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class LaserEcho:
     __msgtype__: ClassVar[str]
     echoes: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        echoes: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class LaserScan:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -164,15 +250,34 @@ class LaserScan:
     range_max: float = ...
     ranges: NDArray[np.float32] = ...
     intensities: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        angle_min: float = ...,
+        angle_max: float = ...,
+        angle_increment: float = ...,
+        time_increment: float = ...,
+        scan_time: float = ...,
+        range_min: float = ...,
+        range_max: float = ...,
+        ranges: ArrayLike = ...,
+        intensities: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MagneticField:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     magnetic_field: geometry_msgs.Vector3 = ...
     magnetic_field_covariance: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        magnetic_field: geometry_msgs.Vector3 = ...,
+        magnetic_field_covariance: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MultiDOFJointState:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -180,8 +285,16 @@ class MultiDOFJointState:
     transforms: list[geometry_msgs.Transform] = ...
     twist: list[geometry_msgs.Twist] = ...
     wrench: list[geometry_msgs.Wrench] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        joint_names: list[str] | tuple[str, ...] = ...,
+        transforms: list[geometry_msgs.Transform] | tuple[geometry_msgs.Transform, ...] = ...,
+        twist: list[geometry_msgs.Twist] | tuple[geometry_msgs.Twist, ...] = ...,
+        wrench: list[geometry_msgs.Wrench] | tuple[geometry_msgs.Wrench, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MultiEchoLaserScan:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -194,8 +307,21 @@ class MultiEchoLaserScan:
     range_max: float = ...
     ranges: list[LaserEcho] = ...
     intensities: list[LaserEcho] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        angle_min: float = ...,
+        angle_max: float = ...,
+        angle_increment: float = ...,
+        time_increment: float = ...,
+        scan_time: float = ...,
+        range_min: float = ...,
+        range_max: float = ...,
+        ranges: list[LaserEcho] | tuple[LaserEcho, ...] = ...,
+        intensities: list[LaserEcho] | tuple[LaserEcho, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class NavSatFix:
     __msgtype__: ClassVar[str]
     COVARIANCE_TYPE_UNKNOWN: ClassVar[int]
@@ -209,6 +335,16 @@ class NavSatFix:
     altitude: float = ...
     position_covariance: NDArray[np.float64] = ...
     position_covariance_type: int = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        status: NavSatStatus = ...,
+        latitude: float = ...,
+        longitude: float = ...,
+        altitude: float = ...,
+        position_covariance: ArrayLike = ...,
+        position_covariance_type: int = ...,
+    ) -> None: ...
 
 @dataclass
 class NavSatStatus:
@@ -226,14 +362,20 @@ class NavSatStatus:
     status: int = ...
     service: int = ...
 
-@dataclass
+@dataclass(init=False)
 class PointCloud:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     points: list[geometry_msgs.Point32] = ...
     channels: list[ChannelFloat32] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        points: list[geometry_msgs.Point32] | tuple[geometry_msgs.Point32, ...] = ...,
+        channels: list[ChannelFloat32] | tuple[ChannelFloat32, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class PointCloud2:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -245,6 +387,18 @@ class PointCloud2:
     row_step: int = ...
     data: NDArray[np.uint8] = ...
     is_dense: bool = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        height: int = ...,
+        width: int = ...,
+        fields: list[PointField] | tuple[PointField, ...] = ...,
+        is_bigendian: bool = ...,
+        point_step: int = ...,
+        row_step: int = ...,
+        data: ArrayLike = ...,
+        is_dense: bool = ...,
+    ) -> None: ...
 
 @dataclass
 class PointField:
@@ -298,12 +452,18 @@ class Temperature:
     temperature: float = ...
     variance: float = ...
 
-@dataclass
+@dataclass(init=False)
 class TimeReference:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
     time_ref: builtin_interfaces.Time = ...
     source: str = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        time_ref: builtin_interfaces.Time | float = ...,
+        source: str = ...,
+    ) -> None: ...
 
 @dataclass
 class SetCameraInfo_Request:

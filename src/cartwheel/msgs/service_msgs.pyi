@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces
 
-@dataclass
+@dataclass(init=False)
 class ServiceEventInfo:
     __msgtype__: ClassVar[str]
     REQUEST_SENT: ClassVar[int]
@@ -19,3 +19,10 @@ class ServiceEventInfo:
     stamp: builtin_interfaces.Time = ...
     client_gid: NDArray[np.uint8] = ...
     sequence_number: int = ...
+    def __init__(
+        self,
+        event_type: int = ...,
+        stamp: builtin_interfaces.Time | float = ...,
+        client_gid: ArrayLike = ...,
+        sequence_number: int = ...,
+    ) -> None: ...

@@ -4,27 +4,40 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import geometry_msgs
 
-@dataclass
+@dataclass(init=False)
 class Mesh:
     __msgtype__: ClassVar[str]
     triangles: list[MeshTriangle] = ...
     vertices: list[geometry_msgs.Point] = ...
+    def __init__(
+        self,
+        triangles: list[MeshTriangle] | tuple[MeshTriangle, ...] = ...,
+        vertices: list[geometry_msgs.Point] | tuple[geometry_msgs.Point, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MeshTriangle:
     __msgtype__: ClassVar[str]
     vertex_indices: NDArray[np.uint32] = ...
+    def __init__(
+        self,
+        vertex_indices: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Plane:
     __msgtype__: ClassVar[str]
     coef: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        coef: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class SolidPrimitive:
     __msgtype__: ClassVar[str]
     BOX: ClassVar[int]
@@ -44,3 +57,9 @@ class SolidPrimitive:
     type: int = ...
     dimensions: NDArray[np.float64] = ...
     polygon: geometry_msgs.Polygon = ...
+    def __init__(
+        self,
+        type: int = ...,
+        dimensions: ArrayLike = ...,
+        polygon: geometry_msgs.Polygon = ...,
+    ) -> None: ...

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces, geometry_msgs, std_msgs, unique_identifier_msgs
 
@@ -47,13 +47,18 @@ class SimulateSteps_SendGoal_Request:
     goal_id: unique_identifier_msgs.UUID = ...
     goal: SimulateSteps_Goal = ...
 
-@dataclass
+@dataclass(init=False)
 class SimulateSteps_SendGoal_Response:
     __msgtype__: ClassVar[str]
     accepted: bool = ...
     stamp: builtin_interfaces.Time = ...
+    def __init__(
+        self,
+        accepted: bool = ...,
+        stamp: builtin_interfaces.Time | float = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Bounds:
     __msgtype__: ClassVar[str]
     TYPE_EMPTY: ClassVar[int]
@@ -62,6 +67,11 @@ class Bounds:
     TYPE_SPHERE: ClassVar[int]
     type: int = ...
     points: list[geometry_msgs.Vector3] = ...
+    def __init__(
+        self,
+        type: int = ...,
+        points: list[geometry_msgs.Vector3] | tuple[geometry_msgs.Vector3, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class EntityCategory:
@@ -73,20 +83,33 @@ class EntityCategory:
     CATEGORY_STATIC_OBJECT: ClassVar[int]
     category: int = ...
 
-@dataclass
+@dataclass(init=False)
 class EntityFilters:
     __msgtype__: ClassVar[str]
     filter: str = ...
     categories: list[EntityCategory] = ...
     tags: TagsFilter = ...
     bounds: Bounds = ...
+    def __init__(
+        self,
+        filter: str = ...,
+        categories: list[EntityCategory] | tuple[EntityCategory, ...] = ...,
+        tags: TagsFilter = ...,
+        bounds: Bounds = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class EntityInfo:
     __msgtype__: ClassVar[str]
     category: EntityCategory = ...
     description: str = ...
     tags: list[str] = ...
+    def __init__(
+        self,
+        category: EntityCategory = ...,
+        description: str = ...,
+        tags: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class EntityState:
@@ -96,13 +119,20 @@ class EntityState:
     twist: geometry_msgs.Twist = ...
     acceleration: geometry_msgs.Accel = ...
 
-@dataclass
+@dataclass(init=False)
 class NamedPose:
     __msgtype__: ClassVar[str]
     name: str = ...
     description: str = ...
     tags: list[str] = ...
     pose: geometry_msgs.Pose = ...
+    def __init__(
+        self,
+        name: str = ...,
+        description: str = ...,
+        tags: list[str] | tuple[str, ...] = ...,
+        pose: geometry_msgs.Pose = ...,
+    ) -> None: ...
 
 @dataclass
 class Resource:
@@ -132,7 +162,7 @@ class SimulationState:
     STATE_LOADING_WORLD: ClassVar[int]
     state: int = ...
 
-@dataclass
+@dataclass(init=False)
 class SimulatorFeatures:
     __msgtype__: ClassVar[str]
     SPAWNING: ClassVar[int]
@@ -170,6 +200,12 @@ class SimulatorFeatures:
     features: NDArray[np.uint16] = ...
     spawn_formats: list[str] = ...
     custom_info: str = ...
+    def __init__(
+        self,
+        features: ArrayLike = ...,
+        spawn_formats: list[str] | tuple[str, ...] = ...,
+        custom_info: str = ...,
+    ) -> None: ...
 
 @dataclass
 class SpawnEntity:
@@ -202,21 +238,33 @@ class Spawnable:
     description: str = ...
     spawn_bounds: Bounds = ...
 
-@dataclass
+@dataclass(init=False)
 class TagsFilter:
     __msgtype__: ClassVar[str]
     FILTER_MODE_ANY: ClassVar[int]
     FILTER_MODE_ALL: ClassVar[int]
     tags: list[str] = ...
     filter_mode: int = ...
+    def __init__(
+        self,
+        tags: list[str] | tuple[str, ...] = ...,
+        filter_mode: int = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class WorldResource:
     __msgtype__: ClassVar[str]
     name: str = ...
     world_resource: Resource = ...
     description: str = ...
     tags: list[str] = ...
+    def __init__(
+        self,
+        name: str = ...,
+        world_resource: Resource = ...,
+        description: str = ...,
+        tags: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class DeleteEntity_Request:
@@ -228,20 +276,32 @@ class DeleteEntity_Response:
     __msgtype__: ClassVar[str]
     result: Result = ...
 
-@dataclass
+@dataclass(init=False)
 class GetAvailableWorlds_Request:
     __msgtype__: ClassVar[str]
     additional_sources: list[str] = ...
     filter: TagsFilter = ...
     offline_only: bool = ...
     continue_on_error: bool = ...
+    def __init__(
+        self,
+        additional_sources: list[str] | tuple[str, ...] = ...,
+        filter: TagsFilter = ...,
+        offline_only: bool = ...,
+        continue_on_error: bool = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetAvailableWorlds_Response:
     __msgtype__: ClassVar[str]
     DEFAULT_SOURCES_FAILED: ClassVar[int]
     result: Result = ...
     worlds: list[WorldResource] = ...
+    def __init__(
+        self,
+        result: Result = ...,
+        worlds: list[WorldResource] | tuple[WorldResource, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class GetCurrentWorld_Request:
@@ -259,23 +319,34 @@ class GetEntitiesStates_Request:
     __msgtype__: ClassVar[str]
     filters: EntityFilters = ...
 
-@dataclass
+@dataclass(init=False)
 class GetEntitiesStates_Response:
     __msgtype__: ClassVar[str]
     result: Result = ...
     entities: list[str] = ...
     states: list[EntityState] = ...
+    def __init__(
+        self,
+        result: Result = ...,
+        entities: list[str] | tuple[str, ...] = ...,
+        states: list[EntityState] | tuple[EntityState, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class GetEntities_Request:
     __msgtype__: ClassVar[str]
     filters: EntityFilters = ...
 
-@dataclass
+@dataclass(init=False)
 class GetEntities_Response:
     __msgtype__: ClassVar[str]
     result: Result = ...
     entities: list[str] = ...
+    def __init__(
+        self,
+        result: Result = ...,
+        entities: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class GetEntityBounds_Request:
@@ -326,11 +397,16 @@ class GetNamedPoses_Request:
     __msgtype__: ClassVar[str]
     tags: TagsFilter = ...
 
-@dataclass
+@dataclass(init=False)
 class GetNamedPoses_Response:
     __msgtype__: ClassVar[str]
     result: Result = ...
     poses: list[NamedPose] = ...
+    def __init__(
+        self,
+        result: Result = ...,
+        poses: list[NamedPose] | tuple[NamedPose, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class GetSimulationState_Request:
@@ -351,16 +427,25 @@ class GetSimulatorFeatures_Response:
     __msgtype__: ClassVar[str]
     features: SimulatorFeatures = ...
 
-@dataclass
+@dataclass(init=False)
 class GetSpawnables_Request:
     __msgtype__: ClassVar[str]
     sources: list[str] = ...
+    def __init__(
+        self,
+        sources: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetSpawnables_Response:
     __msgtype__: ClassVar[str]
     result: Result = ...
     spawnables: list[Spawnable] = ...
+    def __init__(
+        self,
+        result: Result = ...,
+        spawnables: list[Spawnable] | tuple[Spawnable, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class LoadWorld_Request:
@@ -435,17 +520,26 @@ class SetSimulationState_Response:
     INCORRECT_TRANSITION: ClassVar[int]
     result: Result = ...
 
-@dataclass
+@dataclass(init=False)
 class SpawnEntities_Request:
     __msgtype__: ClassVar[str]
     spawn_requests: list[SpawnEntity] = ...
+    def __init__(
+        self,
+        spawn_requests: list[SpawnEntity] | tuple[SpawnEntity, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class SpawnEntities_Response:
     __msgtype__: ClassVar[str]
     ENTITIES_SPAWN_FAILED: ClassVar[int]
     result: Result = ...
     results: list[SpawnResult] = ...
+    def __init__(
+        self,
+        result: Result = ...,
+        results: list[SpawnResult] | tuple[SpawnResult, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class SpawnEntity_Request:

@@ -12,16 +12,25 @@ class Spawnable:
     description: str = ...
     spawn_bounds: simulation_interfaces.Bounds = ...
 
-@dataclass
+@dataclass(init=False)
 class GetSpawnables_Request:
     __msgtype__: ClassVar[str]
     sources: list[str] = ...
+    def __init__(
+        self,
+        sources: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class GetSpawnables_Response:
     __msgtype__: ClassVar[str]
     result: simulation_interfaces.Result = ...
     spawnables: list[Spawnable] = ...
+    def __init__(
+        self,
+        result: simulation_interfaces.Result = ...,
+        spawnables: list[Spawnable] | tuple[Spawnable, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class LoadWorld_Request:

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from cartwheel.msgs import builtin_interfaces
 
-@dataclass
+@dataclass(init=False)
 class MetricsMessage:
     __msgtype__: ClassVar[str]
     measurement_source_name: str = ...
@@ -14,6 +14,15 @@ class MetricsMessage:
     window_start: builtin_interfaces.Time = ...
     window_stop: builtin_interfaces.Time = ...
     statistics: list[StatisticDataPoint] = ...
+    def __init__(
+        self,
+        measurement_source_name: str = ...,
+        metrics_source: str = ...,
+        unit: str = ...,
+        window_start: builtin_interfaces.Time | float = ...,
+        window_stop: builtin_interfaces.Time | float = ...,
+        statistics: list[StatisticDataPoint] | tuple[StatisticDataPoint, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class StatisticDataPoint:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces
 
@@ -18,11 +18,16 @@ class Byte:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class ByteMultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class Char:
@@ -46,72 +51,107 @@ class Float32:
     __msgtype__: ClassVar[str]
     data: float = ...
 
-@dataclass
+@dataclass(init=False)
 class Float32MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.float32] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class Float64:
     __msgtype__: ClassVar[str]
     data: float = ...
 
-@dataclass
+@dataclass(init=False)
 class Float64MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.float64] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Header:
     __msgtype__: ClassVar[str]
     stamp: builtin_interfaces.Time = ...
     frame_id: str = ...
+    def __init__(
+        self,
+        stamp: builtin_interfaces.Time | float = ...,
+        frame_id: str = ...,
+    ) -> None: ...
 
 @dataclass
 class Int16:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class Int16MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.int16] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class Int32:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class Int32MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.int32] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class Int64:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class Int64MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.int64] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class Int8:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class Int8MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.int8] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class MultiArrayDimension:
@@ -120,11 +160,16 @@ class MultiArrayDimension:
     size: int = ...
     stride: int = ...
 
-@dataclass
+@dataclass(init=False)
 class MultiArrayLayout:
     __msgtype__: ClassVar[str]
     dim: list[MultiArrayDimension] = ...
     data_offset: int = ...
+    def __init__(
+        self,
+        dim: list[MultiArrayDimension] | tuple[MultiArrayDimension, ...] = ...,
+        data_offset: int = ...,
+    ) -> None: ...
 
 @dataclass
 class String:
@@ -136,41 +181,61 @@ class UInt16:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class UInt16MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.uint16] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class UInt32:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class UInt32MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.uint32] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class UInt64:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class UInt64MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.uint64] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class UInt8:
     __msgtype__: ClassVar[str]
     data: int = ...
 
-@dataclass
+@dataclass(init=False)
 class UInt8MultiArray:
     __msgtype__: ClassVar[str]
     layout: MultiArrayLayout = ...
     data: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        layout: MultiArrayLayout = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...

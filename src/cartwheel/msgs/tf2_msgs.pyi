@@ -18,7 +18,12 @@ class TF2Error:
     error: int = ...
     error_string: str = ...
 
-@dataclass
+@dataclass(init=False)
 class TFMessage:
     __msgtype__: ClassVar[str]
     transforms: list[geometry_msgs.TransformStamped] = ...
+    def __init__(
+        self,
+        transforms: list[geometry_msgs.TransformStamped]
+        | tuple[geometry_msgs.TransformStamped, ...] = ...,
+    ) -> None: ...

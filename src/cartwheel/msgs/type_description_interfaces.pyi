@@ -107,11 +107,16 @@ class FieldType:
     string_capacity: int = ...
     nested_type_name: str = ...
 
-@dataclass
+@dataclass(init=False)
 class IndividualTypeDescription:
     __msgtype__: ClassVar[str]
     type_name: str = ...
     fields: list[Field] = ...
+    def __init__(
+        self,
+        type_name: str = ...,
+        fields: list[Field] | tuple[Field, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class KeyValue:
@@ -119,11 +124,17 @@ class KeyValue:
     key: str = ...
     value: str = ...
 
-@dataclass
+@dataclass(init=False)
 class TypeDescription:
     __msgtype__: ClassVar[str]
     type_description: IndividualTypeDescription = ...
     referenced_type_descriptions: list[IndividualTypeDescription] = ...
+    def __init__(
+        self,
+        type_description: IndividualTypeDescription = ...,
+        referenced_type_descriptions: list[IndividualTypeDescription]
+        | tuple[IndividualTypeDescription, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class TypeSource:
@@ -139,7 +150,7 @@ class GetTypeDescription_Request:
     type_hash: str = ...
     include_type_sources: bool = ...
 
-@dataclass
+@dataclass(init=False)
 class GetTypeDescription_Response:
     __msgtype__: ClassVar[str]
     successful: bool = ...
@@ -147,3 +158,11 @@ class GetTypeDescription_Response:
     type_description: TypeDescription = ...
     type_sources: list[TypeSource] = ...
     extra_information: list[KeyValue] = ...
+    def __init__(
+        self,
+        successful: bool = ...,
+        failure_reason: str = ...,
+        type_description: TypeDescription = ...,
+        type_sources: list[TypeSource] | tuple[TypeSource, ...] = ...,
+        extra_information: list[KeyValue] | tuple[KeyValue, ...] = ...,
+    ) -> None: ...

@@ -4,9 +4,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-@dataclass
+@dataclass(init=False)
 class UUID:
     __msgtype__: ClassVar[str]
     uuid: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        uuid: ArrayLike = ...,
+    ) -> None: ...

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-@dataclass
+@dataclass(init=False)
 class MotorCmd:
     __msgtype__: ClassVar[str]
     mode: int = ...
@@ -16,8 +16,18 @@ class MotorCmd:
     Kp: float = ...
     Kd: float = ...
     reserve: NDArray[np.uint32] = ...
+    def __init__(
+        self,
+        mode: int = ...,
+        q: float = ...,
+        dq: float = ...,
+        tau: float = ...,
+        Kp: float = ...,
+        Kd: float = ...,
+        reserve: ArrayLike = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MotorState:
     __msgtype__: ClassVar[str]
     mode: int = ...
@@ -30,3 +40,16 @@ class MotorState:
     ddq_raw: float = ...
     temperature: int = ...
     reserve: NDArray[np.uint32] = ...
+    def __init__(
+        self,
+        mode: int = ...,
+        q: float = ...,
+        dq: float = ...,
+        ddq: float = ...,
+        tauEst: float = ...,
+        q_raw: float = ...,
+        dq_raw: float = ...,
+        ddq_raw: float = ...,
+        temperature: int = ...,
+        reserve: ArrayLike = ...,
+    ) -> None: ...

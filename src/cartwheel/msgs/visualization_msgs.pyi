@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cartwheel.msgs import builtin_interfaces, geometry_msgs, sensor_msgs, std_msgs
 
-@dataclass
+@dataclass(init=False)
 class ImageMarker:
     __msgtype__: ClassVar[str]
     CIRCLE: ClassVar[int]
@@ -31,8 +31,24 @@ class ImageMarker:
     lifetime: builtin_interfaces.Duration = ...
     points: list[geometry_msgs.Point] = ...
     outline_colors: list[std_msgs.ColorRGBA] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        ns: str = ...,
+        id: int = ...,
+        type: int = ...,
+        action: int = ...,
+        position: geometry_msgs.Point = ...,
+        scale: float = ...,
+        outline_color: std_msgs.ColorRGBA = ...,
+        filled: int = ...,
+        fill_color: std_msgs.ColorRGBA = ...,
+        lifetime: builtin_interfaces.Duration | float = ...,
+        points: list[geometry_msgs.Point] | tuple[geometry_msgs.Point, ...] = ...,
+        outline_colors: list[std_msgs.ColorRGBA] | tuple[std_msgs.ColorRGBA, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class InteractiveMarker:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
@@ -42,8 +58,18 @@ class InteractiveMarker:
     scale: float = ...
     menu_entries: list[MenuEntry] = ...
     controls: list[InteractiveMarkerControl] = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        pose: geometry_msgs.Pose = ...,
+        name: str = ...,
+        description: str = ...,
+        scale: float = ...,
+        menu_entries: list[MenuEntry] | tuple[MenuEntry, ...] = ...,
+        controls: list[InteractiveMarkerControl] | tuple[InteractiveMarkerControl, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class InteractiveMarkerControl:
     __msgtype__: ClassVar[str]
     INHERIT: ClassVar[int]
@@ -67,6 +93,17 @@ class InteractiveMarkerControl:
     markers: list[Marker] = ...
     independent_marker_orientation: bool = ...
     description: str = ...
+    def __init__(
+        self,
+        name: str = ...,
+        orientation: geometry_msgs.Quaternion = ...,
+        orientation_mode: int = ...,
+        interaction_mode: int = ...,
+        always_visible: bool = ...,
+        markers: list[Marker] | tuple[Marker, ...] = ...,
+        independent_marker_orientation: bool = ...,
+        description: str = ...,
+    ) -> None: ...
 
 @dataclass
 class InteractiveMarkerFeedback:
@@ -87,12 +124,18 @@ class InteractiveMarkerFeedback:
     mouse_point: geometry_msgs.Point = ...
     mouse_point_valid: bool = ...
 
-@dataclass
+@dataclass(init=False)
 class InteractiveMarkerInit:
     __msgtype__: ClassVar[str]
     server_id: str = ...
     seq_num: int = ...
     markers: list[InteractiveMarker] = ...
+    def __init__(
+        self,
+        server_id: str = ...,
+        seq_num: int = ...,
+        markers: list[InteractiveMarker] | tuple[InteractiveMarker, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class InteractiveMarkerPose:
@@ -101,7 +144,7 @@ class InteractiveMarkerPose:
     pose: geometry_msgs.Pose = ...
     name: str = ...
 
-@dataclass
+@dataclass(init=False)
 class InteractiveMarkerUpdate:
     __msgtype__: ClassVar[str]
     KEEP_ALIVE: ClassVar[int]
@@ -112,8 +155,17 @@ class InteractiveMarkerUpdate:
     markers: list[InteractiveMarker] = ...
     poses: list[InteractiveMarkerPose] = ...
     erases: list[str] = ...
+    def __init__(
+        self,
+        server_id: str = ...,
+        seq_num: int = ...,
+        type: int = ...,
+        markers: list[InteractiveMarker] | tuple[InteractiveMarker, ...] = ...,
+        poses: list[InteractiveMarkerPose] | tuple[InteractiveMarkerPose, ...] = ...,
+        erases: list[str] | tuple[str, ...] = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class Marker:
     __msgtype__: ClassVar[str]
     ARROW: ClassVar[int]
@@ -152,11 +204,37 @@ class Marker:
     mesh_resource: str = ...
     mesh_file: MeshFile = ...
     mesh_use_embedded_materials: bool = ...
+    def __init__(
+        self,
+        header: std_msgs.Header = ...,
+        ns: str = ...,
+        id: int = ...,
+        type: int = ...,
+        action: int = ...,
+        pose: geometry_msgs.Pose = ...,
+        scale: geometry_msgs.Vector3 = ...,
+        color: std_msgs.ColorRGBA = ...,
+        lifetime: builtin_interfaces.Duration | float = ...,
+        frame_locked: bool = ...,
+        points: list[geometry_msgs.Point] | tuple[geometry_msgs.Point, ...] = ...,
+        colors: list[std_msgs.ColorRGBA] | tuple[std_msgs.ColorRGBA, ...] = ...,
+        texture_resource: str = ...,
+        texture: sensor_msgs.CompressedImage = ...,
+        uv_coordinates: list[UVCoordinate] | tuple[UVCoordinate, ...] = ...,
+        text: str = ...,
+        mesh_resource: str = ...,
+        mesh_file: MeshFile = ...,
+        mesh_use_embedded_materials: bool = ...,
+    ) -> None: ...
 
-@dataclass
+@dataclass(init=False)
 class MarkerArray:
     __msgtype__: ClassVar[str]
     markers: list[Marker] = ...
+    def __init__(
+        self,
+        markers: list[Marker] | tuple[Marker, ...] = ...,
+    ) -> None: ...
 
 @dataclass
 class MenuEntry:
@@ -170,11 +248,16 @@ class MenuEntry:
     command: str = ...
     command_type: int = ...
 
-@dataclass
+@dataclass(init=False)
 class MeshFile:
     __msgtype__: ClassVar[str]
     filename: str = ...
     data: NDArray[np.uint8] = ...
+    def __init__(
+        self,
+        filename: str = ...,
+        data: ArrayLike = ...,
+    ) -> None: ...
 
 @dataclass
 class UVCoordinate:

@@ -16,8 +16,10 @@ from cartwheel.api.exchange.transforms import FramedWorld
 from cartwheel.api.handles import Sealed
 from cartwheel.api.values import scalar
 from cartwheel.arrays.fields import with_changed
+from cartwheel.errors import GraphError
 from cartwheel.geometry import Array
 from cartwheel.graph.interception import Interception
+from cartwheel.graph.topic import checked_message
 from cartwheel.messages import zero
 from cartwheel.simulation.alarms import Alarm
 from cartwheel.simulation.limits import duration_ns
@@ -62,8 +64,9 @@ class FaultyWorld(FramedWorld):
             noise: Standard deviation of additional Gaussian noise, for fields with a number or an
                 array of numbers.
             bias: Numbers that are added to fields.
-            change: Receives each message before all other changes, and returns the message to be
-                delivered, or None for none. It must not change its argument.
+            change: Receives a copy of each message before all other changes, and returns the
+                message to be delivered, which may be this copy, or None for none. `run` raises its
+                errors, and refuses a message as `publish` does (CW712).
 
         Raises:
             UnknownNameError: A topic does not exist.
@@ -246,7 +249,7 @@ class Fault(Sealed):
             self._rewinds = self._simulation.engine.rewinds
             self._kept.clear()
         if self._change is not None:
-            message = self._change(message)
+            message = self._changed(topic, self._change(copy.deepcopy(message)))
             if message is None:
                 return None
         if self._frozen:
@@ -260,6 +263,20 @@ class Fault(Sealed):
             generator = self._generator(f"{topic} {field}")
             message = with_changed(message, field, partial(_noisy, generator, deviation))
         return message
+
+    def _changed(self, topic: str, message: Any) -> Any:
+        """What `change` has returned, as a message of the topic.
+
+        Raises:
+            GraphError: It is no such message, or a value in it does not fit its field.
+        """
+        if message is None:
+            return None
+        try:
+            return checked_message(topic, dict(self._topics)[topic], message)
+        except GraphError as error:
+            error.message = f"the fault of {topic} returns an invalid message: {error.message}"
+            raise
 
     def _generator(self, purpose: str) -> np.random.Generator:
         engine = self._simulation.engine

@@ -11,7 +11,7 @@ from cartwheel.devices.elementwise import clamp
 from cartwheel.devices.joints.actuator import JointActuator
 from cartwheel.devices.joints.limits import JointLimits
 from cartwheel.devices.joints.pid import DampedEffort, PidGains, position_effort
-from cartwheel.messages import zero
+from cartwheel.messages import message_class
 
 COMMAND = "unitree_legged_msgs/msg/MotorCmd"
 _STATE = "unitree_legged_msgs/msg/MotorState"
@@ -95,9 +95,9 @@ class LegMotor(Component):
         )
         joint.set_effort(DampedEffort(effort + target.torque, damping))
         if self._publisher.wanted:
-            message = zero(_STATE)
-            message.q, message.dq, message.tauEst = joint.position, joint.velocity, joint.effort
-            self._publisher.publish(message)
+            self._publisher.publish(
+                message_class(_STATE)(q=joint.position, dq=joint.velocity, tauEst=joint.effort)
+            )
 
 
 def _matches(value: float, mark: float) -> bool:
