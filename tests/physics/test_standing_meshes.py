@@ -69,6 +69,50 @@ def test_a_ball_rolls_into_the_valley_of_a_terrain(make, tmp_path):
     assert z == pytest.approx(1.0 + 0.3 * abs(y) + 0.1 * np.hypot(1, 0.3), abs=5e-3)
 
 
+def grid(height):
+    """The corners and faces of a sheet of 10 m by 10 m, with cells of 0.25 m."""
+    count = 41
+    x, y = np.meshgrid(np.linspace(-5, 5, count), np.linspace(-5, 5, count))
+    index = np.arange(count**2).reshape(count, count)
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, :-1], index[1:, 1:]
+    corners = np.stack([x, y, height(x, y)], axis=-1).reshape(-1, 3)
+    return corners, np.concatenate(
+        [np.stack([a, b, d], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)]
+    )
+
+
+def test_boxes_that_fall_on_a_sheet_of_many_pieces_stay_flat(make, tmp_path):
+    """They overlap some pieces by less than they sink in, where the shortest way out is sideways."""
+    path = tmp_path / "sheet.stl"
+    trimesh.Trimesh(*grid(lambda x, y: 0.2 * ((x < -4.9) & (y < -4.9)))).export(path)
+    places = [(0.113 * k - 2 + 0.5 * k, 0.07 * k, 0.1 * k) for k in range(10)]
+    boxes = [
+        make.box(f"box{k}", (0.2, 0.2, 0.2), pose=Pose((x, y, 0.11 + drop)))
+        for k, (x, y, drop) in enumerate(places)
+    ]
+    world = make.world(static_mesh(make, path), *boxes, ground=None)
+    world.run(2.0)
+    for k, (x, y, drop) in enumerate(places):
+        pose = world.model(f"box{k}").pose
+        assert pose.position == pytest.approx((x, y, 0.1), abs=0.02), drop
+        assert pose.rpy == pytest.approx((0, 0, 0), abs=0.02), drop
+
+
+def test_pieces_reach_below_their_neighbours_but_not_out_of_the_surface():
+    def height(x, y):
+        return 0.3 * np.sin(2 * x) * np.cos(1.5 * y)
+
+    pieces = standing_pieces(*grid(height)).pieces
+    assert len(pieces) > 500
+    sides = 0
+    for piece in pieces:
+        x, y, z = piece.T
+        # The facets are up to 1 cm beside the function.
+        assert (z <= height(x, y) + 0.015).all()
+        sides += len(piece) > 6
+    assert sides > len(pieces) / 2
+
+
 def test_a_room_with_a_door_is_open_and_its_walls_are_where_they_are_drawn(make, tmp_path):
     """Walls of 0.1 m around 4 m by 4 m, in one mesh; a ray finds each face."""
     import mujoco

@@ -34,6 +34,14 @@ _MOST_ASKED = 4096
 """Maximum number of faces tested for convexity; finer meshes are sampled."""
 _MOST_PAIRS, _MOST_PAIRS_AT_ONCE = 50_000_000, 2_000_000
 """Maximum pairs of slabs and nearby faces, in total and at once: ten seconds, and 400 MB."""
+_MOST_SIDE_PAIRS = 10_000_000
+"""Maximum pairs for the sides of slabs, which are not oblique if there would be more."""
+_SHARES = (0.05, 0.5, 0.95)
+"""Where along an edge the neighbour is looked for."""
+_REACHES = np.array([2.0, 4.0])
+"""How far an oblique side reaches below a neighbour, in multiples of the slab's thickness."""
+_LOWER = 1.8
+"""Largest distance to a neighbour from a thickness above the slab, in thicknesses."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -200,13 +208,16 @@ def _slabs(points: Points, faces: Faces, most: int) -> list[Points] | None:
     thicknesses = _thicknesses(middles, np.array(facing), points, faces)
     if thicknesses is None:
         return None
+    sides = _sides(fronts, facing, thicknesses, points, faces)
     slabs = []
-    for front, normal, middle, thick in zip(fronts, facing, middles, thicknesses, strict=True):
+    for front, normal, middle, thick, side in zip(
+        fronts, facing, middles, thicknesses, sides, strict=True
+    ):
         # The back is smaller, to stay behind the neighbouring patches too.
         arms = front - middle
         reach = np.linalg.norm(arms, axis=1, keepdims=True)
         back = middle + arms * np.maximum(0.2, 1 - thick / np.maximum(reach, 1e-9))
-        slabs.append(np.concatenate([front, back - thick * normal]))
+        slabs.append(np.concatenate([front, back - thick * normal, side]))
     return slabs
 
 
@@ -271,23 +282,80 @@ def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces)
 
     None if too many faces are near too many points.
     """
+    found = _depths(middles, normals, points, faces, _MOST_PAIRS)
+    return None if found is None else np.asarray(np.clip(found[0] / 2, _THINNEST, _THICKEST))
+
+
+def _sides(
+    fronts: list[Points], facing: list[Points], thicknesses: Points, points: Points, faces: Faces
+) -> list[Points]:
+    """Further corners at the back of each slab, below neighbours in almost the same plane.
+
+    Whatever sinks into a slab next to a neighbour would otherwise be pushed along the surface by the
+    neighbour's side, if that is the shortest way out. A side that is this oblique pushes it up.
+    """
+    starts, ways, ups, deep, owners = [], [], [], [], []
+    for index, (front, normal, thick) in enumerate(zip(fronts, facing, thicknesses, strict=True)):
+        along = np.roll(front, -1, axis=0) - front
+        out = np.cross(along, normal)
+        lengths = np.linalg.norm(out, axis=1)
+        sound = lengths > 1e-6
+        out = out[sound] / lengths[sound, None]
+        start, along = front[sound], along[sound]
+        inward = np.einsum("ij,ij->i", start + along / 2 - front.mean(axis=0), out) < 0
+        out[inward] = -out[inward]
+        starts.append(np.stack([start + share * along for share in _SHARES], axis=1))
+        ways.append(out * thick)
+        ups.append(np.broadcast_to(normal, out.shape))
+        deep.append(np.full(len(out), thick))
+        owners.append(np.full(len(out), index))
+    start, way, up = np.concatenate(starts), np.concatenate(ways), np.concatenate(ups)
+    thick, owner = np.concatenate(deep), np.concatenate(owners)
+    # From above the surface next to each edge, at two distances from it.
+    above = (start[:, None] + (way[:, None] * _REACHES[:, None])[:, :, None]) + (
+        (up * thick[:, None])[:, None, None]
+    )
+    rays = np.broadcast_to(up[:, None, None], above.shape)
+    found = _depths(above.reshape(-1, 3), rays.reshape(-1, 3), points, faces, _MOST_SIDE_PAIRS)
+    sides: list[list[Points]] = [[] for _ in fronts]
+    if found is not None:
+        first, second = (each.reshape(above.shape[:3]) for each in found)
+        limit = thick[:, None, None]
+        # The neighbour is hardly lower, and as thick.
+        covered = (first < _LOWER * limit) & (second > 1.99 * limit)
+        is_near = covered[:, 0].all(axis=1)
+        is_far = is_near & covered[:, 1].all(axis=1)
+        for edge in np.flatnonzero(is_near).tolist():
+            reach = _REACHES[int(is_far[edge])]
+            ends = start[edge, [0, -1]] + reach * way[edge] - thick[edge] * up[edge]
+            sides[owner[edge]].append(ends)
+    return [np.concatenate(each) if each else np.empty((0, 3)) for each in sides]
+
+
+def _depths(
+    starts: Points, normals: Points, points: Points, faces: Faces, most: int
+) -> tuple[Points, Points] | None:
+    """Distances against the normals to the first and the second face, m, at most twice a slab's.
+
+    None if there would be more than `most` pairs of points and nearby faces.
+    """
     a, b, c = (points[faces[:, k]] for k in range(3))
     e1, e2 = b - a, c - a
     across = np.cross(e1, e2)
     lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-    found = np.full(len(middles), 2 * _THICKEST)
+    first = np.full(len(starts), 2 * _THICKEST)
+    second = first.copy()
     # Tests each ray against each triangle in range with the Möller-Trumbore test, written as triple
     # products. Nearby rays are tested together.
-    left = _MOST_PAIRS
-    for block in _near(middles):
-        low = middles[block].min(axis=0) - 2 * _THICKEST
-        high = middles[block].max(axis=0) + 2 * _THICKEST
+    for block in _near(starts):
+        low = starts[block].min(axis=0) - 2 * _THICKEST
+        high = starts[block].max(axis=0) + 2 * _THICKEST
         near = np.flatnonzero((highest >= low).all(axis=1) & (lowest <= high).all(axis=1))
-        left -= len(block) * len(near)
-        if left < 0 or len(block) * len(near) > _MOST_PAIRS_AT_ONCE:
+        most -= len(block) * len(near)
+        if most < 0 or len(block) * len(near) > _MOST_PAIRS_AT_ONCE:
             return None
         along = -normals[block][:, None, :]
-        s = middles[block][:, None, :] - a[near][None]
+        s = starts[block][:, None, :] - a[near][None]
         turned = np.cross(s, along)
         with np.errstate(divide="ignore", invalid="ignore"):
             area = -(along * across[near]).sum(axis=2)
@@ -296,8 +364,12 @@ def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces)
             v = -(e1[near] * turned).sum(axis=2) / area
             inside = (u >= 0) & (v >= 0) & (u + v <= 1)
         hit = (np.abs(area) > 1e-12) & inside & (t > 1e-4)
-        found[block] = np.where(hit, t, 2 * _THICKEST).min(axis=1, initial=2 * _THICKEST)
-    return np.asarray(np.clip(found / 2, _THINNEST, _THICKEST))
+        t = np.where(hit, t, 2 * _THICKEST)
+        first[block] = t.min(axis=1, initial=2 * _THICKEST)
+        # On an edge, two faces are hit at the same distance.
+        behind = np.where(t > first[block][:, None] + 1e-4, t, 2 * _THICKEST)
+        second[block] = behind.min(axis=1, initial=2 * _THICKEST)
+    return first, second
 
 
 def _near(points: Points) -> Iterator[NDArray[np.int64]]:
