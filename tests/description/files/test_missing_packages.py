@@ -143,6 +143,21 @@ def test_nothing_is_left_of_the_robot(load):
         load(INCLUDE.format(LASER), '<xacro:laser name="front"/>')
 
 
+def test_nothing_but_the_world_is_left_of_the_robot(load):
+    with raises(FILE_MISSING, name="laser_x"):
+        load(INCLUDE.format(LASER), '<link name="world"/>', "<xacro:laser/>")
+
+
+def test_a_yaml_file_of_an_absent_package_is_reported_by_the_package(load):
+    with raises(FILE_MISSING, name="laser_x"):
+        load(
+            BASE,
+            '<xacro:property name="sizes" '
+            "value=\"${xacro.load_yaml('$(find laser_x)/sizes.yaml')}\"/>",
+            '<link name="${sizes}"/>',
+        )
+
+
 def test_a_mesh_in_an_absent_package_is_left_out(load):
     mesh = '<link name="base"><visual><geometry><mesh filename="file://{}"/></geometry></visual></link>'
     robot = load(mesh.format("$(find shapes_y)/a.stl"))

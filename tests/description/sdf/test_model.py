@@ -871,3 +871,20 @@ def test_a_moving_link_without_inertia_or_shape_is_a_point_mass():
     assert told.code is INERTIA_IMPOSSIBLE
     assert told.severity == "info"
     assert found.links[1].inertial.mass == 0.1
+
+
+@pytest.mark.parametrize(
+    ("geometry", "expected"),
+    [
+        (
+            "<cylinder><radius>0.1</radius><length>0.00</length></cylinder>",
+            m.Cylinder(radius=0.1, length=1e-3),
+        ),
+        ("<sphere><radius>0</radius></sphere>", m.Sphere(radius=1e-3)),
+    ],
+)
+def test_a_length_of_0_is_made_a_millimetre(geometry, expected):
+    found = link(f'<visual name="v"><geometry>{geometry}</geometry></visual>')
+    assert found.links[0].visuals[0].shape == expected
+    (told,) = found.diagnostics
+    assert (named(told), told.values["stated"].strip("0.")) == ("value-ignored", "")

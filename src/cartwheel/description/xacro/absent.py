@@ -17,6 +17,8 @@ from cartwheel.description.losses import loss
 from cartwheel.errors import DescriptionError, Diagnostic, Origin, Value
 from cartwheel.similar_names import suggestion
 
+_WORLD = "world"
+"""The link that represents the world."""
 _PARENTS = ("parent", "parent_link", "attach_to", "connected_to", "parent_name")
 """Names of the macro parameter with the link to which a part is attached."""
 
@@ -154,7 +156,7 @@ class Absences:
             return
         links = {node.attributes["name"].strip(): node for node in root.all("link")
                  if "name" in node.attributes}  # fmt: skip
-        if not links and self._first is not None:
+        if not links.keys() - {_WORLD} and not root.all("joint") and self._first is not None:
             raise self._first
         stated = set(links)
         held: dict[str, str] = {}
@@ -170,7 +172,7 @@ class Absences:
         free = [name for name in links if name not in held]
         if len(free) < 2:
             return
-        main = max(free, key=lambda name: (name == "world", name in stated, _weight(name, held)))
+        main = max(free, key=lambda name: (name == _WORLD, name in stated, _weight(name, held)))
         for name in free:
             if name != main:
                 root.children.append(self._joint(name, main, links, held))

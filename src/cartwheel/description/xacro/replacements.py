@@ -21,6 +21,7 @@ from cartwheel.codes import files as codes
 from cartwheel.description.elements import xml
 from cartwheel.description.expressions import Evaluator, ExpressionError
 from cartwheel.description.files.install_rules import source_of
+from cartwheel.description.files.other_places import FIND
 from cartwheel.description.files.package_folders import stand_in_name
 from cartwheel.description.xacro.absent import LostCall
 from cartwheel.description.xacro.dom import Document, Element, replace_node
@@ -240,11 +241,15 @@ def replace_functions(module: ModuleType, run: Run) -> None:
 
     def load_yaml(filename: str) -> object:
         path = Path(abs_filename_spec(str(filename)))
+        lacking = FIND.search(str(filename))
         if path.exists():
             run.packages.require(path, "the file", run.origin())
         try:
             content = yaml_text.read(path)
         except FileNotFoundError:
+            if lacking is not None:
+                # Raises the error for the package that `Absences.find` did not find.
+                run.packages.find(lacking[1], run.origin())
             raise
         except (OSError, UnicodeDecodeError) as error:
             reason = error if isinstance(error, OSError) else "it is not UTF-8"

@@ -123,6 +123,15 @@ def _measure(shape: Node, tag: str, ctx: Context) -> float:
     if node is None:
         _warn_default(shape, tag, ctx)
         return 1.0
+    if node.number() == 0:
+        # Gazebo shows nothing, or a disc.
+        ctx.warn(
+            tags.VALUE_IGNORED,
+            f"the {tag} of the {shape.tag} is 0, so {_FLAT * 1e3:g} mm is used",
+            origin=node.origin,
+            values={"stated": node.text},
+        )
+        return _FLAT
     return positive(node, f"a {tag}")
 
 
