@@ -82,7 +82,7 @@ def grid(height):
 
 
 def test_boxes_that_fall_on_a_sheet_of_many_pieces_stay_flat(make, tmp_path):
-    """They overlap some pieces by less than they sink in, where the shortest way out is sideways."""
+    """They overlap some pieces by less than they sink in, so the shortest way out is sideways."""
     path = tmp_path / "sheet.stl"
     trimesh.Trimesh(*grid(lambda x, y: 0.2 * ((x < -4.9) & (y < -4.9)))).export(path)
     places = [(0.113 * k - 2 + 0.5 * k, 0.07 * k, 0.1 * k) for k in range(10)]

@@ -291,8 +291,8 @@ def _sides(
 ) -> list[Points]:
     """Further corners at the back of each slab, below neighbours in almost the same plane.
 
-    Whatever sinks into a slab next to a neighbour would otherwise be pushed along the surface by the
-    neighbour's side, if that is the shortest way out. A side that is this oblique pushes it up.
+    Whatever sinks into a slab next to a neighbour would otherwise be pushed along the surface by
+    the neighbour's side, if that is the shortest way out. A side that is this oblique pushes it up.
     """
     starts, ways, ups, deep, owners = [], [], [], [], []
     for index, (front, normal, thick) in enumerate(zip(fronts, facing, thicknesses, strict=True)):
@@ -322,7 +322,7 @@ def _sides(
         first, second = (each.reshape(above.shape[:3]) for each in found)
         limit = thick[:, None, None]
         # The neighbour is hardly lower, and as thick.
-        covered = (first < _LOWER * limit) & (second > 1.99 * limit)
+        covered: NDArray[np.bool_] = (first < _LOWER * limit) & (second > 1.99 * limit)
         is_near = covered[:, 0].all(axis=1)
         is_far = is_near & covered[:, 1].all(axis=1)
         for edge in np.flatnonzero(is_near).tolist():
