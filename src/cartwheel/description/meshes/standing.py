@@ -322,9 +322,9 @@ def _sides(
         first, second = (each.reshape(above.shape[:3]) for each in found)
         limit = thick[:, None, None]
         # The neighbour is hardly lower, and as thick.
-        covered = np.asarray((first < _LOWER * limit) & (second > 1.99 * limit)).all(axis=2)
-        is_near = covered[:, 0]
-        is_far = covered.all(axis=1)
+        hit = np.logical_and(first < _LOWER * limit, second > 1.99 * limit)
+        covered = np.logical_and.reduce(hit, axis=2)
+        is_near, is_far = covered[:, 0], covered[:, 0] & covered[:, 1]
         for edge in np.flatnonzero(is_near).tolist():
             reach = _REACHES[int(is_far[edge])]
             ends = start[edge, [0, -1]] + reach * way[edge] - thick[edge] * up[edge]
