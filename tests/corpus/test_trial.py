@@ -967,24 +967,24 @@ def test_a_long_robot_may_settle_further_than_a_short_one():
     assert replace(stood, size=0.5).state == "sinks"
 
 
-def test_an_error_that_follows_from_feet_on_the_ground_is_none(tmp_path, tried):
-    """Friction of 2 m g on the foot of a leg 0.3 m long, against a gain of 20 N m/rad."""
+def test_a_leg_whose_foot_does_not_slide_is_tested_above_the_ground(tmp_path, tried):
+    """The friction on the foot, 20 N at 0.3 m, exceeds a gain of 5 N m/rad times 0.2 rad."""
     path = tmp_path / "soft.yaml"
-    path.write_text(PID.format(p=20.0))
-    leg = BOX.format(name="leg", at="0 0 -0.1", size="0.05 0.05 0.6").replace(
+    path.write_text(PID.format(p=5.0))
+    leg = BOX.format(name="leg", at="0 0 0", size="0.05 0.05 0.6").replace(
         'mass value="2"', 'mass value="0.3"'
     )
     joint = (
         '<joint name="shoulder" type="revolute"><parent link="base"/><child link="leg"/>'
         '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="50" velocity="2"/></joint>'
-        '<gazebo reference="leg"><mu1>2</mu1><mu2>2</mu2></gazebo>'
+        '<gazebo reference="leg"><mu1>9</mu1><mu2>9</mu2></gazebo>'
     )
-    feet = BOX.format(name="base", at="0 0 -0.2", size="0.4 0.4 0.6")
+    feet = BOX.format(name="base", at="0 0 -0.2", size="0.4 0.4 0.597")
     drive = ARM[ARM.index("<transmission") :].format(kind="Effort")
     verdict = tried(feet + leg + joint + drive, controllers=[path])
     (reach,) = verdict.reaches
-    assert reach.sag > 0.0
     assert reach.arrived
+    assert abs(reach.error) < 0.05
 
 
 def test_wheels_that_point_to_one_side_explain_a_small_error_to_this_side():

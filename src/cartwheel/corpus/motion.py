@@ -13,11 +13,13 @@ from cartwheel.corpus.couplings import consistent, couplings_of, slopes, within
 from cartwheel.corpus.heading import heading
 from cartwheel.corpus.hovering import climbs, drag_errors
 from cartwheel.corpus.limits import StatedLimits
-from cartwheel.corpus.loads import grip, held_by, resistance
+from cartwheel.corpus.loads import held_by, resistance
 from cartwheel.corpus.thrusters import has_thrusters
 from cartwheel.corpus.verdict import TOLERANCE, Drive, Reach, Stand
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.devices.drives.drive import Drives
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.classic.drives.planar_move import PlanarMove
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 from cartwheel.geometry import Pose, rotate
@@ -43,6 +45,9 @@ _MEASURED = 2.0
 _SETTLED = 0.01
 """Increase from one measurement to the next, relative to the command, below which a base no longer
 accelerates."""
+_SLID = 0.01
+"""Speed that a base of planar_move loses, also in Gazebo, if it slides with a friction coefficient
+of 1, m/s."""
 _RATE = 20.0
 """Rate of commands, Hz."""
 _STEP, _SLIDE = 0.2, 0.02
@@ -115,6 +120,8 @@ def drives(
         min(_LONGEST, 2.0 * max(forward / limits.acceleration, turn / limits.turn_acceleration)),
     )
     sag, sag_turn = drag_errors(robot.description)
+    if any(plugin_named(tag.filename) is PlanarMove for tag in robot.description.plugins):
+        sag = max(sag, _SLID / forward)
     for info in world.graph.topics():
         if not info.drives or (info.subscribers and idle >= set(info.subscribers)):
             continue
@@ -169,10 +176,7 @@ def reaches(
         targets = {name: chosen[name] for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
         told += [(taker, joints[name], value) for name, value in targets.items()]
-    held = {
-        joint.name: held_by(world, model, joint.name) + grip(world, model, description, joint)
-        for _, joint, _ in told
-    }
+    held = {joint.name: held_by(world, model, joint.name) for _, joint, _ in told}
     coupled = couplings_of(world, model)
     if told:
         world.run(_REACHING)
@@ -208,7 +212,7 @@ def _sag(world: World, model: Model, joint: str, gain: float, held: float) -> fl
     """Error of a proportional controller because of its load, rad or m.
 
     A suspension carries the robot through its wheels, so its load is not gravity at the joint, but
-    what its motor `held` before the command, N m or N, plus the friction of feet on the ground.
+    what its motor `held` before the command, N m or N.
     """
     return max(resistance(world, model, joint)[0], held) / gain if gain > 0 else 0.0
 

@@ -116,7 +116,7 @@ def try_robot(
             )
             for found in _moved(verdict, world, model, robot, standing):
                 verdict = replace(found, diagnostics=world.diagnostics)
-        if _lies(verdict):
+        if _lies(verdict) or _is_stuck(verdict):
             verdict = _hung(verdict, robot, controllers)
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
@@ -255,6 +255,13 @@ def _lies(verdict: Verdict) -> bool:
     """Whether a robot without wheels fell. It lies on its joints, which cannot move freely."""
     stand = verdict.stand
     return stand is not None and stand.state in ("tips", "sinks", "moves") and not verdict.drives
+
+
+def _is_stuck(verdict: Verdict) -> bool:
+    """Whether joints of a legged robot do not arrive, perhaps because its feet do not slide."""
+    stand = verdict.stand
+    free = stand is not None and not stand.fixed and not verdict.drives
+    return free and not all(reach.arrived for reach in verdict.reaches)
 
 
 def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]) -> Verdict:

@@ -81,7 +81,8 @@ class Drive:
     limited: bool = False
     """Whether limits in the robot's files are below the usual commands, which were reduced."""
     sag: float = 0.0
-    """Relative error of the speed that follows from drag and the gains of a multicopter."""
+    """Relative error of the speed that follows from drag and the gains of a multicopter, or from
+    the friction of a base without wheels."""
     sag_turn: float = 0.0
     """The same for the turn rate."""
 
