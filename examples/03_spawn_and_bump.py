@@ -15,8 +15,7 @@ while touched is None and world.time < 20:
 
 assert touched is not None, "the cart never reached the post"
 state = touched.states[0]
-stamp = touched.header.stamp
-print(f"at {stamp.sec + stamp.nanosec * 1e-9:.2f} s: {state.collision1_name}")
+print(f"at {cw.seconds(touched.header.stamp):.2f} s: {state.collision1_name}")
 print(f"touches {state.collision2_name} with {state.total_wrench.force.x:.1f} N along x")
 assert state.collision2_name.startswith("my_object::")
 

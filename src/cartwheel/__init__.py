@@ -31,26 +31,45 @@ if TYPE_CHECKING:
         Light,
         Link,
         Lockstep,
+        Mailbox,
         Model,
         Picture,
         Plot,
+        Publisher,
         RecordedContact,
         RecordedMessage,
         Recording,
+        RobotDescription,
+        ServiceServer,
+        Stamp,
         State,
+        Subscription,
         Timer,
         Topic,
         Twist,
         World,
+        WorldDescription,
         build,
+        seconds,
     )
-    from cartwheel.arrays import Scan, camera_matrix, cloud, depth, image, scan
+    from cartwheel.arrays import (
+        Scan,
+        camera_matrix,
+        cloud,
+        depth,
+        image,
+        project,
+        scan,
+        unproject,
+    )
     from cartwheel.checks import check
     from cartwheel.geometry import Pose
     from cartwheel.sweeps import sweep
 
 _ELSEWHERE = ("CartwheelError", "Pose", "TimedOutError", "check", "sweep")
-_ARRAYS = frozenset({"Scan", "camera_matrix", "cloud", "depth", "image", "scan"})
+_ARRAYS = frozenset(
+    {"Scan", "camera_matrix", "cloud", "depth", "image", "project", "scan", "unproject"}
+)
 
 __all__ = [
     "Acceleration",
@@ -70,28 +89,38 @@ __all__ = [
     "Light",
     "Link",
     "Lockstep",
+    "Mailbox",
     "Model",
     "Picture",
     "Plot",
     "Pose",
+    "Publisher",
     "RecordedContact",
     "RecordedMessage",
     "Recording",
+    "RobotDescription",
     "Scan",
+    "ServiceServer",
+    "Stamp",
     "State",
+    "Subscription",
     "TimedOutError",
     "Timer",
     "Topic",
     "Twist",
     "World",
+    "WorldDescription",
     "build",
     "camera_matrix",
     "check",
     "cloud",
     "depth",
     "image",
+    "project",
     "scan",
+    "seconds",
     "sweep",
+    "unproject",
 ]
 __version__ = "0.1.0"
 

@@ -194,3 +194,16 @@ def test_what_cannot_be_measured_is_refused(make, hall):
         hall.clearance("near", "near")
     with raises(PROPERTY_ABSENT):
         hall.clearance("ground_plane", "ground_plane")
+
+
+def test_why_there_is_no_distance(make, hall):
+    near = hall.model("near")
+    with raises(PROPERTY_ABSENT) as caught:
+        hall.clearance(near, near)
+    assert "the same" in str(caught.value)
+    with raises(PROPERTY_ABSENT) as caught:
+        hall.clearance(near, ignore=["far", "ground_plane"])
+    assert "Nothing else" in str(caught.value)
+    with raises(PROPERTY_ABSENT) as caught:
+        hall.clearance(near, "far", ignore="near")
+    assert "first" in str(caught.value)

@@ -218,3 +218,9 @@ def test_cameras_have_the_names_that_a_dataset_takes(tmp_path: Path) -> None:
         post = world.spawn("object.urdf", name="post", x=3.0)
         assert post.cameras == ()
         Dataset(tmp_path / "data", world, cameras=world.cameras).close()
+
+
+def test_the_type_of_an_action_is_not_that_of_a_service():
+    with cw.World() as world, raises(MESSAGE_TYPE_UNKNOWN) as caught:
+        world.serve("/go", "control_msgs/action/FollowJointTrajectory", print)
+    assert "action" in str(caught.value) and "Did you mean" not in str(caught.value)

@@ -20,10 +20,11 @@ from cartwheel.codes.world import (
     RUN_NESTED,
     SIMULATION_CLOSED,
     STEP_COUNT_INVALID,
+    VALUE_INVALID,
     WAIT_TIMED_OUT,
 )
 from cartwheel.errors import CartwheelError, SimulationError
-from cartwheel.messages import encode_cdr
+from cartwheel.messages import encode_cdr, message_class
 
 CMD = "/part2_cmr/cmd_vel"
 STEP = 0.005
@@ -425,3 +426,35 @@ def test_an_action_that_is_no_function_is_named() -> None:
             world.on(99.0, None)  # type: ignore[arg-type]
         assert caught.value.code is OPTION_INVALID
         assert caught.value.values["name"] == "action"
+
+
+def test_a_stamp_is_a_time():
+    with cw.World() as world:
+        cart = world.spawn("rosbots.xacro")
+        world.keep_transforms()
+        odometry = cart.topic("/odom")
+        world.run(1.0)
+        stamp = odometry.history()[30].header.stamp
+        assert cw.seconds(stamp) == odometry.times()[30] == stamp.sec + stamp.nanosec / 1e9
+        one, other = (world.transform("odom", "base_link", time=each)
+                      for each in (stamp, cw.seconds(stamp)))  # fmt: skip
+        assert one == other
+        called = []
+        stamp = message_class("builtin_interfaces/msg/Time")(sec=1, nanosec=500_000_000)
+        world.on(stamp, lambda: called.append(world.time))
+        world.run(1.0)
+        assert called == [1.5]
+        with raises(NUMBER_OUT_OF_RANGE, value=1.5, now=2.0):
+            world.on(stamp, print)
+
+
+def test_the_step_of_a_world_can_be_chosen():
+    with cw.World("empty", step_size=0.001) as world:
+        world.step(3)
+        assert (world.step_size, world.time) == (0.001, 0.003)
+    with cw.build("empty", ["rosbots.xacro"], step_size=0.002).world() as world:
+        assert world.step_size == 0.002
+        world.run(0.1)
+    for wrong in (0.0, -1.0, 2.0, float("nan"), "1"):
+        with raises(VALUE_INVALID):
+            cw.World("empty", step_size=wrong)

@@ -106,6 +106,12 @@ MESSAGES = {
     "print(point.time_from_start.sec, point.positions.shape, goal.points[0].velocities)": False,
     "print(JointTrajectoryPoint(time_from_start='2'))": True,
     "print(JointTrajectory(joint_names='a'))": True,
+    "box: cw.Mailbox[Odometry] = world.mailbox('/odom', Odometry)": False,
+    "sender: cw.Publisher[Odometry] = world.advertise('/odom', Odometry)": False,
+    "link: cw.Subscription = world.subscribe('/odom', print, type=Odometry)": False,
+    "stamp = odometry.history()[0].header.stamp": False,
+    "print(cw.seconds(stamp), world.transform('odom', 'base', time=stamp))": False,
+    "print(cw.seconds(2.0))": True,
     "print(Float64MultiArray(data=[0.04, 0.04]), Float64MultiArray(data=world.time))": False,
 }
 """Lines of a program, and whether each is an error."""

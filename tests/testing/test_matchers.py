@@ -151,6 +151,21 @@ def test_publishes_measures_the_rate(cart):
     assert raised.value.values["count"] == 0
 
 
+def test_a_message_at_the_beginning_does_not_count_in_the_rate():
+    with cw.World() as world:
+        world.spawn("rosbots.xacro")
+        assert publishes(world, "/imu/data", rate=30, seconds=1) == pytest.approx(30, abs=0.1)
+
+
+def test_a_topic_with_a_fault_is_named(cart):
+    with cart.fault("/odom", drop=1.0), pytest.raises(UnmetError) as raised:
+        publishes(cart, "/odom", seconds=0.2)
+    assert "World.faults" in str(raised.value)
+    with pytest.raises(UnmetError) as raised:
+        publishes(cart, DRIVE, seconds=0.1)
+    assert "World.faults" not in str(raised.value)
+
+
 def test_an_unknown_topic_is_an_error(cart):
     with pytest.raises(cw.CartwheelError) as raised:
         publishes(cart, "/odmo")

@@ -96,6 +96,8 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
         "test_it.py::test_fails[0.2]", "--cartwheel-view",
     ):  # fmt: skip
         assert text in done.stdout
+    # A text that is published once is not shown, and each error is told once.
+    assert "/robot_description at" not in done.stdout and "<?xml" not in done.stdout
     (recording,) = (tmp_path / "out").glob("*.mcap")
     (picture,) = (tmp_path / "out").glob("*.png")
     assert picture.stat().st_size > 1000 and (tmp_path / "out/.gitignore").exists()
@@ -223,6 +225,18 @@ def test_fixtures_of_a_project_replace_those_of_the_plugin(pytester_run):
     assert "cartwheel:" not in done.stdout and done.returncode == 1
 
 
+def test_the_fixture_of_the_page(pytester_run):
+    """A state that is made once for a module."""
+    page = (Path(__file__).parents[2] / "docs/testing.md").read_text()
+    (text,) = (
+        block.partition("```")[0]
+        for block in page.split("```python\n")[1:]
+        if "def under_way" in block.partition("```")[0]
+    )
+    done = pytester_run(text)
+    assert done.returncode == 0 and "1 passed" in done.stdout, done.stdout
+
+
 def test_an_unknown_option_of_a_mark_is_an_error(pytester_run):
     done = pytester_run(
         'import pytest\n@pytest.mark.cartwheel(worl="walls")\ndef test_it(world): pass'
@@ -240,3 +254,4 @@ def test_a_wrong_mark_shows_only_the_error(pytester_run):
     assert len(errors) == len(marks) and all("CW" in each for each in errors)
     assert "bench.py" not in done.stdout and "Traceback" not in done.stdout
     assert all(len(each.splitlines()) < 20 for each in errors)
+    assert "another exception" not in done.stdout

@@ -4,6 +4,7 @@ from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
 from cartwheel.api.exchange.faults import Fault
 from cartwheel.api.exchange.lockstep import Lockstep
+from cartwheel.api.exchange.serving import ServiceServer
 from cartwheel.api.joints import Joint, Joints
 from cartwheel.api.links import Link
 from cartwheel.api.model import Model
@@ -20,6 +21,10 @@ from cartwheel.api.surroundings.recorded_contacts import ContactRecord, Recorded
 from cartwheel.api.timing import Timer
 from cartwheel.api.topics import Hold, Topic
 from cartwheel.api.world import World
+from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.graph import CheckedPublisher as Publisher
+from cartwheel.graph import Mailbox, Subscription
+from cartwheel.messages.times import Stamp, seconds
 from cartwheel.saving import State
 
 __all__ = [
@@ -39,16 +44,24 @@ __all__ = [
     "Light",
     "Link",
     "Lockstep",
+    "Mailbox",
     "Model",
     "Picture",
     "Plot",
+    "Publisher",
     "RecordedContact",
     "RecordedMessage",
     "Recording",
+    "RobotDescription",
+    "ServiceServer",
+    "Stamp",
     "State",
+    "Subscription",
     "Timer",
     "Topic",
     "Twist",
     "World",
+    "WorldDescription",
     "build",
+    "seconds",
 ]

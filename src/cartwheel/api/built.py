@@ -126,6 +126,7 @@ def build(
     plugins: str | Path | Sequence[str | Path] = (),
     package_path: str | Path | Sequence[str | Path] = (),
     without: str | Sequence[str] = (),
+    step_size: float | None = None,
 ) -> Built:
     """Reads and compiles a world and its robots once, to make many worlds of them.
 
@@ -145,6 +146,7 @@ def build(
         plugins: As for `World`.
         package_path: As for `World`, and for all robots without a ``package_path`` of their own.
         without: As for `World`.
+        step_size: As for `World`.
 
     Raises:
         DescriptionError: A file cannot be used.
@@ -167,6 +169,7 @@ def build(
             "plugins": plugins,
             "package_path": package_path,
             "without": without,
+            "step_size": step_size,
         },
     )
     built._compile(visuals=visuals)

@@ -12,7 +12,7 @@ from cartwheel.api.arguments import refused, text
 from cartwheel.api.exchange.serving import ProgramHandler, ServiceServer
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.timing import TIMEOUT, timed_out
-from cartwheel.codes.graph import SERVICE_TIMED_OUT
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN, SERVICE_TIMED_OUT
 from cartwheel.codes.world import RUN_NESTED
 from cartwheel.errors import GraphError, SimulationError, UnknownNameError
 from cartwheel.graph import Action, Service, made_message
@@ -144,14 +144,21 @@ class CallingWorld(MessagingWorld):
         Raises:
             UnknownNameError: The type does not exist.
             SimulationError: The world is closed.
-            GraphError: The name is already in use or invalid, or the definition of the type is
-                invalid.
+            GraphError: The name is already in use or invalid, the definition of the type is
+                invalid, or it is the type of an action.
         """
         self.check_open()
         text(name, "name")
         if not callable(handler):
             raise refused("handler", "a function", handler)
         kind = service_name(name_of(type).removesuffix("_Request"))
+        if "/action/" in kind:
+            raise GraphError(
+                f"{kind} is the type of an action, not of a service",
+                code=MESSAGE_TYPE_UNKNOWN,
+                hint="A plugin offers actions, by Plugin.offer_action.",
+                values={"kind": "service type", "name": kind, "meant": ""},
+            )
         types, faults = self.session.types, self.session.simulation.faults
         types.named(kind)
         with finding_with(types):

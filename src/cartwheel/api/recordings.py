@@ -11,7 +11,7 @@ from typing import Any, Generic, NamedTuple, Self, overload
 import numpy as np
 
 from cartwheel import arrays
-from cartwheel.api.values import scalar
+from cartwheel.api.values import Moment, scalar
 from cartwheel.bridges.recording.decoding import decoder
 from cartwheel.bridges.recording.opening import open_recording
 from cartwheel.bridges.recording.reading import RecordedTopic, span_of
@@ -20,6 +20,7 @@ from cartwheel.codes.recording import RECORDING_EMPTY
 from cartwheel.errors import GraphError, RecordingError, UnknownNameError
 from cartwheel.geometry import Array, Pose
 from cartwheel.graph.transform_buffer import TransformBuffer
+from cartwheel.messages.times import is_stamp, nanoseconds
 from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation.clock import NANOSECONDS
 
@@ -109,23 +110,23 @@ class Recording:
         self,
         *topics: str,
         type: builtins.type[M],
-        start: float | None = None,
-        end: float | None = None,
+        start: Moment | None = None,
+        end: Moment | None = None,
     ) -> Iterator[RecordedMessage[M]]: ...
     @overload
     def messages(
         self,
         *topics: str,
         type: str | None = None,
-        start: float | None = None,
-        end: float | None = None,
+        start: Moment | None = None,
+        end: Moment | None = None,
     ) -> Iterator[RecordedMessage[Any]]: ...
     def messages(
         self,
         *topics: str,
         type: Kind | None = None,
-        start: float | None = None,
-        end: float | None = None,
+        start: Moment | None = None,
+        end: Moment | None = None,
     ) -> Iterator[RecordedMessage[Any]]:
         """Yields messages in the order of time.
 
@@ -136,8 +137,8 @@ class Recording:
             topics: Names of topics; without any, all topics with ROS messages of known types, or of
                 `type`.
             type: Class or name of the message type.
-            start: Time of the first message, s; None for the start of the recording.
-            end: Time of the last message, s; None for the end of the recording.
+            start: Time of the first message, s, or a stamp; None for the start of the recording.
+            end: Time of the last message, s, or a stamp; None for the end of the recording.
 
         Raises:
             UnknownNameError: The recording does not contain a topic.
@@ -166,10 +167,10 @@ class Recording:
         return self._messages(decoders, start, end)
 
     def _messages(
-        self, decoders: dict[int, Any], start: float | None, end: float | None
+        self, decoders: dict[int, Any], start: Moment | None, end: Moment | None
     ) -> Iterator[RecordedMessage[Any]]:
-        begin_ns = 0 if start is None else max(0, round(start * NANOSECONDS))
-        end_ns = None if end is None else round(end * NANOSECONDS)
+        begin_ns = 0 if start is None else max(0, _moment_ns(start))
+        end_ns = None if end is None else _moment_ns(end)
         for recorded in self._recording.messages(start_ns=begin_ns, topics=decoders.keys()):
             if end_ns is not None and recorded.time_ns > end_ns:
                 return
@@ -204,7 +205,7 @@ class Recording:
         """
         return arrays.values((each.message for each in self.messages(topic)), field)
 
-    def transform(self, target: str, source: str, time: float | None = None) -> Pose:
+    def transform(self, target: str, source: str, time: Moment | None = None) -> Pose:
         """Pose of the frame `source` in the frame `target`, from the recorded transforms.
 
         The first call reads all messages on ``/tf`` and ``/tf_static``.
@@ -212,15 +213,15 @@ class Recording:
         Args:
             target: Name of a frame.
             source: Name of a frame.
-            time: Time of the messages' stamps, s; None for the newest one at which all transforms
-                between the two frames are known.
+            time: Time of the messages' stamps, s, or a stamp; None for the newest one at which all
+                transforms between the two frames are known.
 
         Raises:
             UnknownNameError: A frame does not exist, or the recording contains no transforms.
             GraphError: The frames are not connected, or not at this time.
             RecordingError: As for `messages`.
         """
-        moment = None if time is None else round(scalar(time, "time") * NANOSECONDS)
+        moment = None if time is None else _moment_ns(time)
         return self._transforms.lookup(target, source, moment)
 
     @functools.cached_property
@@ -259,3 +260,10 @@ class Recording:
                 f'the recording "{self.path}" contains no messages', code=RECORDING_EMPTY
             )
         return span
+
+
+def _moment_ns(time: Moment) -> int:
+    """Times of recordings may be those of a real robot, such as 1.7e9 s."""
+    if is_stamp(time):
+        return nanoseconds(time)
+    return round(scalar(time, "time") * NANOSECONDS)  # type: ignore[arg-type]

@@ -8,6 +8,7 @@ from typing import Any, Self
 from cartwheel.api.arguments import refused
 from cartwheel.api.conditions import Condition
 from cartwheel.api.running import RunningWorld
+from cartwheel.api.values import Moment, moment_ns
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, WAIT_TIMED_OUT
 from cartwheel.errors import CartwheelError, TimedOutError, Value
 from cartwheel.simulation import RunState, Simulation
@@ -193,7 +194,7 @@ class TimedWorld(RunningWorld):
             self._advance(simulation, min(max(pause or step, step), max(left, step)), speed)
         return True
 
-    def on(self, time: float, action: Callable[[], Any]) -> Timer:
+    def on(self, time: Moment, action: Callable[[], Any]) -> Timer:
         """Runs an action once, at a simulation time, before the step that starts there.
 
         Due devices run after the action, so that a command acts in the same step. Actions at the
@@ -201,7 +202,8 @@ class TimedWorld(RunningWorld):
         after the step, as in `subscribe`. `reset` removes all pending actions.
 
         Args:
-            time: Simulation time, s. A time within a step is handled at the next step.
+            time: Simulation time, s, or the stamp of a message. A time within a step is handled at
+                the next step.
             action: Is called without arguments.
 
         Returns:
@@ -211,15 +213,15 @@ class TimedWorld(RunningWorld):
             CartwheelError: The time has passed, or is out of range, or `action` is not a function.
             SimulationError: The world is closed.
         """
-        due = duration_ns(time, "the time in s")
+        due = moment_ns(time)
         action = _function(action)
         with self.used() as simulation:
             if due < simulation.time_ns:
                 now = simulation.time_ns / NANOSECONDS
                 raise CartwheelError(
-                    f"the time must not be before {now:.9g} s (got {time:.9g} s)",
+                    f"the time must not be before {now:.9g} s (got {due / NANOSECONDS:.9g} s)",
                     code=NUMBER_OUT_OF_RANGE,
-                    values={"name": "time", "value": float(time), "now": now},
+                    values={"name": "time", "value": due / NANOSECONDS, "now": now},
                 )
             return Timer(simulation.alarms.add(Alarm(_guarded(action, simulation), due)))
 

@@ -234,6 +234,7 @@ class Topic(Generic[M]):
             CartwheelError: `timeout` is out of range.
             SimulationError: See `World.run`.
         """
+        __tracebackhide__ = True
         before = self.count
         self._world._until(lambda: self.count > before, timeout=timeout)
         if self.count == before or not self._messages:
@@ -265,7 +266,8 @@ class Topic(Generic[M]):
             "messages": self.count,
             "meant": "" if own else meant(self.name, names - {self.name}),
         }
-        text = "; ".join(part for part in (known, last) if part)
+        fault = "World.faults contains a fault of it" if graph.is_disturbed(self.name) else ""
+        text = "; ".join(part for part in (known, last, fault) if part)
         return timed_out(
             f'no message on "{self.name}" was published within {timeout:g} s: {text}', values, hint
         )

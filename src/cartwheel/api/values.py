@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 from cartwheel.codes.world import VALUE_INVALID
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array, Vec3
+from cartwheel.messages.times import Stamp, is_stamp, nanoseconds
+from cartwheel.simulation.limits import duration_ns
 
 Vector = Sequence[float] | NDArray[np.float64]
 """Three numbers."""
+Moment = float | Stamp
+"""A time in s, or the stamp of a message."""
 T = TypeVar("T")
 
 
@@ -95,6 +99,15 @@ def scalar(
     if number > most:
         raise invalid(name, f"must be at most {most:g}", value)
     return number
+
+
+def moment_ns(time: Moment, name: str = "the time in s") -> int:
+    """A time in s, or the stamp of a message, in ns.
+
+    Raises:
+        CartwheelError: The time is not a number, negative or too large.
+    """
+    return nanoseconds(time) if is_stamp(time) else duration_ns(time, name)  # type: ignore[arg-type]
 
 
 def invalid(name: str, rule: str, value: object) -> CartwheelError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, Never, SupportsFloat
 
@@ -15,11 +16,12 @@ from cartwheel.api.model import Model
 from cartwheel.api.pictures import PicturedWorld
 from cartwheel.api.saving import SavingWorld
 from cartwheel.api.surroundings.surroundings import SurroundingWorld
-from cartwheel.api.values import instance, invalid
+from cartwheel.api.values import instance, invalid, scalar
 from cartwheel.codes import codes_matching
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
+from cartwheel.description.sdf.worlds.world import LONGEST_STEP, SHORTEST_STEP
 from cartwheel.errors import CartwheelError, Code, Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import resolve_name
@@ -63,6 +65,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         without: Physics that Cartwheel adds to descriptions and that is to be omitted:
             ``chain-drag``, ``round-tyres``, ``soft-sliding``, ``limited-friction``,
             ``minimum-inertia``, ``raised-efforts``, ``slow-separation`` or ``all``.
+        step_size: Time step of the physics, s; None for that of the world's file, or 0.005 s.
 
     Raises:
         DescriptionError: The world's file cannot be used.
@@ -96,6 +99,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         host: str = "127.0.0.1",
         allow_origin: str | Sequence[str] = (),
         without: str | Sequence[str] = (),
+        step_size: float | None = None,
         _compiler: Compiler | None = None,
         _readings: Readings | None = None,
     ) -> None:
@@ -135,6 +139,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 connections.prepare(plan)
             if not isinstance(world, WorldDescription):
                 world = descriptions.load_world(world)
+            world = _with_step(world, step_size)
             session = Session(
                 world,
                 seed=seed,
@@ -314,6 +319,14 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         with self.lock:
             self.session.simulation.population.resident(text(name, "name"))
         return Model(self, name)
+
+
+def _with_step(world: WorldDescription, step_size: float | None) -> WorldDescription:
+    """A world with a time step, s."""
+    if step_size is None:
+        return world
+    step = scalar(step_size, "step_size", least=SHORTEST_STEP, most=LONGEST_STEP)
+    return replace(world, physics=replace(world.physics, max_step_size=step))
 
 
 def _files(

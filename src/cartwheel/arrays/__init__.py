@@ -7,5 +7,18 @@ from cartwheel.arrays.fields import reader, values
 from cartwheel.arrays.images import camera_matrix, depth, image
 from cartwheel.arrays.messages import array
 from cartwheel.arrays.points import Scan, cloud, scan
+from cartwheel.arrays.projection import project, unproject
 
-__all__ = ["Scan", "array", "camera_matrix", "cloud", "depth", "image", "reader", "scan", "values"]
+__all__ = [
+    "Scan",
+    "array",
+    "camera_matrix",
+    "cloud",
+    "depth",
+    "image",
+    "project",
+    "reader",
+    "scan",
+    "unproject",
+    "values",
+]

@@ -169,8 +169,9 @@ def _inner(value: Any, field: str) -> str | None:
 
 def _not_in(value: Any, step: str, known: list[str], field: str) -> GraphError:
     owner = full_kind_of(value) if hasattr(value, "__msgtype__") else "a number or list"
+    of = "" if step == field else f' of "{field}"'
     return GraphError(
-        f'{owner} does not have the field "{step}" of "{field}"',
+        f'{owner} does not have the field "{step}"{of}',
         code=FIELD_UNKNOWN,
         hint=suggestion(step, known) if known else None,
         values={"field": field, "meant": meant(step, known)},

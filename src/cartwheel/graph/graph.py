@@ -354,6 +354,12 @@ class Graph:
                 topic.filters = change(topic.filters)
                 self._changed(topic)
 
+    def is_disturbed(self, name: str) -> bool:
+        """Whether messages of a topic pass through functions, such as those of a fault."""
+        with self._lock:
+            topic = self._topics.get(resolve_name(name))
+            return topic is not None and bool(topic.filters)
+
     def latched(self, name: str) -> Any:
         """The message that a latched topic delivers to new subscribers; None if there is none."""
         with self._lock:

@@ -198,7 +198,7 @@ class TransformBuffer:
         elif self._began_ns is not None and not error.values["meant"]:
             error.hint = (
                 f"{error.hint or ''} Transforms are stored since {self._began_ns / SECOND:.9g} s, "
-                f"and drives publish theirs during a run."
+                f"and drives publish theirs during a run: call World.keep_transforms before it."
             )
         return error
 

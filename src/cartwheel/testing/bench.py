@@ -29,6 +29,7 @@ _BUILT: pytest.StashKey[dict[str, Built]] = pytest.StashKey()
 _FOLDER = "cartwheel-failures"
 _BUILD_OPTIONS = (
     "strict", "ignore", "lenient", "bridge", "plugins", "package_path", "without", "visuals",
+    "step_size",
 )  # fmt: skip
 _MOST_TOPICS = 30
 _MOST_LINES = 12
@@ -37,6 +38,9 @@ _PATIENCE = 30.0
 """Maximum number of topics, and of lines for each message, in a report."""
 _UNINFORMATIVE = ("dynamic_reconfigure/", "rosgraph_msgs/", "sensor_msgs/msg/CameraInfo")
 """Types of messages that the report omits."""
+_TEXT = "std_msgs/msg/String"
+_LONGEST = 300
+"""Characters of a line of a message in a report."""
 _MOST_BUILT = 20
 _WAIT = 60.0
 """Maximum wall time to wait for a browser, s."""
@@ -73,19 +77,20 @@ class Bench:
             raise
 
     @property
-    def robot(self) -> Model:
-        """The first robot.
+    def missing_robot(self) -> CartwheelError | None:
+        """The error of a test that names no robot; None if it does."""
+        if self._robots:
+            return None
+        return CartwheelError(
+            "the test uses the fixture robot, but names no robot",
+            code=NO_TEST_ROBOT,
+            hint='Add @pytest.mark.robot("FILE"), or set cartwheel_robot in the ini file.',
+            values={"test": self._node.nodeid},
+        )
 
-        Raises:
-            CartwheelError: The test names no robot.
-        """
-        if not self._robots:
-            raise CartwheelError(
-                "the test uses the fixture robot, but names no robot",
-                code=NO_TEST_ROBOT,
-                hint='Add @pytest.mark.robot("FILE"), or set cartwheel_robot in the ini file.',
-                values={"test": self._node.nodeid},
-            )
+    @property
+    def robot(self) -> Model:
+        """The first robot; see `missing_robot`."""
         return self.world.model(self._robots[0])
 
     def close(self) -> None:
@@ -183,12 +188,14 @@ class Bench:
             (topic, *latest)
             for topic, latest in sorted(self._recent.latest.items())
             if not latest[1].__msgtype__.startswith(_UNINFORMATIVE)
+            # Texts such as /robot_description are as at the start of the test.
+            and not (latest[1].__msgtype__ == _TEXT and self._recent.is_latched(topic))
         ]
         for topic, time_ns, message in shown[:_MOST_TOPICS]:
             lines = _without_header(to_yaml(message, arrays=False).splitlines())
             if len(lines) > _MOST_LINES:
                 lines = [*lines[:_MOST_LINES], "…"]
-            body = "\n".join(f"  {line.rstrip()}" for line in lines)
+            body = "\n".join(f"  {_shortened(line.rstrip())}" for line in lines)
             parts.append(f"{topic} at {time_ns / 1e9:.3f} s\n{body}")
         return "\n".join(parts)
 
@@ -311,6 +318,12 @@ def _make(folder: Path) -> None:
 
 def _listed(value: Any) -> list[Any]:
     return list(value) if isinstance(value, list | tuple) else [value]
+
+
+def _shortened(line: str) -> str:
+    if len(line) <= _LONGEST:
+        return line
+    return f"{line[:_LONGEST]}… ({len(line)} characters)"
 
 
 def _without_header(lines: list[str]) -> list[str]:

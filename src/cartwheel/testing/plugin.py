@@ -67,11 +67,16 @@ def world(request: pytest.FixtureRequest) -> Iterator[World]:
     from cartwheel.errors import CartwheelError
     from cartwheel.testing.bench import Bench
 
+    bench: Bench | None = None
+    wrong = ""
     try:
         bench = Bench(request)
     except CartwheelError as error:
-        # The mark or the file is wrong, so the source of Cartwheel does not help.
-        pytest.fail(f"{error.code.number}: {error}", pytrace=False)
+        wrong = f"{error.code.number}: {error}"
+    if bench is None:
+        # The mark or the file is wrong, so the source of Cartwheel does not help. Within the block
+        # above, pytest would show both errors.
+        pytest.fail(wrong, pytrace=False)
     request.node.stash[_BENCH] = bench
     try:
         yield bench.world
@@ -83,6 +88,9 @@ def world(request: pytest.FixtureRequest) -> Iterator[World]:
 def robot(request: pytest.FixtureRequest, world: World) -> Model:  # noqa: ARG001 - it is made first
     """The first robot of the marks, or the robot of the option or ini file."""
     bench: Bench = request.node.stash[_BENCH]
+    missing = bench.missing_robot
+    if missing is not None:
+        pytest.fail(f"{missing.code.number}: {missing}", pytrace=False)
     return bench.robot
 
 

@@ -23,7 +23,8 @@ class Publishes(Condition):
     def __init__(self, topic: str, rate: float | None = None, *, tolerance: float = 0.1) -> None:
         super().__init__()
         self.topic, self.rate, self.tolerance = topic, rate, tolerance
-        self.count = 0
+        self.count = self._later = 0
+        self._faulty = False
         self.passed = 0.0
         """Time since `begin`, s."""
         self._since = self._last = 0.0
@@ -33,8 +34,9 @@ class Publishes(Condition):
     def begin(self, world: World) -> None:
         super().begin(world)
         self._since = self._last = world.time
-        self.count, self.longest_gap = 0, 0.0
+        self.count, self._later, self.longest_gap = 0, 0, 0.0
         world.graph.topic(self.topic)
+        self._faulty = world.graph.is_disturbed(self.topic)
         self._end = world.graph.subscribe(self.topic, self._take).close
 
     def _take(self, _: object) -> None:
@@ -42,6 +44,7 @@ class Publishes(Condition):
         if self.count:
             self.longest_gap = max(self.longest_gap, now - self._last)
         self.count += 1
+        self._later += now > self._since
         self._last = now
 
     def close(self) -> None:
@@ -51,8 +54,8 @@ class Publishes(Condition):
 
     @property
     def measured(self) -> float:
-        """Messages per second of simulation time."""
-        return self.count / self.passed if self.passed > 0 else 0.0
+        """Messages per second of simulation time; one at its very beginning does not count."""
+        return self._later / self.passed if self.passed > 0 else 0.0
 
     def holds(self) -> bool:
         self.passed = self.world.time - self._since
@@ -70,7 +73,8 @@ class Publishes(Condition):
     @property
     def actual(self) -> str:
         if not self.count:
-            return f"no message in {self.passed:.3f} s"
+            fault = "; World.faults contains a fault of the topic" if self._faulty else ""
+            return f"no message in {self.passed:.3f} s{fault}"
         return (
             f"{self.count} messages in {self.passed:.3f} s, which is {self.measured:.4g} Hz; "
             f"the longest gap was {self.longest_gap:.3g} s"

@@ -110,6 +110,10 @@ class Recent:
 
         return self._graph.subscribe(name, take, type_name=kind, node=_NODE)
 
+    def is_latched(self, topic: str) -> bool:
+        """Whether the messages of a topic are latched."""
+        return topic in self._latched
+
     def write(self, path: Path) -> int:
         """Writes the messages to an MCAP file; returns their number.
 

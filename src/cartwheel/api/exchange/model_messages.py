@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast, overload
 from cartwheel.api.arguments import several, text
 from cartwheel.api.handles import Handle
 from cartwheel.api.timing import TIMEOUT
+from cartwheel.api.values import Moment
 from cartwheel.graph import Mailbox, Subscription, resolve_frame, resolve_name
 from cartwheel.messages.typed import Kind, M
 
@@ -137,7 +138,7 @@ class MessagingModel(Handle):
             names, drop=drop, delay=delay, frozen=frozen, noise=noise, bias=bias, change=change
         )
 
-    def transform(self, target: str | Link, source: str | Link, time: float | None = None) -> Pose:
+    def transform(self, target: str | Link, source: str | Link, time: Moment | None = None) -> Pose:
         """`World.transform`, where a name without a leading ``/`` has the model's frame prefix."""
         frames = (self._frame(target), self._frame(source))
         return self._world.transform(*frames, time)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from cartwheel.api.arguments import refused
 from cartwheel.api.messaging import MessagingWorld
-from cartwheel.api.values import scalar
+from cartwheel.api.values import Moment, moment_ns, scalar
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.graph import resolve_frame
 from cartwheel.graph.transform_buffer import KEPT_NS, SECOND, TransformBuffer
@@ -26,7 +26,7 @@ class FramedWorld(MessagingWorld):
 
     _transforms: _Stored | None = None
 
-    def transform(self, target: str | Link, source: str | Link, time: float | None = None) -> Pose:
+    def transform(self, target: str | Link, source: str | Link, time: Moment | None = None) -> Pose:
         """Pose of the frame `source` in the frame `target`, as nodes know it from the transforms.
 
         It is what tf2's ``lookup_transform(target, source, time)`` returns: `Pose.apply` of the
@@ -41,8 +41,8 @@ class FramedWorld(MessagingWorld):
         Args:
             target: Name of a frame, or a link.
             source: Name of a frame, or a link.
-            time: Simulation time, s; None for the newest time at which all transforms between the
-                two frames are known.
+            time: Simulation time, s, or the stamp of a message; None for the newest time at which
+                all transforms between the two frames are known.
 
         Raises:
             UnknownNameError: A frame does not exist.
@@ -50,7 +50,7 @@ class FramedWorld(MessagingWorld):
                 transform, or earlier than the oldest one.
             SimulationError: The world is closed.
         """
-        moment = None if time is None else duration_ns(time, "the time in s")
+        moment = None if time is None else moment_ns(time)
         with self.used():
             frames = self._frame(target, "target"), self._frame(source, "source")
             return self._stored().buffer.lookup(*frames, moment)

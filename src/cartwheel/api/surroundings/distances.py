@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 Places: TypeAlias = "str | Model | Link | Sequence[str | Model | Link]"
 """One model or link, or several: each a `Model`, a `Link` or a name."""
 
+_Test = Callable[[tuple[str, str, str]], bool]
+"""Selects collisions by their names and those of their model and link."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Hit:
@@ -105,7 +108,7 @@ def clearance(
     if found is None:
         raise missing(
             "world", simulation.world.name, "distance between them",
-            "One of the two has no collision, or both are planes.",
+            _why_none(simulation, first, second, ignored, alone=other is None),
         )  # fmt: skip
     (model, link, collision), (with_model, with_link, with_collision) = found.places
     return Clearance(
@@ -117,13 +120,37 @@ def clearance(
     )
 
 
+def _why_none(
+    simulation: Simulation, first: _Test, second: _Test, ignored: _Test, *, alone: bool
+) -> str:
+    """Why two sides have no distance."""
+    places = [
+        (name, link.name, collision.name)
+        for name, resident in simulation.population.residents.items()
+        for link in resident.entry.description.links
+        for collision in link.collisions
+    ]
+    ones, others = (
+        {place for place in places if test(place) and not ignored(place)}
+        for test in (first, second)
+    )
+    if not ones:
+        return "The first one has no collision, or it is ignored."
+    if not others:
+        return (
+            "Nothing else has a collision, besides what is ignored." if alone
+            else "The second one has no collision, or it is ignored."
+        )  # fmt: skip
+    return "Both are the same." if ones == others else "Both are planes."
+
+
 def _sides(simulation: Simulation, given: Places) -> list[Side]:
     if isinstance(given, str) or not isinstance(given, Sequence):
         return [side_of(simulation, given)]
     return [side_of(simulation, each) for each in given]
 
 
-def among(simulation: Simulation, given: Places) -> Callable[[tuple[str, str, str]], bool]:
+def among(simulation: Simulation, given: Places) -> _Test:
     """Whether a collision belongs to one of some models or links."""
     sides = _sides(simulation, given)
     return lambda place: any(
@@ -131,7 +158,7 @@ def among(simulation: Simulation, given: Places) -> Callable[[tuple[str, str, st
     )
 
 
-def _not_among(simulation: Simulation, given: Places) -> Callable[[tuple[str, str, str]], bool]:
+def _not_among(simulation: Simulation, given: Places) -> _Test:
     """Whether a collision belongs to other models than these, or those of these links."""
     models = {model for model, _ in _sides(simulation, given)}
     return lambda place: place[0] not in models
