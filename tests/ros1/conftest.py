@@ -51,12 +51,12 @@ def build() -> subprocess.CompletedProcess[str]:
     venv = Path(sys.executable).parent.parent
     made = ROOT / "ros1" / "build"
     made.mkdir(exist_ok=True)
-    sources, built = _sources(venv), made / "tests.sources"
+    state = made / "tests.state"
     with (made / "tests.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if built.exists() and built.read_text() == sources:
+        if state.exists() and state.read_text() == _state(venv):
             return subprocess.CompletedProcess([], 0, "", "")
-        built.unlink(missing_ok=True)
+        state.unlink(missing_ok=True)
         done = subprocess.run(
             [BUILD],
             env={**os.environ, "VENV": str(venv), "ROS_LANG_DISABLE": OTHER_LANGUAGES},
@@ -65,18 +65,28 @@ def build() -> subprocess.CompletedProcess[str]:
             check=False,
         )
         if done.returncode == 0:
-            built.write_text(sources)
+            state.write_text(_state(venv))
         return done
 
 
-def _sources(venv: Path) -> str:
-    """All that an overlay is built from: files with their times and sizes."""
+def _state(venv: Path) -> str:
+    """What the overlay is built from and has become: files with their times and sizes.
+
+    The log is that of the last build, which may have been with other options.
+    """
     found = [f"{venv} {OTHER_LANGUAGES}"]
-    for folder, _, names in os.walk(ROOT / "ros1" / "src", followlinks=True):
-        for file in filter(Path.exists, (Path(folder, name) for name in names)):
+    tree = os.walk(ROOT / "ros1" / "src", followlinks=True)
+    files = [
+        Path(folder, name)
+        for folder, _, names in tree
+        for name in names
+        if not folder.endswith("__pycache__")
+    ]
+    log = ROOT / "ros1" / "build" / "catkin_make.log"
+    for file in (*files, BUILD, log, ROOT / "ros1" / "devel" / "setup.bash"):
+        if file.exists():
             state = file.stat()
             found.append(f"{file} {state.st_mtime_ns} {state.st_size}")
-    found.append(f"{BUILD} {BUILD.stat().st_mtime_ns}")
     return "\n".join(sorted(found))
 
 
