@@ -16,6 +16,7 @@ from cartwheel.errors import CartwheelError, TimedOutError
 if TYPE_CHECKING:
     from cartwheel.api import (
         Acceleration,
+        ActionServer,
         Built,
         Clearance,
         Contact,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
         Picture,
         Plot,
         Publisher,
+        ReceivedGoal,
         RecordedContact,
         RecordedMessage,
         Recording,
@@ -73,6 +75,7 @@ _ARRAYS = frozenset(
 
 __all__ = [
     "Acceleration",
+    "ActionServer",
     "Built",
     "CartwheelError",
     "Clearance",
@@ -95,6 +98,7 @@ __all__ = [
     "Plot",
     "Pose",
     "Publisher",
+    "ReceivedGoal",
     "RecordedContact",
     "RecordedMessage",
     "Recording",

@@ -2,6 +2,7 @@
 
 from cartwheel.api.built import Built, build
 from cartwheel.api.calling import Goal
+from cartwheel.api.exchange.actions import ActionServer, ReceivedGoal
 from cartwheel.api.exchange.faults import Fault
 from cartwheel.api.exchange.lockstep import Lockstep
 from cartwheel.api.exchange.serving import ServiceServer
@@ -29,6 +30,7 @@ from cartwheel.saving import State
 
 __all__ = [
     "Acceleration",
+    "ActionServer",
     "Built",
     "Clearance",
     "Contact",
@@ -49,6 +51,7 @@ __all__ = [
     "Picture",
     "Plot",
     "Publisher",
+    "ReceivedGoal",
     "RecordedContact",
     "RecordedMessage",
     "Recording",

@@ -9,8 +9,8 @@ from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from cartwheel.api.arguments import refused, text
+from cartwheel.api.exchange.actions import ActionServingWorld
 from cartwheel.api.exchange.serving import ProgramHandler, ServiceServer
-from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.timing import TIMEOUT, timed_out
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN, SERVICE_TIMED_OUT
 from cartwheel.codes.world import RUN_NESTED
@@ -35,7 +35,7 @@ _LOOK = 0.02
 Status = Literal["pending", "active", "succeeded", "cancelled", "aborted", "rejected"]
 
 
-class CallingWorld(MessagingWorld):
+class CallingWorld(ActionServingWorld):
     """The part of `World` that calls services and sends goals to actions."""
 
     _gazebo: GazeboApi | None = None
@@ -156,7 +156,7 @@ class CallingWorld(MessagingWorld):
             raise GraphError(
                 f"{kind} is the type of an action, not of a service",
                 code=MESSAGE_TYPE_UNKNOWN,
-                hint="A plugin offers actions, by Plugin.offer_action.",
+                hint="World.serve_action offers actions.",
                 values={"kind": "service type", "name": kind, "meant": ""},
             )
         types, faults = self.session.types, self.session.simulation.faults

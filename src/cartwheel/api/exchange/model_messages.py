@@ -14,6 +14,7 @@ from cartwheel.messages.typed import Kind, M
 
 if TYPE_CHECKING:
     from cartwheel.api.calling import Goal
+    from cartwheel.api.exchange.actions import ActionServer, ReceivedGoal
     from cartwheel.api.exchange.faults import Fault
     from cartwheel.api.exchange.serving import ServiceServer
     from cartwheel.api.links import Link
@@ -116,6 +117,38 @@ class MessagingModel(Handle):
     def serve(self, name: str, type: Kind, handler: Callable[[Any], object]) -> ServiceServer:
         """`World.serve`, where a name without a leading ``/`` is in the model's namespace."""
         return self._world.serve(self._resolved(name, "name"), cast("str", type), handler)
+
+    @overload
+    def serve_action(
+        self,
+        name: str,
+        type: type[M],
+        on_goal: Callable[[ReceivedGoal[M]], object],
+        *,
+        on_cancel: Callable[[ReceivedGoal[M]], object] | None = None,
+    ) -> ActionServer: ...
+    @overload
+    def serve_action(
+        self,
+        name: str,
+        type: str,
+        on_goal: Callable[[ReceivedGoal[Any]], object],
+        *,
+        on_cancel: Callable[[ReceivedGoal[Any]], object] | None = None,
+    ) -> ActionServer: ...
+    def serve_action(
+        self,
+        name: str,
+        type: Kind,
+        on_goal: Callable[[ReceivedGoal[Any]], object],
+        *,
+        on_cancel: Callable[[ReceivedGoal[Any]], object] | None = None,
+    ) -> ActionServer:
+        """`World.serve_action`, where a name without a leading ``/`` is in the model's
+        namespace.
+        """
+        full = self._resolved(name, "name")
+        return self._world.serve_action(full, cast("str", type), on_goal, on_cancel=on_cancel)
 
     def send_goal(self, action: str, goal: Any = None, **fields: Any) -> Goal:
         """`World.send_goal`, where a name without a leading ``/`` is in the model's namespace."""
