@@ -29,6 +29,9 @@ MET = [
     f"{CART}duration: 1\nexpect: [{{expression: \"field('/odom', 'header.stamp.sec') < 2\"}}]",
     f"{POST}duration: 1\n"
     "expect: [{expression: \"clearance('cart', 'post') > 0.5\", when: always}]",
+    f"{POST}duration: 6\n"
+    "expect: [{touches: [cart, post]}, {expression: \"20 < peak_force('cart', 'post') < 1e5\"},"
+    " {expression: \"peak_force('cart') == peak_force('cart::base_link', 'post')\"}]",
     f"{CART}steps: [{{fault: /odom, drop: 1.0}}, {{wait: 1}}, {{end_fault: /odom}}, {{wait: 1}}]\n"
     "expect: [{expression: \"count('/odom') in range(95, 106)\"}]",
     f"{CART}steps: [{{fault: /odom, bias: {{pose.pose.position.x: 5}}, delay: 0.1, frozen: true,"
@@ -50,6 +53,8 @@ UNMET = [
      " {joint: cart::wheel_left_joint, position: -3, timeout: 1}]", "position", None, None),
     (f"{POST}duration: 15\nexpect: [{{no_contact: cart}}]", "other", "post::link", None),
     (f"{CART}{GO}duration: 1\nexpect: [{{expression: x('cart') > 3}}]", "x('cart')", 0.375, 0.05),
+    (f"{CART}{GO}duration: 1\nexpect: [{{expression: peak_force('cart') > 1}}]",
+     "peak_force('cart')", 0.0, 0.0),
 ]  # fmt: skip
 
 

@@ -19,11 +19,11 @@ from cartwheel.testing.conditions import (
 )
 from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.seeing import Sees
-from cartwheel.testing.touching import Touches
+from cartwheel.testing.touching import GROUND, Touches
 from cartwheel.testing.watching import Watch, default_when
 
 if TYPE_CHECKING:
-    from cartwheel.api import World
+    from cartwheel.api import ContactRecord, World
     from cartwheel.geometry import Pose
 
 T = TypeVar("T")
@@ -44,6 +44,7 @@ class Expression(Condition):
         self._value: Any = None
         self._seen: dict[str, Any] = {}
         self._messages: dict[str, Any] = {}
+        self._records: dict[str, ContactRecord] = {}
         self._ends: list[Callable[[], None]] = []
 
     def begin(self, world: World) -> None:
@@ -56,6 +57,7 @@ class Expression(Condition):
         for end in self._ends:
             end()
         self._ends.clear()
+        self._records.clear()
         self._names = {}
         super().close()
 
@@ -93,6 +95,16 @@ class Expression(Condition):
             value = world.clearance(str(one), str(other)).distance
             return self._noted(f"clearance('{one}', '{other}')", value)
 
+        def peak_force(one: str, other: str | None = None) -> float:
+            key = one if other is None else f"{one}', '{other}"
+            if key not in self._records:
+                record = self._records[key] = world.record_contacts(
+                    between=one if other is None else (one, other),
+                    ignore=GROUND if other is None and GROUND in world.models else (),
+                )
+                self._ends.append(record.close)
+            return self._noted(f"peak_force('{key}')", self._records[key].peak_force)
+
         def joint(model: str, name: str) -> float:
             value = world.model(str(model)).joint(str(name))
             return self._noted(f"joint('{model}', '{name}')", value)
@@ -118,6 +130,7 @@ class Expression(Condition):
             "clearance": clearance,
             "distance": distance,
             "joint": joint,
+            "peak_force": peak_force,
             "count": count,
             "field": field,
         }

@@ -23,8 +23,8 @@ _WHOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAMES: dict[str, Any] = {**BUILTINS, **MATH}
 CONDITION_NAMES = frozenset(
     {
-        *("clearance", "count", "distance", "field", "joint", "pitch", "roll"),
-        *("tilt", "time", "x", "y", "yaw", "z"),
+        *("clearance", "count", "distance", "field", "joint", "peak_force"),
+        *("pitch", "roll", "tilt", "time", "x", "y", "yaw", "z"),
     }
 )
 """What the expression of a condition can use in addition to Python's and math's functions."""
