@@ -1,0 +1,1 @@
+"""Contact sensors of gz-sim, and what reads them."""
