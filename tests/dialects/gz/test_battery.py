@@ -7,6 +7,7 @@ from tests.coded import coded
 
 from cartwheel.codes import devices, running
 from cartwheel.errors import PluginError
+from cartwheel.messages.singles import single
 
 BATTERY = """<plugin name="b" filename="gz-sim-linearbatteryplugin-system">
   <battery_name>main</battery_name><voltage>12</voltage><capacity>0.01</capacity>
@@ -59,12 +60,12 @@ def test_the_current_is_smoothed_by_its_time_constant(make, read):
 def test_it_drains_from_when_the_robot_is_driven(make, read):
     world = cart(make, "<smooth_current_tau>1e-4</smooth_current_tau>")
     told = read(world, STATE, 1.0)[-1]
-    assert told.charge == 0.01
+    assert told.charge == single(0.01)
     assert told.power_supply_status == told.POWER_SUPPLY_STATUS_FULL
     world.publish("/model/cart/joint/axle/cmd_vel", data=1.0)
-    assert read(world, STATE, 1.0)[-1].charge < 0.01
+    assert read(world, STATE, 1.0)[-1].charge < single(0.01)
     world.reset()
-    assert read(world, STATE, 1.0)[-1].charge == 0.01
+    assert read(world, STATE, 1.0)[-1].charge == single(0.01)
 
 
 def test_topics_of_any_type_start_and_stop_it(make, read):
@@ -74,7 +75,7 @@ def test_topics_of_any_type_start_and_stop_it(make, read):
     world.run(0.1)
     world.publish("/model/cart/joint/axle/cmd_vel", data=0.0)
     world.run(1.0)
-    assert read(world, STATE, 0.1)[-1].charge < 0.01
+    assert read(world, STATE, 0.1)[-1].charge < single(0.01)
     world.publish("/rest")
     world.run(0.1)
     before = read(world, STATE, 0.1)[-1].charge

@@ -5,13 +5,14 @@ import pytest
 from tests.devices.rays.scanners import HEIGHT, box, model, scan, sensor, wall
 
 from cartwheel.geometry import Pose
+from cartwheel.messages.singles import single
 
 
 def test_the_message_says_what_the_sensor_is(make):
     world = make.world(wall(make, 2.0), make.sdf(model(sensor(low=-1.0, high=1.5, samples=11))))
     message = scan(world)
     assert message.header.frame_id == "laser"
-    assert (message.range_min, message.range_max) == (0.1, 10.0)
+    assert (message.range_min, message.range_max) == (single(0.1), 10.0)
     assert (message.angle_min, message.angle_max) == (-1.0, 1.5)
     assert message.angle_increment == pytest.approx(0.25)
     # All rays are measured in one moment, as in Gazebo.

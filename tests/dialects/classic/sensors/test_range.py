@@ -9,6 +9,7 @@ from tests.devices.rays.range_finders import finder, messages, wall
 from cartwheel.codes import devices
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Pose
+from cartwheel.messages.singles import single
 
 
 def test_it_reads_the_nearest_thing_ahead(make):
@@ -27,13 +28,13 @@ def test_the_message_says_what_the_tags_say(make):
     assert message.header.frame_id == "sonar_link"
     assert message.radiation_type == message.INFRARED
     assert message.field_of_view == 0.5
-    assert (message.min_range, message.max_range) == (0.05, 4.0)
+    assert (message.min_range, message.max_range) == (single(0.05), 4.0)
 
 
 def test_what_is_not_said_is_as_in_gazebo(make):
     message = messages(make.world(make.sdf(finder(""))), "/range")[0]
     assert message.radiation_type == message.ULTRASOUND
-    assert message.field_of_view == 0.05
+    assert message.field_of_view == single(0.05)
     assert message.header.frame_id == "nose"
 
 

@@ -8,6 +8,7 @@ from tests.devices.rays.walls import fields, messages, on_the_wall, places, worl
 from tests.dialects.makers.test_velodyne_laser import VELODYNE
 
 from cartwheel.errors import CartwheelError
+from cartwheel.messages.singles import single
 
 RAY = "libgazebo_ros_ray_sensor.so"
 
@@ -49,7 +50,7 @@ def test_a_ray_sensor_gives_the_least_range(make):
     # The wider of the two angles.
     assert message.field_of_view == pytest.approx(1.0)
     assert message.radiation_type == message.INFRARED
-    assert (message.min_range, message.max_range) == (0.1, 10.0)
+    assert (message.min_range, message.max_range) == (single(0.1), 10.0)
     nothing = messages(ray(make, tags, most=1.5), "/cloud/out")[0]
     assert nothing.range == math.inf
 
