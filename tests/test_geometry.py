@@ -11,7 +11,7 @@ from tests.coded import raises
 import cartwheel as cw
 from cartwheel import geometry as g
 from cartwheel.codes.command import OPTION_INVALID
-from cartwheel.codes.world import VALUE_INVALID
+from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, VALUE_INVALID
 
 ANGLE = st.floats(-math.pi, math.pi)
 PITCH = st.floats(-1.5, 1.5)
@@ -200,3 +200,16 @@ def test_a_pose_has_as_many_numbers_as_it_needs(wrong):
         g.Pose((0.0, 0.0, 0.0), wrong)
     with raises(VALUE_INVALID, name="angular"):
         cw.Twist(angular=wrong)
+
+
+def test_the_quaternion_of_a_pose_becomes_a_unit_quaternion():
+    assert g.Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 2.0)) == g.Pose()
+    assert cw.Pose(orientation=(0, 0, 3, 4)).orientation == pytest.approx((0, 0, 0.6, 0.8))
+    # What is a unit quaternion keeps its bits, and what has no direction is refused when used.
+    nearly = (0.0, 0.0, 0.6, 0.8000000001)
+    assert g.Pose(orientation=nearly).orientation == nearly
+    zero = g.Pose(orientation=(0.0, 0.0, 0.0, 0.0))
+    with cw.World("post") as world, raises(NUMBER_OUT_OF_RANGE):
+        world.model("post").pose = zero
+    with raises(OPTION_INVALID):
+        g.Pose((0.0, 0.0, 0.0), ("a", 0.0, 0.0, 1.0))

@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 T = TypeVar("T")
 
 IDENTITY: Quat = (0.0, 0.0, 0.0, 1.0)
+_SHORTEST, _LONGEST = 1.0 - 1e-6, 1.0 + 1e-6
+"""Squared lengths between which a quaternion is a unit quaternion."""
 
 
 def to_wxyz(q: Sequence[float]) -> Quat:
@@ -186,6 +188,15 @@ def _floats(values: Sequence[float], count: int, name: str) -> tuple[float, ...]
     return found
 
 
+def _as_unit(q: Quat) -> Quat:
+    """A unit quaternion. One without a direction is refused where it is used, with its name."""
+    x, y, z, w = _floats(q, 4, "orientation")
+    try:
+        return quat_normalize((x, y, z, w))
+    except ValueError:
+        return x, y, z, w
+
+
 def _three(values: Sequence[float], name: str) -> Vec3:
     x, y, z = _floats(values, 3, name)
     return x, y, z
@@ -218,6 +229,9 @@ def immutable(instead: str) -> Callable[[type[T]], type[T]]:
 class Pose:
     """The pose of a frame in another frame: position in metres, orientation ``(x, y, z, w)``.
 
+    The orientation becomes a unit quaternion if it is none. One of length 0 is refused where the
+    pose is used.
+
     Raises:
         CartwheelError: The position is not three numbers, or the orientation not four.
     """
@@ -231,6 +245,13 @@ class Pose:
             object.__setattr__(self, "position", _floats(self.position, 3, "position"))
         if type(self.orientation) is not tuple or len(self.orientation) != 4:
             object.__setattr__(self, "orientation", _floats(self.orientation, 4, "orientation"))
+        x, y, z, w = self.orientation
+        try:
+            if _SHORTEST < x * x + y * y + z * z + w * w < _LONGEST:
+                return
+        except TypeError:
+            pass
+        object.__setattr__(self, "orientation", _as_unit(self.orientation))
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Sequence[float], rpy: Sequence[float] = (0, 0, 0)) -> Pose:
