@@ -93,9 +93,11 @@ if ! command -v "$python" >/dev/null 2>&1; then needed="python3 python3-venv"
 elif ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then needed="python3-venv"; fi
 # Optional packages: cameras need OpenGL, the viewer's tests need a browser.
 wanted=""
-has_library libEGL.so.1 || wanted="$wanted libegl1"
-has_library libGL.so.1 || wanted="$wanted libgl1"
-has_driver || wanted="$wanted libgl1-mesa-dri"
+if [ "$purpose" != lint ] && [ "$purpose" != docs ]; then
+    has_library libEGL.so.1 || wanted="$wanted libegl1"
+    has_library libGL.so.1 || wanted="$wanted libgl1"
+    has_driver || wanted="$wanted libgl1-mesa-dri"
+fi
 [ -z "$wanted" ] || loss="Continuing without: cameras will publish no images."
 if [ "$purpose" = test ]; then
     before=$wanted
