@@ -225,6 +225,22 @@ def test_fixtures_of_a_project_replace_those_of_the_plugin(pytester_run):
     assert "cartwheel:" not in done.stdout and done.returncode == 1
 
 
+def test_a_condition_that_is_not_met_shows_the_test_and_not_cartwheel(pytester_run):
+    done = pytester_run(
+        """
+        def test_it(world):
+            world.run_until(lambda: world.time > 5, timeout=0.1)
+
+        def test_topic(world):
+            world.topic("/nothing", "std_msgs/msg/Empty").wait(timeout=0.1)
+        """
+    )
+    assert done.returncode == 1 and "2 failed" in done.stdout
+    assert "within 0.1 s" in done.stdout
+    for part in ("timing.py", "topics.py", "def run_until", "def wait"):
+        assert part not in done.stdout, done.stdout
+
+
 def test_the_fixture_of_the_page(pytester_run):
     """A state that is made once for a module."""
     page = (Path(__file__).parents[2] / "docs/testing.md").read_text()

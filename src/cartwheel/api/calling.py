@@ -315,6 +315,7 @@ class Goal:
             CartwheelError: `timeout` is out of range.
             SimulationError: See `World.run`.
         """
+        __tracebackhide__ = True
         if not self.done:
             self._world._until(lambda: self.done, timeout=timeout)
         if not self.done:

@@ -124,6 +124,7 @@ class TimedWorld(RunningWorld):
             CartwheelError: An argument is out of range.
             SimulationError: See `run`.
         """
+        __tracebackhide__ = True
         tested = Condition(condition, self)
         if self._until(tested.holds, timeout=timeout, period=period, speed=speed):
             return
