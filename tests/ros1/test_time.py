@@ -22,13 +22,22 @@ rospy.sleep(1.0)
 heard, late, back, hearers = {}, {}, {}, []
 last = {}
 
+def comes(frame, stamp):
+    # With a timeout, `can_transform` would look again after each hundredth of it.
+    until = time.monotonic() + 100
+    while not buffer.can_transform("odom", frame, stamp):
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.01)
+    return True
+
 def hear(name, stamp, frames):
     heard[name] = heard.get(name, 0) + 1
     back[name] = back.get(name, 0) + (stamp <= last.get(name, rospy.Time(0)))
     last[name] = stamp
     # What a message filter waits for: the frames at the message's own time.
     late[name] = late.get(name, 0) + 1
-    if all(buffer.can_transform("odom", frame, stamp, rospy.Duration(100)) for frame in frames):
+    if all(comes(frame, stamp) for frame in frames):
         late[name] -= 1
 
 def listen(name, kind, frames):
