@@ -35,7 +35,7 @@ _MOST_ASKED = 4096
 _MOST_PAIRS, _MOST_PAIRS_AT_ONCE = 50_000_000, 2_000_000
 """Maximum pairs of slabs and nearby faces, in total and at once: ten seconds, and 400 MB."""
 _MOST_SIDE_PAIRS = 10_000_000
-"""Maximum pairs for the sides of slabs, which are not oblique if there would be more."""
+"""Maximum pairs for the sides of a mesh's slabs; each part has its share of them."""
 _SHARES = (0.05, 0.5, 0.95)
 """Where along an edge the neighbour is looked for."""
 _REACHES = np.array([2.0, 4.0])
@@ -73,7 +73,8 @@ def standing_pieces(vertices: NDArray[np.floating], faces: NDArray[np.integer]) 
     for part in parts:
         slabs = None
         if np.ptp(points[np.unique(part)], axis=0).max() > _SMALL and not _is_convex(points, part):
-            slabs = _slabs(*_coarse(points, part), MOST_PIECES - len(pieces))
+            pairs = _MOST_SIDE_PAIRS * len(part) // len(triangles)
+            slabs = _slabs(*_coarse(points, part), MOST_PIECES - len(pieces), pairs)
             hulls += slabs is None
         one_hull = slabs is None and len(parts) == 1
         pieces += [points[np.unique(part)]] if slabs is None else slabs
@@ -180,10 +181,11 @@ def _planes(points: Points, faces: Faces) -> tuple[Points, Points]:
     return normals / np.linalg.norm(normals, axis=1, keepdims=True), a
 
 
-def _slabs(points: Points, faces: Faces, most: int) -> list[Points] | None:
+def _slabs(points: Points, faces: Faces, most: int, pairs: int) -> list[Points] | None:
     """A slab for each convex piece of each flat patch; None if there would be more than `most`.
 
-    Also None if tracing a patch's rim, or finding nearby faces, would take too long.
+    Also None if tracing a patch's rim, or finding nearby faces, would take too long. If the sides
+    would need more than `pairs` pairs of points and nearby faces, they are not oblique.
     """
     if _is_closed(faces):
         faces = _outwards(points, faces)
@@ -208,7 +210,7 @@ def _slabs(points: Points, faces: Faces, most: int) -> list[Points] | None:
     thicknesses = _thicknesses(middles, np.array(facing), points, faces)
     if thicknesses is None:
         return None
-    sides = _sides(fronts, facing, thicknesses, points, faces)
+    sides = _sides(fronts, facing, thicknesses, (points, faces), pairs)
     slabs = []
     for front, normal, middle, thick, side in zip(
         fronts, facing, middles, thicknesses, sides, strict=True
@@ -287,7 +289,11 @@ def _thicknesses(middles: Points, normals: Points, points: Points, faces: Faces)
 
 
 def _sides(
-    fronts: list[Points], facing: list[Points], thicknesses: Points, points: Points, faces: Faces
+    fronts: list[Points],
+    facing: list[Points],
+    thicknesses: Points,
+    surface: tuple[Points, Faces],
+    most: int,
 ) -> list[Points]:
     """Further corners at the back of each slab, below neighbours in almost the same plane.
 
@@ -316,7 +322,7 @@ def _sides(
         (up * thick[:, None])[:, None, None]
     )
     rays = np.broadcast_to(up[:, None, None], above.shape)
-    found = _depths(above.reshape(-1, 3), rays.reshape(-1, 3), points, faces, _MOST_SIDE_PAIRS)
+    found = _depths(above.reshape(-1, 3), rays.reshape(-1, 3), *surface, most)
     sides: list[list[Points]] = [[] for _ in fronts]
     if found is not None:
         first, second = (each.reshape(above.shape[:3]) for each in found)
