@@ -15,9 +15,11 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+from tests import launching
 from tests.devices.drives.carts import cart_sdf
 
 import cartwheel as cw
+from cartwheel.bridges.apart import process
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.model import (
     Box,
@@ -69,6 +71,7 @@ settings.load_profile("cartwheel")
 
 
 def pytest_configure() -> None:
+    vars(process)["Popen"] = launching.Popen
     # A shell starts background jobs with this signal ignored, and programs that tests start and
     # interrupt would inherit that.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

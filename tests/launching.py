@@ -6,16 +6,19 @@ The fork gets the arguments, folder, environment and streams of the start, and t
 program would. `Popen` and `run` are those of `subprocess` in all that tests use of them.
 
 ROS 1's programs have launchers as well, in the environments that were given to `admit_ros1`.
+Bridge processes come from the launcher of the test process, also those of programs that it started.
 
 What differs: the parent is the launcher, ``/proc/PID/cmdline`` and ``/proc/PID/environ`` are the
-launcher's, all modules are imported already, and hashes of strings have the same seed. Tests that
-look at these, at the start-up or at the usage of children use `subprocess`.
+launcher's (`tests.processes` finds the bridges of a program nevertheless), all modules are imported
+already, and hashes of strings have the same seed. Tests that look at these, at the start-up or at
+the usage of children use `subprocess`.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
+import fcntl
 import functools
 import gc
 import importlib
@@ -67,6 +70,8 @@ _AT_START = ("PYTHON", "LD_", "LC_", "LANG", "MUJOCO_", "CARTWHEEL_CODES_ONLY", 
 _LATER = {"PYTHONUNBUFFERED"}
 _LONGEST = 200_000
 """Bytes of a request: more does not fit into a packet."""
+_MOST_FILES = 16
+"""Files that a start may get besides its streams."""
 _signature = inspect.signature(subprocess.Popen._execute_child)
 
 
@@ -82,11 +87,14 @@ class Popen(subprocess.Popen):
             super()._execute_child(*arguments)
             return
         launcher, request = found
+        files = start["pass_fds"]
         ends = [start[name] for name in ("p2cread", "c2pwrite", "errwrite")]
         streams = [number if end == -1 else end for number, end in enumerate(ends)]
         self._answer, theirs = socket.socketpair()
         with theirs:
-            socket.send_fds(_started(launcher, os.getpid()), [request], [*streams, theirs.fileno()])
+            socket.send_fds(
+                _started(launcher, os.getpid()), [request], [theirs.fileno(), *streams, *files]
+            )
         self.pid = int.from_bytes(self._receive(), "little")
         self._child_created = True
         pipes = ("p2cread", "p2cwrite", "c2pread", "c2pwrite", "errread", "errwrite")
@@ -171,8 +179,12 @@ def _request(start: Mapping[str, Any]) -> tuple[_Launcher, bytes] | None:
     words = [os.fsdecode(word) for word in args]
     if words[0] == sys.executable and words[1:3] == ["-m", "cartwheel.cli.main"]:
         words = [str(PROGRAM), *words[3:]]
-    asked = ("preexec_fn", "pass_fds", "gid", "gids", "uid")
-    if any(start.get(name) not in (None, (), []) for name in asked) or not start["close_fds"]:
+    asked = ("preexec_fn", "gid", "gids", "uid")
+    if (
+        len(start["pass_fds"]) > _MOST_FILES
+        or any(start.get(name) not in (None, (), []) for name in asked)
+        or not start["close_fds"]
+    ):
         return None
     if start["umask"] != -1 or start.get("process_group", -1) not in (-1, None):
         return None
@@ -198,6 +210,8 @@ def _request(start: Mapping[str, Any]) -> tuple[_Launcher, bytes] | None:
         "folder": str(folder),
         "environment": environment,
         "session": bool(start["start_new_session"]),
+        "files": start["pass_fds"],
+        "name": BRIDGE.format(os.getpid()) if start["pass_fds"] else "",
     }
     data = json.dumps(request).encode()
     return (launcher, data) if len(data) <= _LONGEST else None
@@ -230,9 +244,13 @@ def _at_start(environment: Mapping[str, str]) -> frozenset[tuple[str, str]]:
     )
 
 
+BRIDGE = "bridge {}"
+"""Name of a bridge process from a launcher, with the process ID of its program."""
 _VARIABLES = _at_start(os.environ)
 """Of Cartwheel's launcher. Tests and libraries change those of this process."""
 _ros1_variables: set[frozenset[tuple[str, str]]] = set()
+_listening = ""
+"""Where the launcher that this process is or comes from listens; empty in other processes."""
 
 
 class _Launcher(NamedTuple):
@@ -245,6 +263,10 @@ class _Launcher(NamedTuple):
 @functools.cache
 def _started(launcher: _Launcher, _process: int) -> socket.socket:
     """The connection to a launcher of this process."""
+    if _listening:  # This process is from a launcher, which can start more.
+        own = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        own.connect(_listening)
+        return own
     own, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with theirs:
         # It ends when this process has ended, which closes the socket.
@@ -272,8 +294,13 @@ def _end(connection: socket.socket, process: subprocess.Popen[bytes], owner: int
 def _serve(control: socket.socket) -> Callable[[], None]:
     """Forks for each request; returns only in a fork, with what it is to run."""
     running: dict[int, tuple[int, socket.socket]] = {}
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    listener.bind(_listening)
+    listener.listen(64)
+    asking = {control.fileno(): control}
     poll = select.poll()
     poll.register(control, select.POLLIN)
+    poll.register(listener, select.POLLIN)
     while True:
         for number, _ in poll.poll():
             if number in running:
@@ -284,27 +311,52 @@ def _serve(control: socket.socket) -> Callable[[], None]:
                 with answer, contextlib.suppress(OSError):
                     answer.send(status.to_bytes(4, "little"))
                 continue
-            data, files, _, _ = socket.recv_fds(control, _LONGEST, 4)
+            if number == listener.fileno():
+                program, _ = listener.accept()
+                asking[program.fileno()] = program
+                poll.register(program, select.POLLIN)
+                continue
+            try:
+                data, files, _, _ = socket.recv_fds(asking[number], _LONGEST, 4 + _MOST_FILES)
+            except OSError:
+                data, files = b"", []  # A killed program.
             if not data:
-                sys.stdout = sys.stderr = None  # The test process has ended.
-                os._exit(0)
+                if number == control.fileno():
+                    sys.stdout = sys.stderr = None  # The test process has ended.
+                    os._exit(0)
+                poll.unregister(number)
+                asking.pop(number).close()
+                continue
             pid = os.fork()
             if pid == 0:
-                return functools.partial(_become, json.loads(data), files[:3])
-            answer = socket.socket(fileno=files.pop())
-            for file in files:
+                return functools.partial(_become, json.loads(data), files[1:])
+            answer = socket.socket(fileno=files[0])
+            for file in files[1:]:
                 os.close(file)
-            answer.send(pid.to_bytes(4, "little"))
+            with contextlib.suppress(OSError):  # Who asked may have been killed.
+                answer.send(pid.to_bytes(4, "little"))
             watched = os.pidfd_open(pid)
             running[watched] = (pid, answer)
             poll.register(watched, select.POLLIN)
 
 
-def _become(request: Mapping[str, Any], streams: list[int]) -> None:
+def _take_files(received: list[int], wanted: list[int]) -> None:
+    """Gives the received files the wanted numbers, and closes all others."""
+    above = max(wanted) + 1
+    moved = [fcntl.fcntl(number, fcntl.F_DUPFD_CLOEXEC, above) for number in received]
+    for number, file in zip(wanted, moved, strict=True):
+        os.dup2(file, number)
+    for file in [int(path.name) for path in Path("/dev/fd").iterdir()]:
+        if file not in wanted:
+            with contextlib.suppress(OSError):  # That of the listing itself.
+                os.close(file)
+
+
+def _become(request: Mapping[str, Any], files: list[int]) -> None:
     """Runs a start in this process."""
-    for number, stream in enumerate(streams):
-        os.dup2(stream, number)
-    os.closerange(3, os.sysconf("SC_OPEN_MAX"))
+    _take_files(files, [0, 1, 2, *request["files"]])
+    if request["name"]:
+        Path("/proc/self/comm").write_text(request["name"])
     if request["session"]:
         os.setsid()
     os.chdir(request["folder"])
@@ -389,6 +441,12 @@ def _main() -> Callable[[], None]:
     for name in _OF_ROS1 if sys.executable == ROS1_PYTHON else (*_modules(), *_OTHERS):
         with contextlib.suppress(ImportError):  # It needs a package that is not installed.
             importlib.import_module(name)
+    if sys.executable != ROS1_PYTHON:
+        from cartwheel.bridges.apart import process
+
+        vars(process)["Popen"] = Popen
+    global _listening
+    _listening = f"\0cartwheel-tests-{os.getpid()}"
     gc.collect()
     # Otherwise a collection in a fork copies all pages.
     gc.freeze()

@@ -5,6 +5,8 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+from tests.launching import BRIDGE
+
 _MARK = "cartwheel.bridges.apart.child"
 
 
@@ -13,7 +15,9 @@ def bridges_of(process: subprocess.Popen[Any]) -> list[int]:
     found = []
     for folder in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError, IndexError):
-            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == process.pid and _MARK in (folder / "cmdline").read_text():
+            name, _, state = (folder / "stat").read_text().partition("(")[2].rpartition(")")
+            if name == BRIDGE.format(process.pid) or (
+                int(state.split()[1]) == process.pid and _MARK in (folder / "cmdline").read_text()
+            ):
                 found.append(int(folder.name))
     return sorted(found)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import json
 import socket
-import subprocess
 import sys
 from collections.abc import Callable, Mapping
+from subprocess import DEVNULL, Popen, TimeoutExpired
 from typing import Any
 
 from cartwheel.bridges.apart.host import GraphHost
@@ -59,13 +59,13 @@ class BridgeProcess:
         keep_socket(self._own)
         self._files, their_files = RingFiles.pair()
         patience = "patient" if patient else ""
-        self._process = subprocess.Popen(  # noqa: S603 - runs Python with this package
+        self._process = Popen(  # noqa: S603 - runs Python with this package
             [
                 *(sys.executable, "-c", _PROGRAM, json.dumps(sys.path)),
                 *(kind, patience, caller().value, str(theirs.fileno()), str(their_files)),
             ],
             pass_fds=[theirs.fileno(), *their_files.numbers],
-            stdin=subprocess.DEVNULL,
+            stdin=DEVNULL,
             # Cartwheel handles Ctrl-C in a terminal.
             start_new_session=True,
         )
@@ -177,7 +177,7 @@ class BridgeProcess:
             self._ring.close()
         try:
             self._process.wait(_END)
-        except subprocess.TimeoutExpired:
+        except TimeoutExpired:
             self._process.kill()
 
     @property
