@@ -115,6 +115,24 @@ def test_wheels_are_apart_as_their_joints_are(bench):
     assert finding.instead == "<wheel_separation>0.3</wheel_separation>"
 
 
+def test_tapered_wheels_are_apart_as_the_parts_that_touch_the_ground(bench):
+    """A hub of 0.1 m from the joint outward, and a tyre on its outer end."""
+    shape = (
+        "<collision name='{name}'><pose>0 {y} 0 -1.5707963 0 0</pose><geometry><cylinder><radius>"
+        "{radius}</radius><length>{length}</length></cylinder></geometry></collision></link>"
+    )
+    wheels = ""
+    for name, side in (("left", 1), ("right", -1)):
+        hub = shape.format(name="hub", y=side * 0.2, radius=0.08, length=0.1)
+        tyre = shape.format(name="tyre", y=side * 0.24, radius=0.1, length=0.02)
+        text = wheel(name, side * 0.15).replace("</link>", hub, 1)
+        wheels += text.replace("</link>", tyre, 1)
+    (finding,) = bench.find(
+        WHEELS.format(wheels=wheels, separation=0.4), "wheel-separation-mismatch", "x.sdf"
+    )
+    assert finding.instead == "<wheel_separation>0.48</wheel_separation>"
+
+
 def test_a_joint_that_cannot_be_read_is_no_missing_one(bench):
     wheels = wheel("left", 0.15) + wheel("right", -0.15).replace("revolute", "revolut")
     text = WHEELS.format(wheels=wheels, separation=0.3).replace("left_joint>", "joint_name>")

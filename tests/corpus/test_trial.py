@@ -432,6 +432,47 @@ def test_an_error_that_follows_from_gravity_and_the_gains_is_none(tmp_path, trie
     assert verdict.good
 
 
+LIFT = (
+    '<link name="world"/><link name="base"/><link name="cart"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1"/></inertial></link><joint name="stand" type="fixed">'
+    '<parent link="world"/><child link="base"/></joint><joint name="slide" type="prismatic">'
+    '<parent link="base"/><child link="cart"/><axis xyz="0 0 1"/><dynamics damping="1"/>'
+    '<limit lower="-2.5" upper="2.5" effort="1000" velocity="30"/></joint>'
+    '<ros2_control name="s" type="system"><hardware><plugin>gazebo_ros2_control/GazeboSystem'
+    '</plugin></hardware><joint name="slide">{gains}<command_interface name="{kind}_pid"/>'
+    '</joint></ros2_control><gazebo><plugin name="c" filename="libgazebo_ros2_control.so"/>'
+    "</gazebo>"
+)
+"""A cart of 1 kg on a vertical slide, whose hardware contains a PID controller."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "gains", "error"),
+    [
+        # Its weight over the gain.
+        ("position", {"pos_kp": 100, "pos_ki": 1, "pos_kd": 10}, 9.8 / 100),
+        # The integral has reduced it by a half to a third while it is measured.
+        ("velocity", {"vel_kp": 10, "vel_ki": 10, "vel_kd": 0.1}, 0.15),
+    ],
+)
+def test_an_error_that_follows_from_the_load_and_the_gains_of_the_hardware_is_none(
+    tmp_path, tried, kind, gains, error
+):
+    path = tmp_path / "lift.yaml"
+    path.write_text(
+        "controller_manager:\n  ros__parameters:\n    lift:\n"
+        f"      type: {kind}_controllers/JointGroup{kind.title()}Controller\n"
+        "lift:\n  ros__parameters:\n    joints: [slide]\n"
+    )
+    written = "".join(f'<param name="{name}">{value}</param>' for name, value in gains.items())
+    verdict = tried(LIFT.format(kind=kind, gains=written), controllers=[path])
+    (one,) = verdict.reaches or verdict.spins
+    wanted, got = (one.target, one.reached) if kind == "position" else (one.commanded, one.measured)
+    assert wanted - got == pytest.approx(error, rel=0.1)
+    assert error <= one.sag * 1.01
+    assert verdict.good
+
+
 def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tried):
     plugin = (
         '<gazebo><plugin name="p" filename="gz-sim-joint-position-controller-system">'
@@ -458,6 +499,23 @@ def test_an_arm_that_nothing_drives_falls_and_the_reason_is_told(tried):
     assert verdict.stand.state in ("tips", "moves"), verdict.stand
     (fault,) = verdict.faults
     assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
+
+
+def test_an_arm_whose_controller_waits_for_a_command_falls_and_the_reason_is_told(tmp_path, tried):
+    path = tmp_path / "arm.yaml"
+    path.write_text("arm:\n  type: effort_controllers/JointEffortController\n  joint: shoulder\n")
+    arm = ARM.format(kind="Effort")
+    upper = arm[arm.index('<link name="upper">') : arm.index('<joint name="stand"')]
+    arm = upper + arm[arm.index('<joint name="shoulder"') :]
+    arm = arm.replace('xyz="0 0 0.1"', 'xyz="0.02 0 0.5"').replace('"1"/>', '"3"/>')
+    arm = arm.replace('lower="-1" upper="1"', 'lower="-2" upper="2"')
+    verdict = tried(
+        BOX.format(name="base", at="0 0 0", size="0.2 0.2 0.1"), arm, controllers=[path]
+    )
+    assert not verdict.stands, verdict.stand
+    fault = next(each for each in verdict.faults if each.test == "stand")
+    assert (fault.code, fault.source) == (JOINTS_UNDRIVEN, "file")
+    assert fault.reason.values["joints"] == ("shoulder",)
 
 
 def test_a_velocity_error_that_follows_from_the_load_and_the_gain_is_none(tmp_path, tried):

@@ -9,7 +9,7 @@ import numpy as np
 
 from cartwheel.checks.resting import Surfaces, center_of_mass, starting_poses
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_middle, wheel_place
+from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_place, wheel_tread
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
 from cartwheel.geometry import rotate
@@ -115,7 +115,7 @@ def turn_ratio(
     contacts = [
         Contact(
             x=_ahead(axle, wheel_place(robot, joint).position),
-            y=float(axle @ wheel_middle(robot, joint)),
+            y=float(axle @ wheel_tread(robot, joint)),
             rim=rim if joint in left else -rim,
             friction=_friction(robot, joint.child),
             direction=_direction(robot, joint.child, axle),

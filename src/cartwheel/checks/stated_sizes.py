@@ -14,7 +14,7 @@ from cartwheel.checks.controller_files import Controller, Value
 from cartwheel.checks.robot import Robot, Sides
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.units import FARTHEST
-from cartwheel.checks.wheels import axle_of, passive_axle, wheel_axis, wheel_middle, wheel_place
+from cartwheel.checks.wheels import axle_of, passive_axle, wheel_axis, wheel_place, wheel_tread
 from cartwheel.description.model import PluginTag
 from cartwheel.description.solids import Floats
 from cartwheel.dialects.ros_control.parameters import SIZES
@@ -299,23 +299,23 @@ def differs(value: float, real: float, least: float) -> bool:
     return 0 < real < FARTHEST and abs(value - real) > max(TOLERANCE * real, least)
 
 
-def mean_between(one: Stated, *, beside: bool, middles: bool = False) -> float:
+def mean_between(one: Stated, *, beside: bool, treads: bool = False) -> float:
     """Distance between the means of two sets of joints or wheels, m.
 
     Args:
         one: The stated size.
         beside: Measure along the axles, not at right angles to them.
-        middles: Measure from the middle of each wheel's width, not from its joint.
+        treads: Measure from the part of each wheel that touches the ground, not from its joint.
     """
     axle = axle_of(one.robot, one.first, one.second, beside=beside)
     direction = axle if beside else np.array([axle[1], -axle[0], 0.0])
-    first, second = (_mean(one.robot, names, middles) for names in (one.first, one.second))
+    first, second = (_mean(one.robot, names, treads) for names in (one.first, one.second))
     return 0.0 if first is None or second is None else float(abs((first - second) @ direction))
 
 
-def _mean(robot: Robot, names: tuple[str, ...], middles: bool) -> Floats | None:
+def _mean(robot: Robot, names: tuple[str, ...], treads: bool) -> Floats | None:
     places = [
-        wheel_middle(robot, joint) if middles else wheel_place(robot, joint).position
+        wheel_tread(robot, joint) if treads else wheel_place(robot, joint).position
         for name in names
         if (joint := robot.joints[name]).child in robot.placed
     ]

@@ -22,6 +22,8 @@ _BESIDE = 0.1
 """Maximum distance of a wheel from the axle through another one, relative to the track."""
 ROUND = 0.7
 """Minimum ratio of the smallest to the largest width of a round wheel."""
+_WORN = 0.002
+"""Part of a wheel's radius by which points of its tread may differ."""
 _SAME = 1e-6
 """Distance between two joints at the same place, m."""
 CAMBER = 0.5
@@ -52,6 +54,22 @@ def wheel_middle(robot: Robot, joint: Joint) -> tuple[float, float, float]:
             x, y, z = (axis * (along.min() + along.max()) / 2 / (axis @ axis or 1.0)).tolist()
             return (place @ Pose((x, y, z))).position
     return place.position
+
+
+def wheel_tread(robot: Robot, joint: Joint) -> tuple[float, float, float]:
+    """Middle of the part of a wheel that touches the ground, on its axis, in the model frame, m.
+
+    A tapered wheel rolls on its widest part. Without a collision, it is the middle of the wheel.
+    """
+    cloud = _cloud(robot, joint, robot.collisions)
+    if cloud is None:
+        return wheel_middle(robot, joint)
+    axis = np.array(joint.axis.xyz) / (np.linalg.norm(joint.axis.xyz) or 1.0)
+    along = cloud @ axis
+    radii = np.linalg.norm(cloud - np.outer(along, axis), axis=1)
+    tread = along[radii > radii.max() - _WORN * radii.max()]
+    x, y, z = (axis * (tread.min() + tread.max()) / 2).tolist()
+    return (wheel_place(robot, joint) @ Pose((x, y, z))).position
 
 
 def wheel_widths(robot: Robot, joint: Joint, kind: Mapping[str, list[Solid]]) -> Floats | None:

@@ -38,7 +38,7 @@ _ROOM = 0.8
 _ACCELERATION = 5.0
 """rad/s² or m/s², commanded by an effort beyond what holds a joint: the limit of a strong motor
 would accelerate a light link beyond all bounds."""
-_SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
+SPEEDING, _MEASURED, _PUSHING = 1.0, 1.0, 0.5
 """s."""
 _GLIMPSE, _MOVES = 0.1, 1e-5
 """A shorter time of pushing, s, and the minimum speed in it, rad/s or m/s."""
@@ -157,7 +157,7 @@ def _spinning(
         speeds[name] = _velocity(robot.joint(name), model.joint(name), velocity)
         return speeds[name]
 
-    begun = _SPEEDING if velocity == _VELOCITY else _FASTER
+    begun = SPEEDING if velocity == _VELOCITY else _FASTER
     before, after = _moved(world, model, inputs, speed_of, (begun, begun + _MEASURED))
     for each in inputs:
         for name in each.joints:
@@ -225,7 +225,7 @@ def _velocity(joint: Joint | None, position: float, most: float) -> float:
     room, sign = max((upper - position, 1.0), (position - lower, -1.0))
     if upper <= lower or room <= 0:
         return fastest
-    return sign * min(fastest, _ROOM * room / (_SPEEDING + _MEASURED))
+    return sign * min(fastest, _ROOM * room / (SPEEDING + _MEASURED))
 
 
 def _effort(world: World, model: Model, robot: RobotDescription, name: str) -> float:

@@ -75,17 +75,23 @@ def dragging(
 
 
 def gave_way(
-    world: World, model: Model, robot: Robot, before: Mapping[str, float]
+    world: World,
+    model: Model,
+    robot: Robot,
+    before: Mapping[str, float],
+    started: Sequence[Controller],
 ) -> Iterator[Diagnostic]:
-    """Joints without motors that moved while the robot stood.
+    """Joints without motors, or with motors that wait for commands, that moved while it stood.
 
     Args:
         world: The world, after the robot stood.
         model: The robot in the world.
         robot: Its description.
         before: Positions of the joints at the start, rad or m.
+        started: The controllers that run.
     """
-    driven = _driven(world, model)
+    waiting = {name: each.name for each in started if not each.holds for name in each.interfaces}
+    driven = _driven(world, model) - waiting.keys()
     found = {
         joint.name: abs(model.joint(joint.name) - _within(joint, before[joint.name]))
         for joint in robot.description.joints
@@ -104,11 +110,18 @@ def gave_way(
         most = max(found, key=lambda name: found[name])
         names = ", ".join(f'"{name}"' for name in list(found)[:4])
         more = f" and {len(found) - 4} more" if len(found) > 4 else ""
+        wait = most in waiting
+        why = (
+            f"until its first command, the controller of each of the joints {names}{more} does not "
+            "hold it"
+            if wait
+            else f"no controller or plugin drives the joints {names}{more}"
+        )
         yield robot_codes.JOINTS_UNDRIVEN.diagnostic(
-            f"no controller or plugin drives the joints {names}{more}, so they give way: "
-            f'"{most}" moved by {found[most]:.2g}',
+            f'{why}, so they give way: "{most}" moved by {found[most]:.2g}',
             values={"joints": tuple(found)},
             origin=robot.joints[most].origin,
+            hint=f'Command "{waiting[most]}" and the others at the start.' if wait else "",
         )
 
 

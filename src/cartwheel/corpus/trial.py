@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -49,6 +50,8 @@ _LISTENING = 1.0
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
+_COMPLETE = 50.0
+"""Exponent of a factor that is as good as infinite."""
 _WATER = """<sdf version="1.9"><world name="water"><gravity>0 0 -9.8</gravity>
 <plugin name="buoyancy" filename="gz-sim-buoyancy-system"/></world></sdf>"""
 """A world filled with water, for robots with thrusters."""
@@ -206,13 +209,13 @@ def _moved(
     """The verdict after each part of the test, so that an error keeps earlier results."""
     before = motion.positions(world, model)
     stood = motion.stand(world, model, robot, standing)
-    given_up = [] if stood.fixed else [*gave_way(world, model, Robot(robot, None), before)]
+    started = _controllers(world).started
+    given_up = [] if stood.fixed else [*gave_way(world, model, Robot(robot, None), before, started)]
     verdict = replace(verdict, stand=stood, observed=tuple(given_up))
     yield verdict
     topics, silent = _listened(world)
     verdict = replace(verdict, topics=topics, silent=silent)
     yield verdict
-    started = _controllers(world).started
     if not stood.fixed:
         bases = motion.drives(
             world,
@@ -285,7 +288,7 @@ def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]
 
 def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:
     """Proportional gains of PIDs with an effort output and a slow or no integral, by joint."""
-    found: dict[str, float] = {}
+    found = _hardware_gains(started)
     ros1 = any(short_name(tag.filename) == "gazebo_ros_control" for tag in robot.plugins)
     for controller in started:
         values = controller.settings.flat()
@@ -318,6 +321,24 @@ def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, 
                 weak = motion.yields(speed.p, speed.i) or speed.i_max < speed.p
                 if speed.force and weak:
                     found |= dict.fromkeys(speed.joints, speed.p)
+    return found
+
+
+def _hardware_gains(started: Sequence[Controller]) -> dict[str, float]:
+    """The gains of PIDs in the hardware, to which controllers forward their commands."""
+    found: dict[str, float] = {}
+    for controller in started:
+        for joint, hardware in controller.claims.items():
+            interface = controller.interfaces[joint]
+            pid = hardware.pids.get(interface)
+            if pid is None or pid.gains.p <= 0:
+                continue
+            gain, integral = pid.gains.p, pid.gains.i if pid.gains.i_max > 0 else 0.0
+            if interface == "velocity":
+                # The integral reduces the error by this factor before the velocity is measured.
+                found[joint] = gain * math.exp(min(integral / gain * commands.SPEEDING, _COMPLETE))
+            elif motion.yields(gain, integral):
+                found[joint] = gain
     return found
 
 

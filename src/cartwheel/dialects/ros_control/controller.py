@@ -132,6 +132,10 @@ class Controller(Component):
     def idle(self, time_ns: int) -> None:
         """Called instead of `update` while not running, to publish the status of the action."""
 
+    holds: bool = True
+    """Whether it holds its joints before the first command, or their motors at least do not give
+    way."""
+
     senses: bool = False
     """Whether `sense` has messages to publish."""
 

@@ -38,9 +38,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
     for one in sizes:
         if one.measure not in ("apart", "reach"):
             continue
-        apart, joints = (
-            mean_between(one, beside=True, middles=middles) for middles in (True, False)
-        )
+        apart, joints = (mean_between(one, beside=True, treads=treads) for treads in (True, False))
         if one.measure == "reach":
             apart, joints = (
                 (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)

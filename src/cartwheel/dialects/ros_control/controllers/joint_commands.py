@@ -70,6 +70,7 @@ class JointCommand(Controller):
     def configure(self, given: JointCommandParameters) -> None:
         interface = self.type.partition("_")[0]
         self._joint = self.claim(given.joint, interface)
+        self.holds = interface != "effort"
         self._command = 0.0
         self.subscribe("command", _FLOAT, self._on_command)
         if interface == "position":
@@ -182,6 +183,7 @@ class JointGroup(Controller):
             raise settings.invalid("joints", names, "a list of at least one joint")
         self._joints: list[JointHardware] = [self.claim(name, interface) for name in names]
         self._loops = self.read_loops(settings)
+        self.holds = interface != "effort" or bool(self._loops)
         self._commands: list[float] | None = None
         topic = "commands" if self.robot.ros2 else "command"
         self.subscribe(topic, "std_msgs/msg/Float64MultiArray", self._on_commands)

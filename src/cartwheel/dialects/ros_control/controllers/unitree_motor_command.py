@@ -39,6 +39,7 @@ class UnitreeJointController(Controller):
 
     types: ClassVar[tuple[str, ...]] = ("unitree_legged_control/UnitreeJointController",)
     parameters = UnitreeJointParameters
+    holds = False
 
     def configure(self, given: UnitreeJointParameters) -> None:
         self._motor = self.add(LegMotor(self.scope, self.claim(given.joint, "effort")))
