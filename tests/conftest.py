@@ -70,7 +70,10 @@ settings.register_profile(
 settings.load_profile("cartwheel")
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
+    # Worlds are to be as in programs: without a recording, and freed with the last reference.
+    if config.pluginmanager.has_plugin("cartwheel"):
+        config.pluginmanager.unregister(name="cartwheel")
     vars(process)["Popen"] = launching.Popen
     # A shell starts background jobs with this signal ignored, and programs that tests start and
     # interrupt would inherit that.

@@ -113,9 +113,15 @@ def test_sizes_and_points_are_checked() -> None:
         with raises(NUMBER_OUT_OF_RANGE):
             world.picture(**options)
     world.close()
-    for show in (world.picture, world.view):
-        with raises(SIMULATION_CLOSED):
-            show()
+    with raises(SIMULATION_CLOSED):
+        world.view()
+
+
+def test_a_closed_world_is_shown_in_its_last_state() -> None:
+    with cw.World("walls") as world:
+        world.spawn("rosbots.xacro")
+        before = world.picture(64, 48)
+    assert (world.picture(64, 48).pixels == before.pixels).all()
 
 
 def test_a_cell_shows_the_page_in_a_frame(tidy: None) -> None:

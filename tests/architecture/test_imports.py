@@ -20,6 +20,7 @@ LEAVES = {
     "calls",
     "forks",
     "options",
+    "watchers",
     "yaml_text",
     "jobs",
 }
@@ -35,6 +36,7 @@ MAY_IMPORT = {
     "yaml_text": set(),
     "forks": set(),
     "options": set(),
+    "watchers": set(),
     "arrays": set(),
     "gate": set(),
     "messages": set(),

@@ -109,6 +109,92 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
         assert topic in info.stdout
 
 
+OWN_WORLDS = """
+import pytest
+import cartwheel as cw
+
+@pytest.fixture(scope="module")
+def driven():
+    with cw.World("empty") as world:
+        cart = world.spawn("rosbots.xacro", name="driven")
+        cart.publish("/part2_cmr/cmd_vel", linear_x=0.2)
+        world.run(0.3)
+        yield world
+
+def test_closed():
+    with cw.World("post") as world:
+        world.spawn("rosbots.xacro", name="cart")
+        world.run(0.5)
+        assert world.models == ()
+
+def test_many():
+    built = cw.build("empty", ["rosbots.xacro"])
+    worlds = [built.world(seed=seed) for seed in range(9)]
+    assert not worlds
+
+def test_shared(driven):
+    assert driven.time == 0
+
+def test_without():
+    assert cw.build("empty") is None
+
+def test_shared_again(driven):
+    driven.run(0.1)
+    driven.close()
+    assert driven.time == 0
+"""
+
+
+def test_worlds_that_a_test_makes_are_reported_too(pytester_run, tmp_path):
+    done = pytester_run(OWN_WORLDS, "--cartwheel-artifacts=out")
+    assert "5 failed" in done.stdout, done.stdout
+    _, *reports = done.stdout.partition("short test summary")[0].split("____ test_")
+    closed, many, shared, without, again = reports
+    for text in ("cart: x 0.000", "/odom at 0.500", "recording: ", "test_it.py_test_closed.png"):
+        assert text in closed
+    # Those that were made last; without a run, there is nothing to show.
+    assert many.count("cartwheel: world (world ") == 3 and "(world 3 of 3)" in many
+    assert ".mcap" not in many
+    assert "driven: x 0.0" in shared and "/odom at 0.300" in shared and "test_shared.mcap" in shared
+    assert "cartwheel: " not in without
+    assert "time: 0.400 s" in again
+    recordings = list((tmp_path / "out").glob("*.mcap"))
+    pictures = list((tmp_path / "out").glob("*.png"))
+    assert len(recordings) >= 2 and len(pictures) == 3
+    assert all(each.stat().st_size > 1000 for each in recordings + pictures)
+
+
+def test_worlds_of_tests_are_freed_after_them(pytester_run):
+    done = pytester_run(
+        """
+        import gc
+        import weakref
+
+        import cartwheel as cw
+        from cartwheel.batch import Batch
+
+        alive = []
+
+        def test_it():
+            world = cw.World("empty")
+            world.run(0.1)
+            closed = cw.World("empty")
+            closed.close()
+            alive.extend(map(weakref.ref, (world, closed)))
+
+        def test_after():
+            gc.collect()
+            assert [each() for each in alive] == [None, None]
+
+        def test_a_batch():
+            built = cw.build("empty", "rosbots.xacro")
+            with Batch(built, 1, act={}, obs={"/odom": "pose.pose.position.x"}, workers=0) as batch:
+                assert "/robot_description" not in batch.world(0).topics
+        """
+    )
+    assert done.returncode == 0, done.stdout
+
+
 def test_the_recording_contains_the_last_seconds(pytester_run, tmp_path):
     from cartwheel.bridges.recording.opening import open_recording
     from cartwheel.bridges.recording.reading import span_of
@@ -201,7 +287,7 @@ def test_other_runs_import_nothing_of_the_simulation(pytester_run):
         import sys
 
         def test_it():
-            heavy = {"numpy", "mujoco", "cartwheel.api", "cartwheel.testing.bench", "yaml"}
+            heavy = {"numpy", "mujoco", "cartwheel.api", "cartwheel.testing.witnesses", "yaml"}
             assert not heavy & set(sys.modules)
         """
     )

@@ -106,7 +106,7 @@ class Built:
             self._compile(visuals=True)
 
     def _compile(self, *, visuals: bool) -> None:
-        with self.world() as world:
+        with self.world(_watched=False) as world:
             self._models, self._diagnostics = world.models, world.diagnostics
             if visuals:
                 world.session.simulation.engine.visuals.current()

@@ -145,6 +145,8 @@ class PicturedWorld(RunningWorld):
     ) -> Picture:
         """Renders the world, independently of the cameras of the models.
 
+        A closed world is rendered in its last state.
+
         Args:
             width: Pixels, 1 to 8192.
             height: Pixels, 1 to 8192.
@@ -155,7 +157,6 @@ class PicturedWorld(RunningWorld):
             NoOpenGLError: OpenGL is missing; the hint says what to install.
             ForkedError: This process was forked from a process that had rendered an image.
             CartwheelError: A number is out of range, or `eye` and `target` are equal.
-            SimulationError: The world is closed.
         """
         for name, size in (("the width", width), ("the height", height)):
             if not 1 <= number(size, name) <= _LARGEST or size != int(size):
@@ -164,7 +165,9 @@ class PicturedWorld(RunningWorld):
                     code=NUMBER_OUT_OF_RANGE,
                     values={"name": name, "value": size},
                 )
-        with self.used() as simulation:
+        # A closed world shows its last state.
+        with self.lock if self.session.simulation.closed else self.used():
+            simulation = self.session.simulation
             middle, radius = _movable(simulation)
             target = middle if target is None else _point(target, "target")
             # The narrower side must show the whole sphere.
@@ -186,7 +189,11 @@ class PicturedWorld(RunningWorld):
                 far=max(100.0, 10.0 * away),
             )
             simulation.refresh()
-            return Picture(simulation.engine.renderer.render_from(eye, target, lens))
+            try:
+                return Picture(simulation.engine.renderer.render_from(eye, target, lens))
+            finally:
+                if simulation.closed:
+                    simulation.engine.renderer.close()
 
     def view(
         self, port: int | None = None, *, width: int | str = "100%", height: int = 480

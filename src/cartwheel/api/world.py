@@ -30,6 +30,7 @@ from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import check_seed, number
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.unique_names import check_model_name
+from cartwheel.watchers import announce
 
 
 class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
@@ -102,6 +103,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         step_size: float | None = None,
         _compiler: Compiler | None = None,
         _readings: Readings | None = None,
+        _watched: bool = True,
     ) -> None:
         source(world, "world")
         check_seed(-1 if seed is None else seed)
@@ -161,6 +163,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 connections=connections,
                 plan=plan,
             )
+            if _watched:
+                announce(self)
         except BaseException:
             if connections is not None:
                 connections.close()

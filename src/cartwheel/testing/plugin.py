@@ -1,6 +1,7 @@
 """The plugin for pytest: fixtures, marks and options.
 
-pytest imports this module in each run in which Cartwheel is installed, so it imports only pytest.
+pytest imports this module in each run in which Cartwheel is installed, so it imports nothing of the
+simulation.
 """
 
 from __future__ import annotations
@@ -10,9 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from cartwheel.watchers import watch
+
 if TYPE_CHECKING:
     from cartwheel.api import Model, World
     from cartwheel.testing.bench import Bench
+    from cartwheel.testing.witnesses import Witnesses
 
 _MARKS = (
     "world(name, **options): the world of the fixture `world`: a bundled world or a file. The "
@@ -24,6 +28,9 @@ _MARKS = (
     "`record` selects topics, such as `record='/odom'`.",
 )
 _BENCH: pytest.StashKey[Bench] = pytest.StashKey()
+_ITEM: pytest.StashKey[pytest.Item | None] = pytest.StashKey()
+"""The current test."""
+_WITNESSES: pytest.StashKey[Witnesses] = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -61,6 +68,39 @@ def pytest_configure(config: pytest.Config) -> None:
         raise pytest.UsageError("--cartwheel-view cannot be used with -n")
 
 
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Records each world that a test makes from now on."""
+    config = session.config
+    config.add_cleanup(watch(lambda world: _witnesses(config).add(world)))
+
+
+def _witnesses(config: pytest.Config) -> Witnesses:
+    """Records the worlds of tests; made for the first of them."""
+    if _WITNESSES not in config.stash:
+        from cartwheel.testing.witnesses import Witnesses
+
+        config.stash[_WITNESSES] = Witnesses(config)
+        item = config.stash.get(_ITEM, None)
+        if item is not None:
+            config.stash[_WITNESSES].begin(item)
+    return config.stash[_WITNESSES]
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, None]:
+    """Assigns the worlds that are made during a test to it."""
+    stash = item.config.stash
+    stash[_ITEM] = item
+    if _WITNESSES in stash:
+        stash[_WITNESSES].begin(item)
+    try:
+        yield
+    finally:
+        stash[_ITEM] = None
+        if _WITNESSES in stash:
+            stash[_WITNESSES].end()
+
+
 @pytest.fixture
 def world(request: pytest.FixtureRequest) -> Iterator[World]:
     """A world for the test, made from files that were read once. It is closed after the test."""
@@ -70,7 +110,7 @@ def world(request: pytest.FixtureRequest) -> Iterator[World]:
     bench: Bench | None = None
     wrong = ""
     try:
-        bench = Bench(request)
+        bench = Bench(request, _witnesses(request.config))
     except CartwheelError as error:
         wrong = f"{error.code.number}: {error}"
     if bench is None:
@@ -98,10 +138,10 @@ def robot(request: pytest.FixtureRequest, world: World) -> Model:  # noqa: ARG00
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[Any]
 ) -> Generator[None, Any, None]:
-    """Adds what is known about the world to the report of a failed test."""
+    """Adds what is known about the worlds of a failed test to its report."""
     outcome = yield
-    bench = item.stash.get(_BENCH, None)
-    if bench is not None and call.excinfo is not None and call.when != "teardown":
+    witnesses = item.config.stash.get(_WITNESSES, None)
+    if witnesses is not None and call.excinfo is not None and call.when != "teardown":
         report = outcome.get_result()
         if report.failed:
-            report.sections += bench.sections()
+            report.sections += witnesses.sections(item)

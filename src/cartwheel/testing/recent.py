@@ -57,7 +57,9 @@ class Recent:
         self._survey()
 
     def close(self) -> None:
-        """Ends all subscriptions."""
+        """Ends all subscriptions. A closed world has ended them."""
+        if self._simulation.closed:
+            return
         if self._changed in self._graph.on_change:
             self._graph.on_change.remove(self._changed)
         for _, subscription in self._subscriptions.values():
@@ -120,9 +122,10 @@ class Recent:
         Raises:
             RecordingError: The file cannot be written.
         """
-        self._world.session.update_robots()
-        self._survey()
-        self._simulation.drain()
+        if not self._simulation.closed:
+            self._world.session.update_robots()
+            self._survey()
+            self._simulation.drain()
         items = sorted(self._items, key=lambda item: item[0])
         start = items[0][0] if items else self._simulation.time_ns
         first = [(start, *item[1:]) for item in self._latched.values()]
