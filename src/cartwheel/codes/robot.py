@@ -207,3 +207,9 @@ LIMIT_UNREACHABLE = Code(
 WHEELS_TOED = Code(
     "CW249", "wheels-toed", "info", "steered wheels do not point ahead while they are not steered"
 )
+ROOT_NOT_HELD = Code(
+    "CW250",
+    "root-not-held",
+    "warning",
+    "motors push against a light root link that nothing holds",
+)

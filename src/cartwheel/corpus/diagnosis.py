@@ -79,6 +79,7 @@ _JOINTS = frozenset(
         robot.LIMIT_IN_DEGREES,
         robot.EFFORT_ZERO,
         robot.OVERLAPPING_COLLISIONS,
+        robot.ROOT_NOT_HELD,
         devices.EFFORT_LIMIT_TOO_LOW,
         devices.CONTROLLER_GAINS_MISSING,
         devices.JOINT_CLAIMED_TWICE,
