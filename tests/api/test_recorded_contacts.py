@@ -117,6 +117,57 @@ def test_models_come_and_go(world, make):
     assert record.contacts[-1].end == pytest.approx(0.5, abs=2 * STEP)
 
 
+@pytest.mark.parametrize(
+    ("height", "seconds", "periods"), [(0.0005, 0.05, 1), (0.002, 0.05, 2), (0.0005, 0.3, 2)]
+)
+def test_a_short_interruption_within_a_millimetre_is_none(world, make, height, seconds, periods):
+    """The box is lifted and put back: what counts is how far, and for how long."""
+    box = world.spawn(make.box("box", (0.2, 0.2, 0.2)), z=0.1)
+    world.run(0.5)
+    rest = box.pose
+    with world.record_contacts(box) as record:
+        world.run(0.1)
+        lifted = rest.x, rest.y, rest.z + height
+        holding = world.every(200.0, lambda: setattr(box, "pose", cw.Pose(lifted)))
+        start = world.time
+        world.run(seconds)
+        if periods == 1:
+            assert record.first.end is None
+        holding.cancel()
+        box.pose = rest
+        world.run(0.3)
+    assert len(record) == periods
+    ends = [each.end for each in record]
+    assert ends[-1] is None
+    assert ends[:-1] == pytest.approx([start] * (periods - 1), abs=2 * STEP)
+    weight = box.mass * G
+    assert total(record)[2] == pytest.approx(weight * 0.4, abs=0.1 * weight)
+
+
+def test_a_record_that_ends_in_an_interruption(world, make):
+    box = world.spawn(make.box("box", (0.2, 0.2, 0.2)), z=0.1)
+    world.run(0.5)
+    with world.record_contacts(box) as record:
+        world.run(0.1)
+        world.every(200.0, lambda: setattr(box, "pose", cw.Pose((0.0, 0.0, 0.1005))))
+        world.run(0.05)
+        assert record.first.end is None
+    assert record.first.end == pytest.approx(0.6, abs=2 * STEP)
+
+
+def test_wheels_and_casters_that_roll(world, rosbots):
+    cart = world.spawn(rosbots)
+    world.run(0.5)
+    with world.record_contacts((cart, "ground_plane")) as record:
+        cart.publish("/part2_cmr/cmd_vel", linear_x=0.3, angular_z=0.5)
+        world.run(3.0)
+        cart.publish("/part2_cmr/cmd_vel")
+        world.run(1.0)
+    assert sorted(each.links[0] for each in record) == [
+        "caster_link", "wheel_left_link", "wheel_right_link",
+    ]  # fmt: skip
+
+
 def test_recording_changes_nothing(make, rosbots):
     ends = []
     for records in (False, True):

@@ -18,13 +18,20 @@ if TYPE_CHECKING:
 Place = tuple[str, str]
 """Names of a model and of a link in it."""
 _NONE: Vec3 = (0.0, 0.0, 0.0)
+_APART = 0.001
+"""Distance between the surfaces beyond which a contact has ended, m. Source: the thickness of the
+layer in which bodies touch in Gazebo with ODE, `contact_surface_layer`."""
+_PAUSE_NS = 200_000_000
+"""Time without a force after which a contact has ended, ns."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RecordedContact:
-    """A period in which two links touched without interruption.
+    """A period in which two links touched.
 
-    The forces of all points of contact between the two links are added.
+    Bodies that roll, or press lightly, bounce by some micrometres, so there are steps without a
+    force. A contact has ended when the surfaces are more than 1 mm apart, or when there has been no
+    force for 0.2 s. The forces of all points of contact between the two links are added.
     """
 
     models: tuple[str, str]
@@ -34,7 +41,7 @@ class RecordedContact:
     start: float
     """Simulation time of the first step with a force, s."""
     end: float | None
-    """Simulation time of the first step without a force, s; None while they touch."""
+    """Simulation time of the step after the last one with a force, s; None until it has ended."""
     point: Vec3
     """Where they touched first, m, in the world."""
     peak_force: float
@@ -47,17 +54,19 @@ class RecordedContact:
 
 @dataclass(slots=True)
 class _Open:
-    """A contact of the last sample."""
+    """A contact that has not ended."""
 
     start_ns: int
     point: Vec3
     force: Vec3
+    pause_ns: int | None = None
+    """Time since which there is no force, ns; None while there is one."""
     peak: float = 0.0
     peak_ns: int = 0
     impulse: Vec3 = _NONE
 
     def add(self, force: Vec3, now_ns: int) -> None:
-        self.force = force
+        self.force, self.pause_ns = force, None
         strength = math.hypot(*force)
         if strength > self.peak or not self.peak_ns:
             self.peak, self.peak_ns = strength, now_ns
@@ -65,6 +74,11 @@ class _Open:
     def last(self, seconds: float) -> None:
         """The force lasted for a time."""
         self.impulse = _plus(self.impulse, self.force, seconds)
+
+    def pause(self, now_ns: int) -> None:
+        """There is no force from now on."""
+        if self.pause_ns is None:
+            self.force, self.pause_ns = _NONE, now_ns
 
     def record(self, pair: tuple[Place, Place], end_ns: int | None) -> RecordedContact:
         (model, link), (with_model, with_link) = pair
@@ -130,6 +144,7 @@ class ContactRecord:
         """Ends the record. Contacts stay readable."""
         if self._task in self._simulation.population.world_tasks:
             self._simulation.unschedule(self._task)
+            self._end([pair for pair, (_, each) in self._open.items() if each.pause_ns is not None])
 
     @property
     def contacts(self) -> tuple[RecordedContact, ...]:
@@ -155,7 +170,9 @@ class ContactRecord:
         if rewinds != self._rewinds:
             # Time was set: all contacts have ended with the last state that was observed.
             self._rewinds = rewinds
-            self._end(list(self._open), self._last_ns)
+            for _, lasting in self._open.values():
+                lasting.pause(self._last_ns)
+            self._end(list(self._open))
         else:
             seconds = (now_ns - self._last_ns) / NANOSECONDS
             for _, lasting in self._open.values():
@@ -168,17 +185,31 @@ class ContactRecord:
             pair = touch.first[:2], touch.second[:2]
             point, force = forces.get(pair, (touch.point, _NONE))
             forces[pair] = point, _plus(force, touch.force, 1.0)
-        self._end([pair for pair in self._open if pair not in forces], now_ns)
+        for pair, (_, lasting) in self._open.items():
+            if pair not in forces:
+                lasting.pause(now_ns)
+        self._end(
+            [pair for pair in self._open if pair not in forces and self._is_over(pair, now_ns)]
+        )
         for pair, (point, force) in forces.items():
             if pair not in self._open:
                 self._open[pair] = self._started, _Open(now_ns, point, force)
                 self._started += 1
             self._open[pair][1].add(force, now_ns)
 
-    def _end(self, pairs: Sequence[tuple[Place, Place]], now_ns: int) -> None:
+    def _is_over(self, pair: tuple[Place, Place], now_ns: int) -> bool:
+        """Whether a contact without a force has ended."""
+        pause_ns = self._open[pair][1].pause_ns
+        if pause_ns is None:
+            return False
+        return now_ns - pause_ns >= _PAUSE_NS or self._simulation.truth.shapes.are_apart(
+            *pair, _APART
+        )
+
+    def _end(self, pairs: Sequence[tuple[Place, Place]]) -> None:
         for pair in pairs:
             number, each = self._open.pop(pair)
-            self._over.append((number, each.record(pair, now_ns)))
+            self._over.append((number, each.record(pair, each.pause_ns)))
 
 
 def _plus(one: Vec3, other: Vec3, factor: float) -> Vec3:

@@ -12,7 +12,7 @@ import numpy as np
 
 from cartwheel.geometry import Vec3
 from cartwheel.simulation.engine import Engine
-from cartwheel.simulation.models.terrain_distance import distance_to_heightmap
+from cartwheel.simulation.models.terrain_distance import Terrain
 from cartwheel.simulation.models.touches import collision_names
 from cartwheel.world.bodies import COLLISION_GROUP
 from cartwheel.world.entry import ModelEntry
@@ -20,6 +20,8 @@ from cartwheel.world.visuals import HIDDEN_GROUP
 
 Place = tuple[str, str, str]
 """Names of the model, the link and the collision."""
+Link = tuple[str, str]
+"""Names of the model and the link."""
 Chosen = Callable[[Place], bool]
 """Whether a collision counts."""
 
@@ -70,6 +72,8 @@ class ShapeQueries:
         self._places: list[Place] = []
         self._shapes: list[int] = []
         """Geoms of collisions."""
+        self._terrains: dict[int, Terrain] = {}
+        """The heightmaps to which distances were computed, by their geoms."""
 
     def ray(self, origin: Vec3, direction: Vec3, most: float, passed: Chosen) -> Seen | None:
         """What a ray hits first; None if it hits nothing within a distance.
@@ -139,16 +143,36 @@ class ShapeQueries:
             )
         return best
 
+    def are_apart(self, one: Link, other: Link, distance: float) -> bool:
+        """Whether all collisions of two links are farther apart than a distance, m."""
+        self._bind()
+        ones, others = (
+            [shape for shape in self._shapes if self._places[shape][:2] == link]
+            for link in (one, other)
+        )
+        ends = np.zeros(6)
+        for least, _, first, second in self._pairs(ones, others):
+            if least > distance:
+                break
+            if self._distance(first, second, 2 * distance, ends) <= distance:
+                return False
+        return True
+
     def _distance(self, one: int, other: int, most: float, ends: Any) -> float:
         """Distance between two geoms, m, at most `most`; `ends` receives the nearest points."""
         model, data = self._engine.model, self._engine.data
         if model.geom_type[one] == _HEIGHTMAP:
-            return distance_to_heightmap(model, data, one, other, most=most, ends=ends)
+            return self._terrain(one).distance(data, other, most=most, ends=ends)
         if model.geom_type[other] == _HEIGHTMAP:
-            distance = distance_to_heightmap(model, data, other, one, most=most, ends=ends)
+            distance = self._terrain(other).distance(data, one, most=most, ends=ends)
             ends[:3], ends[3:] = ends[3:].copy(), ends[:3].copy()
             return distance
         return float(mujoco.mj_geomDistance(model, data, one, other, most, ends))
+
+    def _terrain(self, geom: int) -> Terrain:
+        if geom not in self._terrains:
+            self._terrains[geom] = Terrain(self._engine.model, geom)
+        return self._terrains[geom]
 
     def _pairs(
         self, ones: Sequence[int], others: Sequence[int]
@@ -210,6 +234,7 @@ class ShapeQueries:
         engine = self._engine
         if self._model is not engine.model:
             self._model = engine.model
+            self._terrains = {}
             self._places = collision_names(engine.model, self._entries())
             self._shapes = np.flatnonzero(engine.model.geom_group == COLLISION_GROUP).tolist()
         engine.refresh_poses()
