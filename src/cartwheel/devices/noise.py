@@ -91,6 +91,7 @@ class _Drift:
         self._part, self._name, self._settled = part, name, settled
         self._period_ns = part.period_ns(rate)
         self._deviation = deviation
+        self._drifts = bool(deviation.any())
         self._kept, self._added = gauss_markov_step(deviation, frequency, self._period_ns)
         self.restart()
         part.on_seed.append(self.restart)
@@ -115,7 +116,7 @@ class _Drift:
             self.restart()
             return self._value
         self._updated_ns += steps * self._period_ns
-        if self._deviation.any():
+        if self._drifts:
             for _ in range(steps):
                 self._value = self._kept * self._value + self._random.normal(0.0, self._added)
         return self._value

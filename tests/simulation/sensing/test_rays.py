@@ -221,6 +221,23 @@ def test_rays_beside_curved_shapes_see_what_is_behind(make):
 
 
 @pytest.mark.parametrize("static", ["true", "false"])
+def test_a_ray_almost_along_a_cylinder_sees_its_side(make, static):
+    post = make.sdf(
+        f"""<model name="post"><static>{static}</static><pose>0.49999 0 4 0 0 0</pose>
+        <link name="l"><gravity>false</gravity><collision name="c"><geometry><cylinder>
+        <radius>0.5</radius><length>6</length></cylinder></geometry></collision></link></model>"""
+    )
+    world = make.world(post, make.sdf(EYE.format(x=1, y=0)))
+    # The first ray enters 0.2 m above the lower end, and the second one through this end.
+    rays = np.array([[-2e-5, 0.0, 1.0], [-1.0, 0.0, 1.0]])
+    rays /= np.linalg.norm(rays, axis=1)[:, None]
+    read, _ = handle(world, rays).cast()
+    expected = single(world, (1, 0, 0.7), rays, 50.0)
+    assert expected == pytest.approx([0.5, 0.3 * math.sqrt(2)], abs=1e-6)
+    assert read == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("static", ["true", "false"])
 @pytest.mark.parametrize("shape", ["box", "mesh"])
 def test_housings_and_near_shapes_of_its_own_robot_are_not_seen(make, tmp_path, shape, static):
     """Ahead of the eye, 0.1 m and 0.5 m away, and on its left on a link that turns."""

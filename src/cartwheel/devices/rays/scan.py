@@ -116,6 +116,7 @@ class Scanner:
         self.pattern = pattern
         self._part = part
         self._name = f"scan {config.name}"
+        self._noisy = pattern.noise != Noise()
         self.directions = pattern.directions()
         """Unit vectors, shape (rows, columns, 3)."""
         self._rays = part.rays(
@@ -145,9 +146,9 @@ class Scanner:
         return self._part.random(f"{self._name} {purpose}")
 
     def _add_noise(self, ranges: Array) -> None:
-        noise = self.pattern.noise
-        if noise == Noise():
+        if not self._noisy:
             return
+        noise = self.pattern.noise
         measured = np.isfinite(ranges)
         noisy = ranges + self.error.offset
         if noise.stddev > 0:

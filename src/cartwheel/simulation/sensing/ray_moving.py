@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +13,8 @@ from cartwheel.simulation.sensing import ray_shapes as shapes
 from cartwheel.simulation.sensing.ray_query import Hits, Query
 from cartwheel.simulation.sensing.ray_triangles import RigidShapes
 
+_FEW_PAIRS = 1 << 14
+"""With fewer pairs of a shape and a ray, leaving out shapes that no ray can reach takes longer."""
 _SMALL_PRODUCT = 1 << 16
 """Numbers of a matrix product that one thread computes."""
 
@@ -49,10 +50,12 @@ class MovingShapes:
         self._positions, self._turns = data.geom_xpos, data.geom_xmat.reshape(-1, 3, 3)
         self._sizes, self._kinds = model.geom_size, model.geom_type
         self._simple, self._meshes = simple, meshes
+        self._simple_kinds = np.unique(self._kinds[simple])
         self._roots = np.array([each.root for each in meshes], dtype=np.intp)
         self._centres = np.array([each.centre for each in meshes]).reshape(-1, 3)
         radii = [each.radius for each in meshes]
         self._radii = np.concatenate([model.geom_rbound[simple], radii])
+        self._radii_squared = self._radii**2
         self._halves = model.geom_aabb[simple, 3:]
 
     def cast(self, query: Query, hits: Hits) -> None:
@@ -62,22 +65,32 @@ class MovingShapes:
         away = self._places() - query.start
         squared = np.einsum("ij,ij->i", away, away)
         wanted = np.sqrt(squared) - self._radii < query.maximum
-        if query.band is not None:
+        if query.band is not None and len(self._radii) * len(query.rays) > _FEW_PAIRS:
             extent = self._extent(query.band.axis)
             wanted &= query.band.meets(away, squared, self._radii, extent)
-        (chosen,) = np.nonzero(wanted)
+        (chosen,) = wanted.nonzero()
         if not chosen.size:
             return
         # A ray meets a sphere if it goes far enough along the line to its centre.
-        rest = squared - self._radii**2
-        least = np.where(rest > 0, np.sqrt(np.maximum(rest, 0.0)), -np.inf)
-        count = int(np.searchsorted(chosen, len(self._simple)))
-        if count:
-            few = chosen[:count]
-            self._cast_simple(self._simple[few], away[few], least[few], query, hits)
-        for index in chosen[count:].tolist():
-            meshes = self._meshes[index - len(self._simple)]
-            self._cast_meshes(meshes, away[index], least[index], query, hits)
+        rest = squared - self._radii_squared
+        least = np.where(rest > 0, np.sqrt(rest), -np.inf)
+        away = away[chosen]
+        (pairs,) = (_along(away, query.rays) >= least[chosen, None]).ravel().nonzero()
+        if not pairs.size:
+            return
+        row, which = np.divmod(pairs, len(query.rays))
+        count = int(chosen.searchsorted(len(self._simple)))
+        edges = row.searchsorted(range(count, len(chosen) + 1)).tolist()
+        if edges[0]:
+            few = slice(edges[0])
+            self._cast_simple(
+                query, hits, geoms=self._simple[chosen[:count]], away=away[:count],
+                row=row[few], which=which[few],
+            )  # fmt: skip
+        for index, first, last in zip(chosen[count:].tolist(), edges, edges[1:], strict=False):
+            if first < last:
+                meshes = self._meshes[index - len(self._simple)]
+                self._cast_meshes(meshes, which[first:last], query, hits)
 
     def _places(self) -> Array:
         """The centres of all spheres, m."""
@@ -96,45 +109,42 @@ class MovingShapes:
         return np.concatenate([extent, self._radii[extent.size :]]) if self._meshes else extent
 
     def _cast_simple(
-        self, geoms: Any, away: Array, least: Array, query: Query, hits: Hits
-    ) -> None:  # fmt: skip
-        along = _along(away, query.rays)
-        flat = np.flatnonzero(along >= least[:, None])
-        if not flat.size:
-            return
-        edges = np.searchsorted(flat, np.arange(len(geoms) + 1) * len(query.rays))
-        row = np.repeat(np.arange(len(geoms)), np.diff(edges))
-        which = flat - row * len(query.rays)
-        turns = self._turns[geoms]
-        starts = np.einsum("gj,gjk->gk", -away, turns)[row]
-        rays = np.einsum("ij,ijk->ik", query.rays[which], turns[row])
-        # The geoms are sorted by their kinds.
-        met = geoms[row]
-        sizes, kinds = self._sizes[met], self._kinds[geoms].tolist()
+        self, query: Query, hits: Hits, *, geoms: Any, away: Array, row: Any, which: Any
+    ) -> None:
+        """Adds the hits of geoms that are no meshes.
+
+        Args:
+            query: The rays.
+            hits: Hits so far.
+            geoms: Indices of the geoms.
+            away: Their places, seen from the start of the rays.
+            row: The geom of each pair that may meet, as an index of `geoms`.
+            which: The ray of each pair.
+        """
+        met = geoms.take(row)
+        turns = self._turns.take(geoms, axis=0)
+        starts = np.einsum("gj,gjk->gk", -away, turns).take(row, axis=0)
+        rays = np.einsum("ij,ijk->ik", query.rays.take(which, axis=0), turns.take(row, axis=0))
+        sizes = self._sizes.take(met, axis=0)
         found = np.empty(row.size)
-        first = 0
-        for kind, group in itertools.groupby(kinds):
-            last = first + len(list(group))
-            part = slice(int(edges[first]), int(edges[last]))
-            first = last
-            if part.start < part.stop:
+        # The geoms are sorted by their kinds.
+        edges = [*self._kinds.take(met).searchsorted(self._simple_kinds).tolist(), row.size]
+        for kind, first, last in zip(self._simple_kinds.tolist(), edges, edges[1:], strict=False):
+            if first < last:
+                part = slice(first, last)
                 found[part] = shapes.TO_SHAPE[kind](starts[part], rays[part], sizes[part])
-        if query.own[geoms].any():
-            found[query.own[met] & (found < query.minimum)] = np.inf
+        near = found < query.minimum
+        if near.any():
+            found[near & query.own[met]] = np.inf
         hits.add_any(which, found, met)
 
-    def _cast_meshes(
-        self, meshes: RigidMeshes, away: Array, least: float, query: Query, hits: Hits
-    ) -> None:
-        along = np.einsum("ij,j->i", query.rays, away)
-        (which,) = np.nonzero(along >= least)
-        if which.size:
-            turn = self._body_turns[meshes.root]
-            start = (query.start - self._body_positions[meshes.root]) @ turn
-            there = Query(start, query.rays[which] @ turn, query.own, query.minimum,
-                          hidden=query.hidden)  # fmt: skip
-            found = meshes.shapes.cast(there)
-            hits.add_some(which, found.distances, found.geoms)
+    def _cast_meshes(self, meshes: RigidMeshes, which: Any, query: Query, hits: Hits) -> None:
+        turn = self._body_turns[meshes.root]
+        start = (query.start - self._body_positions[meshes.root]) @ turn
+        there = Query(start, query.rays[which] @ turn, query.own, query.minimum,
+                      hidden=query.hidden)  # fmt: skip
+        found = meshes.shapes.cast(there)
+        hits.add_some(which, found.distances, found.geoms)
 
 
 def _along(away: Array, rays: Array) -> Array:

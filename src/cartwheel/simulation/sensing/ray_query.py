@@ -60,27 +60,27 @@ class Hits:
 
 @dataclass(slots=True)
 class Band:
-    """Directions between two cones about an axis, such as those of a lidar."""
+    """Directions near the plane across an axis, such as those of a lidar."""
 
     axis: Array
     """Unit vector."""
-    low: tuple[float, float]
-    """Sine and cosine of the smallest angle between a direction and the plane across the axis."""
-    high: tuple[float, float]
-    """Those of the largest angle."""
+    sine: float
+    """Sine of the largest angle between a direction and the plane."""
+    cosine: float
+    """Its cosine."""
 
     @classmethod
     def of(cls, rays: Array) -> Band:
         """The band of some rays. Its axis is the direction in which they differ least."""
         values, vectors = np.linalg.eigh(rays.T @ rays)
         axis = vectors[:, int(np.argmin(values))]
-        angles = np.arcsin(np.clip(rays @ axis, -1.0, 1.0))
-        low, high = float(angles.min()) - _SLACK, float(angles.max()) + _SLACK
-        return cls(axis, (math.sin(low), math.cos(low)), (math.sin(high), math.cos(high)))
+        largest = math.asin(min(1.0, float(np.abs(rays @ axis).max())))
+        angle = min(largest + _SLACK, math.pi / 2)
+        return cls(axis, math.sin(angle), math.cos(angle))
 
     def turned(self, turn: Array) -> Band:
         """The band in other axes."""
-        return Band(turn @ self.axis, self.low, self.high)
+        return Band(turn @ self.axis, self.sine, self.cosine)
 
     def meets(self, away: Array, squared: Array, radius: Array, extent: Array) -> Any:
         """Whether shapes may be in the band.
@@ -91,16 +91,11 @@ class Band:
             radius: Radii of spheres around them, m, shape (n,).
             extent: How far they extend along the axis from their centres, m, shape (n,).
         """
-        along = away @ self.axis
+        along = np.abs(away @ self.axis)
         across = np.sqrt(np.maximum(squared - along * along, 0.0))
-        # Distances of the centres to the lines of the cones that are nearest to them.
-        found: Any = along * self.high[1] - across * self.high[0] <= np.minimum(
-            radius, radius * abs(self.high[0]) + extent * self.high[1]
-        )
-        found &= across * self.low[0] - along * self.low[1] <= np.minimum(
-            radius, radius * abs(self.low[0]) + extent * self.low[1]
-        )
-        return found
+        # Distances of the centres to the line of the cone around the directions that is nearest.
+        distance = along * self.cosine - across * self.sine
+        return distance <= np.minimum(radius, radius * self.sine + extent * self.cosine)
 
 
 @dataclass(slots=True)

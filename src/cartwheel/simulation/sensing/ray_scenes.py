@@ -60,7 +60,11 @@ class RayScenes:
         seen = (model.geom_group == self._group) & opaque
         kinds = model.geom_type
         roots = self._roots[model.geom_bodyid]
-        self._planes = np.flatnonzero(seen & (kinds == shapes.PLANE)).tolist()
+        data = self.data
+        self._planes = [
+            (geom, data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3), model.geom_size[geom])
+            for geom in np.flatnonzero(seen & (kinds == shapes.PLANE)).tolist()
+        ]
         solid = seen & (kinds != shapes.PLANE)
         simple = np.isin(kinds, list(shapes.TO_SHAPE))
         moving = np.flatnonzero(solid & (roots != 0) & simple)
@@ -89,13 +93,9 @@ class RayScenes:
 
     def cast_planes(self, query: Query, hits: Hits) -> None:
         """Adds the hits of planes."""
-        data, model = self.data, self.model
-        for geom in self._planes:
+        for geom, place, turn, size in self._planes:
             if geom not in query.hidden:
-                found = shapes.to_plane(
-                    query.start - data.geom_xpos[geom], query.rays,
-                    data.geom_xmat[geom].reshape(3, 3), model.geom_size[geom], query.maximum,
-                )  # fmt: skip
+                found = shapes.to_plane(query.start - place, query.rays, turn, size, query.maximum)
                 if found is not None:
                     hits.add(found, geom)
 

@@ -165,21 +165,21 @@ def _turned(profile: list[tuple[float, float]], sides: int, pole: float | None =
     return corners, np.concatenate(faces)
 
 
-# -- exact distances; all arguments have shape (n, 3), and callers ignore divisions by 0
+# -- exact distances; all arguments have shape (n, 3), and callers ignore invalid operations. Roots
+# of rays that miss a surface are NaN, which is neither above nor below any number.
 
 
-def _first(near: Array, far: Array, valid: Any) -> Array:
+def _first(near: Array, far: Array) -> Array:
     """The smaller root that is not negative."""
     found: Array = np.where(near >= 0, near, far)
-    return np.where(valid & (found >= 0), found, np.inf)
+    return np.where(found >= 0, found, np.inf)
 
 
-def _to_sphere(start: Array, ray: Array, radius: Array) -> tuple[Array, Array, Any]:
+def _to_sphere(start: Array, ray: Array, radius: Array) -> tuple[Array, Array]:
     """Both roots for spheres about the origin."""
     b = (start * ray).sum(axis=1)
-    rest = b * b - ((start * start).sum(axis=-1) - radius * radius)
-    root = np.sqrt(np.maximum(rest, 0.0))
-    return -b - root, -b + root, rest >= 0
+    root = np.sqrt(b * b - ((start * start).sum(axis=-1) - radius * radius))
+    return -b - root, -b + root
 
 
 def to_sphere(start: Array, ray: Array, size: Array) -> Array:
@@ -192,39 +192,34 @@ def to_ellipsoid(start: Array, ray: Array, size: Array) -> Array:
     start, ray = start / size, ray / size
     a = np.einsum("ij,ij->i", ray, ray)
     b = (start * ray).sum(axis=1)
-    rest = b * b - a * ((start * start).sum(axis=-1) - 1.0)
-    root = np.sqrt(np.maximum(rest, 0.0))
-    return _first((-b - root) / a, (-b + root) / a, rest >= 0)
+    root = np.sqrt(b * b - a * ((start * start).sum(axis=-1) - 1.0))
+    return _first((-b - root) / a, (-b + root) / a)
 
 
-def _to_side(start: Array, ray: Array, radius: Array) -> tuple[Array, Array, Any]:
+def _to_side(start: Array, ray: Array, radius: Array) -> tuple[Array, Array]:
     """Both roots for an endless cylinder about z."""
-    a = ray[:, 0] ** 2 + ray[:, 1] ** 2
-    b = start[..., 0] * ray[:, 0] + start[..., 1] * ray[:, 1]
-    rest = b * b - a * (start[..., 0] ** 2 + start[..., 1] ** 2 - radius * radius)
-    valid = (rest >= 0) & (a > 1e-30)
-    root = np.sqrt(np.maximum(rest, 0.0))
-    a = np.maximum(a, 1e-30)
-    return (-b - root) / a, (-b + root) / a, valid
+    x, y, left, forward = start[:, 0], start[:, 1], ray[:, 0], ray[:, 1]
+    a = left * left + forward * forward
+    b = x * left + y * forward
+    root = np.sqrt(b * b - a * (x * x + y * y - radius * radius))
+    return (-b - root) / a, (-b + root) / a
 
 
 def to_cylinder(start: Array, ray: Array, size: Array) -> Array:
     """Distances to cylinders of radius ``size[0]`` and half-length ``size[1]``."""
-    near, far, valid = _to_side(start, ray, size[:, 0])
-    entered = valid & (near >= 0) & (np.abs(start[:, 2] + near * ray[:, 2]) <= size[:, 1])
-    if entered.all():
-        return near
-    near[~entered] = np.inf
+    near, far = _to_side(start, ray, size[:, 0])
+    up = ray[:, 2]
+    missed = ~((near >= 0) & (np.abs(start[:, 2] + near * up) <= size[:, 1]))
+    near[missed] = np.inf
     # Other rays that cross the endless cylinder, or are along it, may enter through an end.
-    other = valid & ~entered
-    other |= np.abs(ray[:, 2]) > _ALONG
-    (which,) = np.nonzero(other)
+    missed &= (far >= 0) | (np.abs(up) > _ALONG)
+    (which,) = missed.nonzero()
     if which.size:
-        near[which] = _to_cap(start[which], ray[which], size[which], far[which], valid[which])
+        near[which] = _to_cap(start[which], ray[which], size[which], far[which])
     return near
 
 
-def _to_cap(start: Array, ray: Array, size: Array, far: Array, valid: Any) -> Array:
+def _to_cap(start: Array, ray: Array, size: Array, far: Array) -> Array:
     """As `to_cylinder`, for rays that do not enter through the side.
 
     Args:
@@ -232,11 +227,10 @@ def _to_cap(start: Array, ray: Array, size: Array, far: Array, valid: Any) -> Ar
         ray: Their directions.
         size: Sizes of the cylinders.
         far: Where they leave the endless cylinders.
-        valid: Whether they do.
     """
     radius, half = size[:, 0], size[:, 1]
     height, up = start[:, 2], ray[:, 2]
-    best: Array = np.where(valid & (far >= 0) & (np.abs(height + far * up) <= half), far, np.inf)
+    best: Array = np.where((far >= 0) & (np.abs(height + far * up) <= half), far, np.inf)
     for cap in (-half, half):
         root = (cap - height) / up
         x, y = start[:, 0] + root * ray[:, 0], start[:, 1] + root * ray[:, 1]
@@ -248,17 +242,15 @@ def _to_cap(start: Array, ray: Array, size: Array, far: Array, valid: Any) -> Ar
 def to_capsule(start: Array, ray: Array, size: Array) -> Array:
     """Distances to capsules of radius ``size[0]`` and half-length ``size[1]``."""
     radius, half = size[..., 0], size[..., 1]
-    near, far, valid = _to_side(start, ray, radius)
     best = np.full(len(ray), np.inf)
-    for root in (near, far):
-        inside = valid & (root >= 0) & (np.abs(start[..., 2] + root * ray[:, 2]) <= half)
+    for root in _to_side(start, ray, radius):
+        inside = (root >= 0) & (np.abs(start[..., 2] + root * ray[:, 2]) <= half)
         np.minimum(best, root, out=best, where=inside)
     for side in (-1.0, 1.0):
         moved = start.copy()
         moved[..., 2] -= side * half
-        near, far, valid = _to_sphere(moved, ray, radius)
-        for root in (near, far):
-            inside = valid & (root >= 0) & (side * (moved[..., 2] + root * ray[:, 2]) >= 0)
+        for root in _to_sphere(moved, ray, radius):
+            inside = (root >= 0) & (side * (moved[..., 2] + root * ray[:, 2]) >= 0)
             np.minimum(best, root, out=best, where=inside)
     return best
 
@@ -270,7 +262,8 @@ def to_box(start: Array, ray: Array, size: Array) -> Array:
     # A ray along a face is NaN there, which `fmax` and `fmin` ignore.
     near = np.fmax(np.fmax(low[:, 0], low[:, 1]), low[:, 2])
     far = np.fmin(np.fmin(high[:, 0], high[:, 1]), high[:, 2])
-    return _first(near, far, near <= far)
+    found: Array = np.where(near >= 0, near, far)
+    return np.where((near <= far) & (far >= 0), found, np.inf)
 
 
 def to_plane(
