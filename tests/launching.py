@@ -28,6 +28,7 @@ import json
 import os
 import pkgutil
 import re
+import runpy
 import select
 import shlex
 import shutil
@@ -49,6 +50,7 @@ _OTHERS = (
     *("numpy.ma", "typer._adapters", "typer._click.decorators", "pydantic.type_adapter"),
     *("pydantic.deprecated.class_validators", "pydantic.functional_validators", "sysconfig"),
     *("rich.console", "rich.table", "foxglove", "pydantic.plugin._loader", "rosbags.usertypes"),
+    *("pytest", "_pytest.cacheprovider"),
 )
 """Modules that are imported when they are needed."""
 ROS1_PYTHON = "/usr/bin/python3"
@@ -218,9 +220,9 @@ def _request(start: Mapping[str, Any]) -> tuple[_Launcher, bytes] | None:
 
 
 def _is_known(words: list[str], python: str) -> bool:
-    """Whether these words start code, a file or a program that this Python runs."""
+    """Whether these words start code, a module, a file or a program that this Python runs."""
     if words[0] == python:
-        return words[1:2] == ["-c"] or (len(words) > 1 and words[1].endswith(".py"))
+        return len(words) > 1 and (words[1] in ("-c", "-m") or words[1].endswith(".py"))
     return words[0] == str(PROGRAM) or _interpreter(words[0]) == python
 
 
@@ -376,6 +378,10 @@ def _become(request: Mapping[str, Any], files: list[int]) -> None:
     sys.modules["__main__"] = main_module
     # The same list, because functions of imported modules have it as their default value.
     sys.argv[:] = words[words[0] == sys.executable :]
+    if sys.argv[0] == "-m":
+        module = sys.argv.pop(1)
+        sys.path.insert(0, str(Path.cwd()))
+        _leave(lambda: runpy.run_module(module, run_name="__main__", alter_sys=True))
     if sys.argv[0] == "-c":
         name, source = "<string>", sys.argv.pop(1)
         sys.path.insert(0, "")

