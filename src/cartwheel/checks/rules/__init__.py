@@ -45,7 +45,10 @@ from cartwheel.checks.rules.robot import (
     overlapping_collisions,
     references,
     shape_scale,
-    tracks,
+    wrong_units,
+)
+from cartwheel.checks.rules.tags import ignored_by_gazebo, misplaced_tags
+from cartwheel.checks.rules.wheels import (
     wheel_axes,
     wheel_base,
     wheel_diameter,
@@ -53,9 +56,7 @@ from cartwheel.checks.rules.robot import (
     wheel_shapes,
     wheel_sides,
     wheels_off_ground,
-    wrong_units,
 )
-from cartwheel.checks.rules.tags import ignored_by_gazebo, misplaced_tags
 
 RULES: tuple[Rule, ...] = tuple(
     each
@@ -77,7 +78,6 @@ RULES: tuple[Rule, ...] = tuple(
         wheel_axes,
         wheel_shapes,
         wheel_separation,
-        tracks,
         wheel_base,
         wheel_diameter,
         friction,

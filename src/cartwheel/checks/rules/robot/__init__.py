@@ -1,1 +1,1 @@
-"""Rules about links, joints, masses and wheels (CW2xx)."""
+"""Rules about links, joints and masses (CW2xx)."""

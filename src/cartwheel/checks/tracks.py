@@ -9,7 +9,6 @@ import numpy as np
 
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Element
@@ -30,8 +29,8 @@ _LEAST = 0.05
 _SIDES = ("left_track", "right_track")
 
 
-@rule(robot_codes.SKID_STEERING)
-def tracks(subject: Subject) -> Iterator[Diagnostic]:
+def sliding_tracks(subject: Subject) -> Iterator[Diagnostic]:
+    """A steering efficiency that does not fit the tracks of a vehicle."""
     for robot in subject.robots:
         for tag in robot.description.plugins:
             if plugin_named(tag.filename) is not TrackedVehicleSystem or not robot.is_placed:

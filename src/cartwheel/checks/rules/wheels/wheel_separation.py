@@ -17,6 +17,7 @@ from cartwheel.checks.stated_sizes import (
     stated_sizes,
 )
 from cartwheel.checks.subject import Subject
+from cartwheel.checks.tracks import sliding_tracks
 from cartwheel.checks.wheels import axle_of, wheel_place
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
@@ -81,6 +82,7 @@ def _widest(one: Stated, track: float) -> float:
 
 @rule(robot_codes.SKID_STEERING)
 def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
+    yield from sliding_tracks(subject)
     sizes = list(stated_sizes(subject))
     # Steered and mecanum wheels, whose drives also state a wheel base, do not slide.
     others = {id(one.robot) for one in sizes if one.measure in ("base", "reach")}

@@ -1,0 +1,1 @@
+"""Wheels and tracks that drive a robot."""
