@@ -33,6 +33,7 @@ from cartwheel.codes.world import (
     WAIT_TIMED_OUT,
 )
 from cartwheel.errors import CartwheelError, UnknownNameError
+from cartwheel.msgs.control_msgs_ros2 import FollowJointTrajectory_Result
 from cartwheel.msgs.trajectory_msgs import JointTrajectory, JointTrajectoryPoint
 
 JOINTS = ("a_joint", "b_joint")
@@ -128,6 +129,55 @@ def test_a_goal_is_cancelled(tmp_path: Path, ros: int) -> None:
         goal.cancel()
         assert goal.status == "cancelled"
         assert goal.result() is not None
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+def test_goals_in_progress_end_with_a_reset_or_their_model(tmp_path: Path, ros: int) -> None:
+    with cw.World("empty") as world:
+        model = arm(world, tmp_path, ros)
+        early = world.send_goal(FOLLOW, trajectory=trajectory((10.0, [0.5, -0.3])))
+        assert early.status == "pending"  # until the controller has started
+        world.reset()
+        assert (early.status, early.text) == ("rejected", "the world was reset")
+        world.run(0.5)
+        goal = world.send_goal(FOLLOW, trajectory=trajectory((10.0, [0.5, -0.3])))
+        world.run(0.5)
+        feedbacks = len(goal.feedbacks)
+        world.reset()
+        assert (goal.status, goal.text) == ("aborted", "the world was reset")
+        result, time = goal.result(), world.time
+        assert result.error_code == FollowJointTrajectory_Result.INVALID_GOAL and time == 0.0
+        world.run(0.5)
+        assert (goal.status, goal.result()) == ("aborted", result)
+        assert feedbacks == len(goal.feedbacks) > 0
+        assert model.joint(JOINTS[0]) == pytest.approx(0.0, abs=1e-3)
+        goal = world.send_goal(FOLLOW, trajectory=trajectory((10.0, [0.5, -0.3])))
+        model.delete()
+        assert (goal.status, goal.text) == ("aborted", "the action was withdrawn")
+        assert goal.result() is not None
+
+
+def test_goals_and_restored_states(tmp_path: Path) -> None:
+    with cw.World("empty") as world:
+        arm(world, tmp_path, 2)
+        world.run(0.5)
+        goal = world.send_goal(FOLLOW, trajectory=trajectory((1.0, [0.5, -0.3])))
+        world.run(0.5)
+        state, feedbacks = world.save(), len(goal.feedbacks)
+        assert goal.result().error_code == 0
+        ended, known = world.time, len(goal.feedbacks)
+        later = world.send_goal(FOLLOW, trajectory=trajectory((5.0, [0.0, 0.0])))
+        world.run(0.1)
+        assert later.status == "active"
+        world.restore(state)
+        # It is as it was, and goes on; the other one was sent afterwards.
+        assert goal.status == "active"
+        assert later.status == "aborted" and "restored" in later.text
+        assert goal.result().error_code == 0
+        assert world.time == ended
+        assert len(goal.feedbacks) == known + known - feedbacks
+        world.close()
+        assert goal.status == "succeeded"
 
 
 def test_a_new_goal_replaces_the_old_one_and_bad_ones_are_rejected(tmp_path: Path) -> None:

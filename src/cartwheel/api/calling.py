@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+import weakref
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -232,42 +233,15 @@ class Goal:
     def __init__(self, world: CallingWorld, action: Action, goal: Any) -> None:
         self._world = world
         self._action = action
-        self._feedback: list[Any] = []
-        self._early: list[tuple[GraphGoal, Any]] = []
-        self._goal: GraphGoal | None = None
-        action.listen(self)
+        self._ear = _Ear(self, action)
+        action.listen(self._ear)
         submitted = action.submit(goal)
         assert submitted is not None  # the identifier is new
-        self._goal = submitted
-        self._feedback += [each for owner, each in self._early if owner is submitted]
-        self._early.clear()
-        if submitted.done:
-            action.leave(self)
+        self._sent: GraphGoal = submitted
+        self._ear.begin(submitted)
 
     def __repr__(self) -> str:
         return f"<Goal of {self._action.name}, {self.status}>"
-
-    @property
-    def wants_feedback(self) -> bool:
-        """Whether feedback is received, which the action asks."""
-        return True
-
-    def goal_changed(self, goal: GraphGoal) -> None:
-        """Called by the action when the state of one of its goals changes."""
-        if goal is self._goal and goal.done:
-            self._action.leave(self)
-
-    def goal_goes_on(self, goal: GraphGoal, feedback: Any) -> None:
-        """Called by the action with feedback on one of its goals."""
-        if self._goal is None:
-            self._early.append((goal, feedback))
-        elif goal is self._goal:
-            self._feedback.append(feedback)
-
-    @property
-    def _sent(self) -> GraphGoal:
-        assert self._goal is not None
-        return self._goal
 
     @property
     def status(self) -> Status:
@@ -295,12 +269,12 @@ class Goal:
     @property
     def feedback(self) -> Any:
         """The newest feedback message; None if there is none."""
-        return self._feedback[-1] if self._feedback else None
+        return feedbacks[-1] if (feedbacks := self.feedbacks) else None
 
     @property
     def feedbacks(self) -> list[Any]:
         """All feedback messages, oldest first."""
-        return list(self._feedback)
+        return list(self._ear.heard)
 
     def result(self, timeout: float = TIMEOUT) -> Any:
         """Runs the world until the goal has ended, and returns the result message.
@@ -321,12 +295,12 @@ class Goal:
         if not self.done:
             raise timed_out(
                 f'the goal of "{self._action.name}" has not ended within {timeout:g} s; it is '
-                f"{self.status}, with {len(self._feedback)} feedback messages",
+                f"{self.status}, with {len(self.feedbacks)} feedback messages",
                 {
                     "action": self._action.name,
                     "timeout": timeout,
                     "status": self.status,
-                    "feedbacks": len(self._feedback),
+                    "feedbacks": len(self.feedbacks),
                 },
             )
         return self._sent.result
@@ -340,6 +314,46 @@ class Goal:
         with self._world.used(change=True):
             if not self.done:
                 self._action.cancel(identity=self._sent.id)
+
+
+class _Ear:
+    """Listens to an action for a goal as long as the program has the goal.
+
+    A goal that has ended is active again when a state of an earlier time is restored.
+    """
+
+    def __init__(self, goal: Goal, action: Action) -> None:
+        self._action = action
+        self._goal = weakref.ref(goal, self._leave)
+        self._sent: GraphGoal | None = None
+        self.heard: list[Any] = []
+        """The feedback on the goal, oldest first."""
+        self._early: list[tuple[GraphGoal, Any]] = []
+        """Feedback on any goal before it was known which one was sent."""
+
+    def begin(self, sent: GraphGoal) -> None:
+        """Listens to this goal only."""
+        self._sent = sent
+        self.heard += [feedback for goal, feedback in self._early if goal is sent]
+        self._early.clear()
+
+    @property
+    def wants_feedback(self) -> bool:
+        """Whether feedback is received, which the action asks."""
+        return self._sent is None or not self._sent.done
+
+    def goal_changed(self, goal: GraphGoal) -> None:
+        """Called by the action when the state of one of its goals changes."""
+
+    def goal_goes_on(self, goal: GraphGoal, feedback: Any) -> None:
+        """Called by the action with feedback on one of its goals."""
+        if self._sent is None:
+            self._early.append((goal, feedback))
+        elif goal is self._sent:
+            self.heard.append(feedback)
+
+    def _leave(self, _: object) -> None:
+        self._action.leave(self)
 
 
 def _checked(service: Service, response: Any) -> Any:

@@ -87,6 +87,8 @@ class Goal:
             listener.goal_goes_on(self, feedback)
 
     def _end(self, state: GoalState, result: Any, text: str) -> None:
+        if self.done:
+            return  # such as by a reset of the world
         self.state, self.result, self.text = state, result, text
         self.done_ns = self._action.time_ns()
         self._action._notify(self)
@@ -162,7 +164,8 @@ class Action:
         graph.offer(self)
 
     def close(self) -> None:
-        """Removes the action from the graph."""
+        """Aborts all goals, and removes the action from the graph."""
+        self.abort("the action was withdrawn")
         self._graph.take_back(self)
 
     def message(self, part: str, **fields: Any) -> Any:
@@ -238,6 +241,16 @@ class Action:
             if not goal.done:
                 self._on_cancel(goal)
         return meant
+
+    def abort(self, text: str) -> None:
+        """Aborts all goals that have not ended, with an empty result; `text` is the reason."""
+        for goal in tuple(self._goals.values()):
+            self.drop(goal, text)
+
+    def drop(self, goal: Goal, text: str) -> None:
+        """Aborts a goal with an empty result, unless it has ended; `text` is the reason."""
+        if not goal.done:
+            goal.abort(zero(f"{self.type}_Result"), text)
 
     def restart(self) -> None:
         """Forgets completed goals, because simulation time restarts."""

@@ -38,12 +38,21 @@ def restore(session: Session, state: State) -> None:
     session.simulation.drain()
     # Whether all parts exist is known only when they have been created.
     before = None if _is_of(session, state) else save(session)
+    current = [
+        (action, goal)
+        for action in session.graph.actions()
+        for goal in action.goals
+        if not goal.done
+    ]
     try:
         _restore(session, state)
     except BaseException:
         if before is not None:
             _restore(session, before, changed=True)
         raise
+    for action, goal in current:
+        if action.goal(goal.id) is not goal:
+            action.drop(goal, "a state before this goal was restored")
 
 
 def _is_of(session: Session, state: State) -> bool:

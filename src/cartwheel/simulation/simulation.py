@@ -54,6 +54,8 @@ class Simulation(Advancing):
         super().__init__(Engine(world, seed, omitted(without)), attach, compiler or Compiler())
         self.truth = GroundTruth(self.engine, self._population, self.forces)
         """The exact state of the models."""
+        self.on_restart: list[Callable[[], None]] = []
+        """Called when all models have been reset, but not when a saved state was restored."""
         self._population.start(attach_world)
         try:
             self._population.add_all(world.models)
@@ -138,6 +140,8 @@ class Simulation(Advancing):
                     self.faults.disable(behaviour, error)
             for handle in resident.drives.values():
                 handle.command(handle.target)
+        for callback in self.on_restart:
+            callback()
         if keep_time:
             return
         population.gather_tasks()
@@ -238,3 +242,4 @@ class Simulation(Advancing):
         self.alarms.close()
         self._population.close()
         self.end()
+        self.on_restart.clear()

@@ -135,6 +135,10 @@ class Gripper(Component):
         self._joint.strength = math.inf
         self._finish(self._config.preempted)
 
+    def interrupt(self) -> None:
+        """Ends the goal because the simulation was reset."""
+        self._finish("abort", text="the world was reset")
+
     def tick(self, time_ns: int) -> None:
         """Publishes the status when due."""
         self._action.tick(time_ns)
@@ -212,10 +216,12 @@ class Gripper(Component):
         effort = float(command.effort[0]) if len(command.effort) else 0.0
         return float(command.position[0]), effort, speed if speed > 0 else math.inf
 
-    def _finish(self, ending: Ending, *, reached: bool = False, stalled: bool = False) -> None:
+    def _finish(
+        self, ending: Ending, *, reached: bool = False, stalled: bool = False, text: str = ""
+    ) -> None:
         goal, self._active = self._active, None
         if goal is not None:
-            getattr(goal, ending)(self._message("Result", reached=reached, stalled=stalled))
+            getattr(goal, ending)(self._message("Result", reached=reached, stalled=stalled), text)
 
     def _message(self, part: str, *, reached: bool = False, stalled: bool = False) -> Any:
         """Returns a ``Result`` or ``Feedback`` message."""

@@ -105,11 +105,13 @@ class TrajectoryGoals(Component):
 
     def stop(self) -> None:
         """Ends the goal because the controller stops."""
-        early, self._early = self._early, []
-        for goal in early:
-            if not goal.done:
-                self._refuse(goal, "the controller was stopped")
+        self._refuse_early("the controller was stopped")
         self._finish(self._config.preempted, INVALID_GOAL, "the controller was stopped")
+
+    def interrupt(self) -> None:
+        """Ends the goal because the simulation was reset."""
+        self._refuse_early("the world was reset")
+        self._finish("abort", INVALID_GOAL, "the world was reset")
 
     def tick(self, time_ns: int) -> None:
         """Publishes the status when due."""
@@ -160,6 +162,12 @@ class TrajectoryGoals(Component):
             self._early.append(goal)
         else:
             self._take(goal)
+
+    def _refuse_early(self, text: str) -> None:
+        early, self._early = self._early, []
+        for goal in early:
+            if not goal.done:
+                self._refuse(goal, text)
 
     def _refuse(self, goal: Goal, text: str) -> None:
         goal.reject(self._result(INVALID_GOAL, text), text)

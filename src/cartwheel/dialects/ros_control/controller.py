@@ -118,6 +118,9 @@ class Controller(Component):
     def start(self, time_ns: int) -> None:
         """Called when the controller starts. The claimed joints are already active."""
 
+    def interrupt(self) -> None:
+        """Called when the simulation is reset, before the controller starts again."""
+
     next_ns: int = 0
     """Simulation time until which `update` need not be called, because it would change nothing."""
 

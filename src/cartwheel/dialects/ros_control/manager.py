@@ -260,6 +260,7 @@ class ControllerManager:
         self._stopping.clear()
         self._starting = [each for each in self._controllers.values() if each.running]
         for controller in self._starting:
+            controller.interrupt()
             controller.started = False
 
     def structure(self) -> tuple[LoadedController, ...]:

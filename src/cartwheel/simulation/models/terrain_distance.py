@@ -101,4 +101,5 @@ class Terrain:
     def _least(self, centre: Array) -> Array:
         """The least possible distance of each tile to a point in the frame of the heightmap, m."""
         away = np.maximum(np.maximum(self._low - centre, centre - self._high), 0.0)
-        return np.linalg.norm(away, axis=1)
+        least: Array = np.linalg.norm(away, axis=1)
+        return least

@@ -96,6 +96,9 @@ class GripperActionController(Controller):
     def start(self, time_ns: int) -> None:
         self._gripper.start(time_ns)
 
+    def interrupt(self) -> None:
+        self._gripper.interrupt()
+
     def update(self, time_ns: int, seconds: float) -> None:
         self._gripper.update(time_ns, seconds)
 

@@ -194,6 +194,9 @@ class JointTrajectoryController(Controller):
         self._periodic.start(time_ns)
         self._goals.start(time_ns)
 
+    def interrupt(self) -> None:
+        self._goals.interrupt()
+
     def update(self, time_ns: int, seconds: float) -> None:
         tracking = self._follower.update(time_ns, seconds)
         self._goals.watch(time_ns, tracking)
