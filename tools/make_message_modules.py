@@ -47,8 +47,10 @@ def _stub(package: str, names: Iterable[str]) -> str:
         - {package}
     )
     imports = ["from dataclasses import dataclass", "from typing import ClassVar"]
-    if "NDArray" in text:
-        imports += ["", "import numpy as np", "from numpy.typing import ArrayLike, NDArray"]
+    if "ArrayLike" in text:
+        imports += ["", "import numpy as np", "from numpy.typing import ArrayLike"]
+    if ": _converted." in text:
+        others.insert(0, "_converted")
     if others:
         imports += ["", *_import(others)]
     return STUB.format(package=package) + "\n".join(imports) + "\n\n" + text + "\n"
@@ -70,8 +72,8 @@ def _class(package: str, name: str) -> Iterator[str]:
     yield "    __msgtype__: ClassVar[str]"
     for constant, _, value in store().fielddefs[name][0]:
         yield f"    {constant}: ClassVar[{type(value).__name__}]"
-    for field, kind, _ in known:
-        yield f"    {field}: {kind} = ..."
+    for each in fields(name):
+        yield f"    {each.name}: {_declared(package, each)} = ..."
     if converts:
         yield "    def __init__("
         yield "        self,"
@@ -79,6 +81,17 @@ def _class(package: str, name: str) -> Iterator[str]:
             line = f"        {field}: {given} = ...,"
             yield line if len(line) <= 100 else line.replace(" | ", "\n        | ")
         yield "    ) -> None: ..."
+
+
+def _declared(package: str, field: Field) -> str:
+    """The type of a field, and of what can be assigned to it."""
+    kind = _type(package, field)
+    if kind == _given(package, field):
+        return kind
+    inner = kind.partition("[")[2].removesuffix("]")
+    if not field.array:
+        return f"_converted.Time[{kind}]"
+    return f"_converted.{'List' if field.kind in ('message', 'string') else 'Array'}[{inner}]"
 
 
 def _type(package: str, field: Field) -> str:
@@ -113,7 +126,7 @@ def _differences(made: dict[str, Any]) -> list[str]:
     present = {
         path.name: path.read_text()
         for path in TARGET.glob("*.py*")
-        if path.is_file() and path.name != "__init__.py"
+        if path.is_file() and not path.name.startswith("_")
     }
     return sorted(
         name for name in made.keys() | present.keys() if made.get(name) != present.get(name)

@@ -146,7 +146,7 @@ class Session:
             compiler=compiler,
         )
         self.graph.post = self.simulation.post
-        self.simulation.on_restart.append(functools.partial(_abort_goals, self.graph))
+        self.simulation.on_restart.append(self.graph.abort_goals)
         self.graph.post_read = self.simulation.post_read
         self.types.report = self.simulation.report
         for each in early:
@@ -392,12 +392,6 @@ class Session:
 
     def _publish_clock(self) -> None:
         self._clock.publish_values(self._clock_form, (self.simulation.engine.time_ns,))
-
-
-def _abort_goals(graph: Graph) -> None:
-    """Ends the goals of a time before a reset that their servers have not ended."""
-    for action in graph.actions():
-        action.abort("the world was reset")
 
 
 def _ignore(_: Diagnostic) -> None:

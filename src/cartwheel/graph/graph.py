@@ -271,6 +271,11 @@ class Graph:
                 del self._actions[action.name]
             self._notify()
 
+    def abort_goals(self) -> None:
+        """Ends the goals of a time before a reset that their servers have not ended."""
+        for action in self.actions():
+            action.abort("the world was reset")
+
     def actions(self) -> list[Action]:
         """All actions, sorted by name."""
         with self._lock:

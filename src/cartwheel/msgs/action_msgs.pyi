@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.msgs import builtin_interfaces, unique_identifier_msgs
+from cartwheel.msgs import _converted, builtin_interfaces, unique_identifier_msgs
 
 @dataclass(init=False)
 class GoalInfo:
     __msgtype__: ClassVar[str]
     goal_id: unique_identifier_msgs.UUID = ...
-    stamp: builtin_interfaces.Time = ...
+    stamp: _converted.Time[builtin_interfaces.Time] = ...
     def __init__(
         self,
         goal_id: unique_identifier_msgs.UUID = ...,
@@ -32,7 +32,7 @@ class GoalStatus:
 @dataclass(init=False)
 class GoalStatusArray:
     __msgtype__: ClassVar[str]
-    status_list: list[GoalStatus] = ...
+    status_list: _converted.List[GoalStatus] = ...
     def __init__(
         self,
         status_list: list[GoalStatus] | tuple[GoalStatus, ...] = ...,
@@ -51,7 +51,7 @@ class CancelGoal_Response:
     ERROR_UNKNOWN_GOAL_ID: ClassVar[int]
     ERROR_GOAL_TERMINATED: ClassVar[int]
     return_code: int = ...
-    goals_canceling: list[GoalInfo] = ...
+    goals_canceling: _converted.List[GoalInfo] = ...
     def __init__(
         self,
         return_code: int = ...,

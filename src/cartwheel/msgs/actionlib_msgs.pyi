@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.msgs import builtin_interfaces, std_msgs
+from cartwheel.msgs import _converted, builtin_interfaces, std_msgs
 
 @dataclass(init=False)
 class GoalID:
     __msgtype__: ClassVar[str]
-    stamp: builtin_interfaces.Time = ...
+    stamp: _converted.Time[builtin_interfaces.Time] = ...
     id: str = ...
     def __init__(
         self,
@@ -37,7 +37,7 @@ class GoalStatus:
 class GoalStatusArray:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
-    status_list: list[GoalStatus] = ...
+    status_list: _converted.List[GoalStatus] = ...
     def __init__(
         self,
         header: std_msgs.Header = ...,

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from cartwheel.msgs import std_msgs
+from cartwheel.msgs import _converted, std_msgs
 
 @dataclass
 class Accel:
@@ -24,7 +24,7 @@ class AccelStamped:
 class AccelWithCovariance:
     __msgtype__: ClassVar[str]
     accel: Accel = ...
-    covariance: NDArray[np.float64] = ...
+    covariance: _converted.Array[np.float64] = ...
     def __init__(
         self,
         accel: Accel = ...,
@@ -78,7 +78,7 @@ class PointStamped:
 @dataclass(init=False)
 class Polygon:
     __msgtype__: ClassVar[str]
-    points: list[Point32] = ...
+    points: _converted.List[Point32] = ...
     def __init__(
         self,
         points: list[Point32] | tuple[Point32, ...] = ...,
@@ -119,7 +119,7 @@ class Pose2D:
 class PoseArray:
     __msgtype__: ClassVar[str]
     header: std_msgs.Header = ...
-    poses: list[Pose] = ...
+    poses: _converted.List[Pose] = ...
     def __init__(
         self,
         header: std_msgs.Header = ...,
@@ -136,7 +136,7 @@ class PoseStamped:
 class PoseWithCovariance:
     __msgtype__: ClassVar[str]
     pose: Pose = ...
-    covariance: NDArray[np.float64] = ...
+    covariance: _converted.Array[np.float64] = ...
     def __init__(
         self,
         pose: Pose = ...,
@@ -192,7 +192,7 @@ class TwistStamped:
 class TwistWithCovariance:
     __msgtype__: ClassVar[str]
     twist: Twist = ...
-    covariance: NDArray[np.float64] = ...
+    covariance: _converted.Array[np.float64] = ...
     def __init__(
         self,
         twist: Twist = ...,

@@ -4,12 +4,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from cartwheel.msgs import _converted
 
 @dataclass(init=False)
 class Gid:
     __msgtype__: ClassVar[str]
-    data: NDArray[np.uint8] = ...
+    data: _converted.Array[np.uint8] = ...
     def __init__(
         self,
         data: ArrayLike = ...,
@@ -20,8 +22,8 @@ class NodeEntitiesInfo:
     __msgtype__: ClassVar[str]
     node_namespace: str = ...
     node_name: str = ...
-    reader_gid_seq: list[Gid] = ...
-    writer_gid_seq: list[Gid] = ...
+    reader_gid_seq: _converted.List[Gid] = ...
+    writer_gid_seq: _converted.List[Gid] = ...
     def __init__(
         self,
         node_namespace: str = ...,
@@ -34,7 +36,7 @@ class NodeEntitiesInfo:
 class ParticipantEntitiesInfo:
     __msgtype__: ClassVar[str]
     gid: Gid = ...
-    node_entities_info_seq: list[NodeEntitiesInfo] = ...
+    node_entities_info_seq: _converted.List[NodeEntitiesInfo] = ...
     def __init__(
         self,
         gid: Gid = ...,

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from cartwheel.msgs import _converted
+
 @dataclass
 class Logger:
     __msgtype__: ClassVar[str]
@@ -16,7 +18,7 @@ class GetLoggers_Request:
 @dataclass(init=False)
 class GetLoggers_Response:
     __msgtype__: ClassVar[str]
-    loggers: list[Logger] = ...
+    loggers: _converted.List[Logger] = ...
     def __init__(
         self,
         loggers: list[Logger] | tuple[Logger, ...] = ...,

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.msgs import builtin_interfaces, std_msgs
+from cartwheel.msgs import _converted, builtin_interfaces, std_msgs
 
 @dataclass(init=False)
 class Clock:
     __msgtype__: ClassVar[str]
-    clock: builtin_interfaces.Time = ...
+    clock: _converted.Time[builtin_interfaces.Time] = ...
     def __init__(
         self,
         clock: builtin_interfaces.Time | float = ...,
@@ -29,7 +29,7 @@ class Log:
     file: str = ...
     function: str = ...
     line: int = ...
-    topics: list[str] = ...
+    topics: _converted.List[str] = ...
     def __init__(
         self,
         header: std_msgs.Header = ...,

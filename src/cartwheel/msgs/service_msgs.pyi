@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from cartwheel.msgs import builtin_interfaces
+from cartwheel.msgs import _converted, builtin_interfaces
 
 @dataclass(init=False)
 class ServiceEventInfo:
@@ -16,8 +16,8 @@ class ServiceEventInfo:
     RESPONSE_SENT: ClassVar[int]
     RESPONSE_RECEIVED: ClassVar[int]
     event_type: int = ...
-    stamp: builtin_interfaces.Time = ...
-    client_gid: NDArray[np.uint8] = ...
+    stamp: _converted.Time[builtin_interfaces.Time] = ...
+    client_gid: _converted.Array[np.uint8] = ...
     sequence_number: int = ...
     def __init__(
         self,

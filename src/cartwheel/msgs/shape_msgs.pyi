@@ -4,15 +4,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from cartwheel.msgs import geometry_msgs
+from cartwheel.msgs import _converted, geometry_msgs
 
 @dataclass(init=False)
 class Mesh:
     __msgtype__: ClassVar[str]
-    triangles: list[MeshTriangle] = ...
-    vertices: list[geometry_msgs.Point] = ...
+    triangles: _converted.List[MeshTriangle] = ...
+    vertices: _converted.List[geometry_msgs.Point] = ...
     def __init__(
         self,
         triangles: list[MeshTriangle] | tuple[MeshTriangle, ...] = ...,
@@ -22,7 +22,7 @@ class Mesh:
 @dataclass(init=False)
 class MeshTriangle:
     __msgtype__: ClassVar[str]
-    vertex_indices: NDArray[np.uint32] = ...
+    vertex_indices: _converted.Array[np.uint32] = ...
     def __init__(
         self,
         vertex_indices: ArrayLike = ...,
@@ -31,7 +31,7 @@ class MeshTriangle:
 @dataclass(init=False)
 class Plane:
     __msgtype__: ClassVar[str]
-    coef: NDArray[np.float64] = ...
+    coef: _converted.Array[np.float64] = ...
     def __init__(
         self,
         coef: ArrayLike = ...,
@@ -55,7 +55,7 @@ class SolidPrimitive:
     CONE_RADIUS: ClassVar[int]
     PRISM_HEIGHT: ClassVar[int]
     type: int = ...
-    dimensions: NDArray[np.float64] = ...
+    dimensions: _converted.Array[np.float64] = ...
     polygon: geometry_msgs.Polygon = ...
     def __init__(
         self,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.msgs import geometry_msgs, simulation_interfaces
+from cartwheel.msgs import _converted, geometry_msgs, simulation_interfaces
 
 @dataclass
 class Spawnable:
@@ -15,7 +15,7 @@ class Spawnable:
 @dataclass(init=False)
 class GetSpawnables_Request:
     __msgtype__: ClassVar[str]
-    sources: list[str] = ...
+    sources: _converted.List[str] = ...
     def __init__(
         self,
         sources: list[str] | tuple[str, ...] = ...,
@@ -25,7 +25,7 @@ class GetSpawnables_Request:
 class GetSpawnables_Response:
     __msgtype__: ClassVar[str]
     result: simulation_interfaces.Result = ...
-    spawnables: list[Spawnable] = ...
+    spawnables: _converted.List[Spawnable] = ...
     def __init__(
         self,
         result: simulation_interfaces.Result = ...,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cartwheel.msgs import geometry_msgs
+from cartwheel.msgs import _converted, geometry_msgs
 
 @dataclass
 class TF2Error:
@@ -21,7 +21,7 @@ class TF2Error:
 @dataclass(init=False)
 class TFMessage:
     __msgtype__: ClassVar[str]
-    transforms: list[geometry_msgs.TransformStamped] = ...
+    transforms: _converted.List[geometry_msgs.TransformStamped] = ...
     def __init__(
         self,
         transforms: list[geometry_msgs.TransformStamped]

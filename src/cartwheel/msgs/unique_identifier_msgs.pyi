@@ -4,12 +4,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from cartwheel.msgs import _converted
 
 @dataclass(init=False)
 class UUID:
     __msgtype__: ClassVar[str]
-    uuid: NDArray[np.uint8] = ...
+    uuid: _converted.Array[np.uint8] = ...
     def __init__(
         self,
         uuid: ArrayLike = ...,
