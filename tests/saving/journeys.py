@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -57,9 +58,12 @@ def traveller(file: Path, height: float | None = None) -> Traveller:
         models = tuple(_with_small_images(each) for each in world.models)
         return Traveller(dataclasses.replace(world, models=models))
     robot = _with_small_images(load_robot(file))
-    return Traveller(
-        load_world("empty"), robot, resting_height(robot) if height is None else height
-    )
+    return Traveller(_empty(), robot, resting_height(robot) if height is None else height)
+
+
+@functools.cache
+def _empty() -> WorldDescription:
+    return load_world("empty")
 
 
 def _with_small_images(robot: RobotDescription) -> RobotDescription:
