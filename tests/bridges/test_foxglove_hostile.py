@@ -23,7 +23,12 @@ PATIENCE = 60.0
 
 def connected(served: Served) -> ClientConnection:
     return connect(
-        served.bridge.url, subprotocols=["foxglove.sdk.v1"], open_timeout=PATIENCE, max_size=None
+        served.bridge.url,
+        subprotocols=["foxglove.sdk.v1"],
+        open_timeout=PATIENCE,
+        # A client that has left messages unread does not see the other end.
+        close_timeout=0.1,
+        max_size=None,
     )
 
 
