@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests import launching
 from tests.bridges.ros1_peers import wait_for
 from tests.processes import bridges_of
 
@@ -53,7 +54,7 @@ def _alive(pid: int) -> bool:
 )
 def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
     pytest.importorskip("foxglove")
-    process = subprocess.Popen(
+    process = launching.Popen(
         [sys.executable, "-c", _PROGRAM.format(end=end)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
