@@ -180,7 +180,7 @@ def _request(start: Mapping[str, Any]) -> tuple[_Launcher, bytes] | None:
     if isinstance(args, str | bytes | os.PathLike) or start["shell"] or start["executable"]:
         return None
     words = [os.fsdecode(word) for word in args]
-    if words[0] == sys.executable and words[1:3] == ["-m", "cartwheel.cli.main"]:
+    if words[0] == sys.executable and words[1:3] == ["-m", "cartwheel"]:
         words = [str(PROGRAM), *words[3:]]
     asked = ("preexec_fn", "gid", "gids", "uid")
     if (

@@ -79,7 +79,7 @@ def test_the_program_names_its_flags(tmp_path, busy):
     once = str(tmp_path / "drive.mcap")
 
     def printed(*words: str) -> str:
-        command = [sys.executable, "-m", "cartwheel.cli.main", "run", "--headless", *words]
+        command = [sys.executable, "-m", "cartwheel", "run", "--headless", *words]
         done = launching.run(command, capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 2
         return done.stderr

@@ -138,6 +138,7 @@ MAY_IMPORT = {
         "checks",
         "scenarios",
     },
+    "__main__": {"cli"},
 }
 
 

@@ -45,7 +45,7 @@ def test_a_name_that_is_no_utf8_is_printed(tmp_path):
 
 def cartwheel(*words):
     return launching.run(
-        [sys.executable, "-m", "cartwheel.cli.main", *words],
+        [sys.executable, "-m", "cartwheel", *words],
         check=False,
         capture_output=True,
         timeout=60,

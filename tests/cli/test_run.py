@@ -39,6 +39,13 @@ def test_a_bounded_run_says_how_it_went(program):
     assert "\033" not in done.stdout + done.stderr
 
 
+def test_the_package_is_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "cartwheel", "--version"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.startswith("cartwheel ")
+
+
 def test_real_time_is_kept(program):
     done = program("run", "--headless", "--for", "1")
     wall = float(done.stdout.split(" s in ")[1].split(" s")[0])

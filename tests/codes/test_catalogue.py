@@ -72,7 +72,7 @@ def test_errors_keep_everything_on_their_way_to_another_process():
 
 def test_the_command_explains_lists_and_writes_json():
     def run(*words):
-        command = [sys.executable, "-m", "cartwheel.cli.main", "explain", *words]
+        command = [sys.executable, "-m", "cartwheel", "explain", *words]
         return launching.run(command, check=False, capture_output=True, text=True)
 
     code = code_named("CW204")

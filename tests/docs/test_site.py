@@ -112,7 +112,7 @@ def test_each_option_of_each_command_is_on_its_page(staged: Path) -> None:
 def test_the_page_of_a_command_has_the_groups_of_its_help(staged: Path) -> None:
     page = (staged / "docs" / "commands" / "run.md").read_text()
     shown = launching.run(
-        [sys.executable, "-m", "cartwheel.cli.main", "run", "--help"],
+        [sys.executable, "-m", "cartwheel", "run", "--help"],
         capture_output=True,
         text=True,
         check=True,

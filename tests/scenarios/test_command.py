@@ -174,7 +174,7 @@ def test_ctrl_c_keeps_the_results(tmp_path):
     path = tmp_path / "drive.yaml"
     path.write_text(f"{CART}seeds: 1000\nduration: 1\nexpect: [{{stays_within: cart, z: [-1, 1]}}]")
     process = launching.Popen(
-        [sys.executable, "-m", "cartwheel.cli.main", "test", path.name, "-j1"],
+        [sys.executable, "-m", "cartwheel", "test", path.name, "-j1"],
         cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         start_new_session=True,
     )  # fmt: skip

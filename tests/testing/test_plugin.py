@@ -106,7 +106,7 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
     (picture,) = (tmp_path / "out").glob("*.png")
     assert picture.stat().st_size > 1000 and (tmp_path / "out/.gitignore").exists()
     info = launching.run(
-        [sys.executable, "-m", "cartwheel.cli.main", "info", str(recording)],
+        [sys.executable, "-m", "cartwheel", "info", str(recording)],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     for topic in ("/odom", "/robot_description", "/tf_static"):

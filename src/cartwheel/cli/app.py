@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
+from typer.main import get_command_name
+from typer.models import CommandInfo
 
 from cartwheel.cli import (
     check,
@@ -71,3 +75,23 @@ teleop.add_to(app)
 app.add_typer(topic.app, name="topic", rich_help_panel=help.CONTROL)
 app.add_typer(service.app, name="service", rich_help_panel=help.CONTROL)
 help.add(app, files.version, group=help.OTHER)
+
+
+def named(words: Sequence[str]) -> typer.Typer:
+    """The app for a command line: with the command that its first word names, or with all.
+
+    To build all commands takes longer than many a command.
+    """
+    name = next((word for word in words if not word.startswith("-")), "")
+    commands = [each for each in app.registered_commands if _name(each) == name]
+    groups = [each for each in app.registered_groups if each.name == name]
+    if not commands and not groups:
+        return app
+    made = copy.copy(app)
+    made.registered_commands, made.registered_groups = commands, groups
+    return made
+
+
+def _name(command: CommandInfo) -> str:
+    assert command.callback is not None
+    return command.name or get_command_name(command.callback.__name__)

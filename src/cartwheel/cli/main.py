@@ -36,8 +36,9 @@ def run() -> int:
             gazebo.start(name, sys.argv[2:])
             return 0
         # Imported only now, so that a signal in the meantime finds its handler.
-        from cartwheel.cli.app import app
+        from cartwheel.cli.app import named
 
+        app = named(sys.argv[1:])
         return _status(app(prog_name="cartwheel", standalone_mode=False))
     except interrupts.Interrupted as interrupted:
         return 128 + interrupted.number
