@@ -268,6 +268,14 @@ def test_two_vehicles_on_one_port_are_found(bench, plugin, default, free, stated
     assert not bench.find(world(one + apart), "port-used-twice", "w.world")
 
 
+def test_systems_that_open_no_port_do_not_clash(bench):
+    systems = "".join(
+        f'<plugin name="gz::sim::systems::{name}" filename="gz-sim-{name.lower()}-system"/>'
+        for name in ("Imu", "Sensors")
+    )
+    assert not bench.find(model(systems), "port-used-twice")
+
+
 def test_tcp_and_udp_ports_do_not_clash(bench):
     one = vehicle("one", 7000, "libgazebo_mavlink_interface.so", "mavlink_tcp_port")
     other = vehicle("other", 7000, "ArduPilotPlugin", "fdm_port_in")

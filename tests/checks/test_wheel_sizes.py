@@ -433,6 +433,37 @@ def test_the_wheel_base_is_measured_between_the_axles_when_all_wheels_are_driven
     assert told(car(text.replace("</plugin>", f"{more}</plugin>"))) == []
 
 
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("wheel_radius", RADIUS, ("left_wheel_radius_multiplier", "right_wheel_radius_multiplier")),
+        ("wheel_separation", TRACK, ("wheel_separation_multiplier",)),
+    ],
+)
+def test_the_size_with_its_multiplier_is_compared(told, take, tmp_path, case):
+    size, value, multipliers = case
+    path = tmp_path / "car.yaml"
+    twice = ROS2_DIFF.replace(f"{size}: {value}", f"{size}: {2 * value}")
+    path.write_text(twice + "".join(f"    {name}: 0.5\n" for name in multipliers))
+    assert told(car(), controller_files=[path]) == []
+    wrong = ROS2_DIFF + "".join(f"    {name}: 0.5\n" for name in multipliers)
+    path.write_text(wrong)
+    (finding,) = told(car(), controller_files=[path])
+    assert finding.values["stated"] == pytest.approx(value / 2)
+    path.write_text(take(wrong, finding))
+    assert told(car(), controller_files=[path]) == []
+
+
+def test_a_multiplier_without_a_size_is_that_of_the_measured_separation(told, take, tmp_path):
+    path = tmp_path / "car.yaml"
+    wrong = ROS2_DIFF.replace(f"wheel_separation: {TRACK}", "wheel_separation_multiplier: 1.5")
+    path.write_text(wrong)
+    (finding,) = told(car(), controller_files=[path])
+    assert finding.instead == "wheel_separation_multiplier: 1.0"
+    path.write_text(take(wrong, finding))
+    assert told(car(), controller_files=[path]) == []
+
+
 def test_a_multiplier_of_the_wheel_separation_counts_for_the_turn_rate(bench, tmp_path):
     path = tmp_path / "car.yaml"
     wheels = {

@@ -17,7 +17,7 @@ from cartwheel.codes.devices import (
     PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
 )
-from cartwheel.codes.files import INCLUDE_ABSENT
+from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT
 from cartwheel.codes.robot import (
     BODY_ON_GROUND,
     DUPLICATE_NAME,
@@ -38,7 +38,8 @@ from cartwheel.codes.robot import (
 from cartwheel.codes.running import CONTROLLER_NOT_STARTED, JOINT_DRIVEN_TWICE, PLUGIN_LEFT_OUT
 from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import trial, try_robot
-from cartwheel.corpus.diagnosis import _of_drive, faults
+from cartwheel.corpus.diagnosis import faults
+from cartwheel.corpus.drive_causes import cause_of_drive
 from cartwheel.corpus.trial import _listened
 from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
 from cartwheel.description import load_robot, load_text
@@ -174,8 +175,8 @@ def test_a_size_does_not_explain_an_error_in_the_other_direction():
         "2 % less", severity="warning", values={"stated": 0.39, "measured": 0.3985}
     )
     shape = WHEEL_NOT_ROUND.diagnostic("not round", severity="warning")
-    assert _of_drive([separation, shape], 1.12, turning=True) is shape
-    assert _of_drive([separation, shape], 0.98, turning=True) is separation
+    assert cause_of_drive([separation, shape], 1.12, turning=True) is shape
+    assert cause_of_drive([separation, shape], 0.98, turning=True) is separation
 
 
 def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
@@ -186,9 +187,9 @@ def test_a_plugin_that_measures_does_not_explain_why_a_base_drives_backward():
         "no such joint", values={"plugin": "libgazebo_ros_diff_drive.so"}
     )
     axis = WHEEL_AXIS_MISALIGNED.diagnostic("turns backwards", severity="warning")
-    assert _of_drive([publisher, axis], -1.0, turning=False) is axis
-    assert _of_drive([publisher], -1.0, turning=False) is None
-    assert _of_drive([drive, axis], -1.0, turning=False) is drive
+    assert cause_of_drive([publisher, axis], -1.0, turning=False) is axis
+    assert cause_of_drive([publisher], -1.0, turning=False) is None
+    assert cause_of_drive([drive, axis], -1.0, turning=False) is drive
 
 
 def _explained(*findings, **results):
@@ -207,6 +208,50 @@ def test_a_wrong_radius_also_explains_how_fast_sliding_wheels_turn_the_base():
     assert _explained(radius, drives=(drive,)) == {"drive": radius, "turn": radius}
     right = replace(drive, measured=0.2)
     assert _explained(radius, drives=(right,)) == {"turn": None}
+
+
+def test_a_robot_that_fell_cannot_drive():
+    lost = FILE_MISSING.diagnostic("no mesh", values={"left_out": "collision"})
+    fell = Stand(fixed=False, simulated=10, wall=1, sunk=0.1, tilt=0.5, speed=0, turn=0)
+    drive = Drive(
+        topic="/cmd_vel", commanded=0.2, measured=0.1, commanded_turn=0.4, measured_turn=0.1
+    )
+    assert _explained(lost, stand=fell, drives=(drive,)) == dict.fromkeys(
+        ("stand", "drive", "turn"), lost
+    )
+    assert _explained(lost, drives=(drive,)) == {"drive": None, "turn": None}
+
+
+ROCKING = """<sdf version="1.6"><model name="cart"><link name="base"><pose>0 0 0.1 0 0 0</pose>
+<inertial><mass>1</mass></inertial><collision name="c"><geometry><box><size>0.4 0.2 0.1</size></box>
+</geometry></collision><collision name="caster"><pose>-0.15 0 -0.05 0 0 0</pose><geometry><sphere>
+<radius>0.05</radius></sphere></geometry><surface><friction><ode><mu>0</mu><mu2>0</mu2></ode>
+</friction></surface></collision></link>{wheels}
+<plugin name="drive" filename="gz-sim-diff-drive-system">
+<left_joint>left</left_joint><right_joint>right</right_joint><wheel_radius>0.12</wheel_radius>
+<wheel_separation>0.38</wheel_separation></plugin></model></sdf>"""
+ROCKING_WHEEL = """<link name="{side}_wheel"><pose>0.12 {y} 0.12 1.5707963 0 0</pose>{inertial}
+<collision name="c"><geometry><cylinder><radius>0.12</radius><length>0.05</length></cylinder>
+</geometry></collision></link><joint name="{side}" type="revolute"><parent>base</parent>
+<child>{side}_wheel</child><axis><xyz expressed_in="__model__">0 1 0</xyz></axis></joint>"""
+
+
+@pytest.mark.parametrize("stated", [False, True])
+def test_wheels_with_the_inertia_of_a_flywheel_explain_why_a_base_rocks(tmp_path, stated):
+    """SDF's default is 1 kg m², so the reaction to the wheels' acceleration lifts the base."""
+    inertia = "<ixx>0.004</ixx><iyy>0.004</iyy><izz>0.0072</izz>"
+    inertial = f"<inertial><mass>1</mass><inertia>{inertia}</inertia></inertial>" if stated else ""
+    wheels = "".join(
+        ROCKING_WHEEL.format(side=side, y=y, inertial=inertial)
+        for side, y in (("left", 0.19), ("right", -0.19))
+    )
+    file = tmp_path / "cart.sdf"
+    file.write_text(ROCKING.format(wheels=wheels))
+    verdict = try_robot(file, standing=2)
+    (drive,) = verdict.drives
+    assert drive.follows == stated
+    reasons = {each.test: each.code for each in verdict.faults}
+    assert reasons.get("drive") == (None if stated else INERTIA_GEOMETRY_MISMATCH)
 
 
 def test_lengths_in_millimetres_explain_why_the_simulation_diverges():
@@ -272,10 +317,10 @@ def test_the_friction_of_a_body_explains_why_it_moves_slowly_over_the_ground(tri
     smooth = '<gazebo reference="base"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
     assert tried(body, move.format(""), smooth).good
     slow = PLANAR_FRICTION.diagnostic("slides", severity="info")
-    assert _of_drive([slow], 0.9, turning=True) is slow
-    assert _of_drive([slow], 0.6, turning=False) is slow
-    assert _of_drive([slow], 1.2, turning=True) is None
-    assert _of_drive([slow], -0.9, turning=False) is None
+    assert cause_of_drive([slow], 0.9, turning=True) is slow
+    assert cause_of_drive([slow], 0.6, turning=False) is slow
+    assert cause_of_drive([slow], 1.2, turning=True) is None
+    assert cause_of_drive([slow], -0.9, turning=False) is None
 
 
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):
@@ -1047,10 +1092,10 @@ def test_a_leg_whose_foot_does_not_slide_is_tested_above_the_ground(tmp_path, tr
 
 def test_wheels_that_point_to_one_side_explain_a_small_error_to_this_side():
     toed = WHEELS_TOED.diagnostic("point to the left", values={"joint": "j", "toe": 0.01})
-    assert _of_drive([toed], 1.1, turning=True, arc=True) is toed
-    assert _of_drive([toed], 0.9, turning=True, arc=True) is None
-    assert _of_drive([toed], 1.1, turning=False) is None
-    assert _of_drive([toed], 1.1, turning=True) is None
+    assert cause_of_drive([toed], 1.1, turning=True, arc=True) is toed
+    assert cause_of_drive([toed], 0.9, turning=True, arc=True) is None
+    assert cause_of_drive([toed], 1.1, turning=False) is None
+    assert cause_of_drive([toed], 1.1, turning=True) is None
 
 
 FLAP = (

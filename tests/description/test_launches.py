@@ -192,6 +192,58 @@ def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
     assert use.spawned == ("arm_controller",)
 
 
+LOOPS = """
+robots = [{"name": "one", "sim": "true"}]
+robots.append({"name": "two", "sim": "false"})
+
+def generate_launch_description():
+    share = get_package_share_directory("arm")
+    nodes = []
+    for index, robot in enumerate(robots):
+        text = Command(["xacro ", share + "/urdf/arm.urdf.xacro", " name:=", robot["name"],
+                        " sim:=", robot["sim"], " port:=", str(7000 + 10 * index)])
+        nodes += [Node(package="robot_state_publisher", parameters=[{"robot_description": text}])]
+    nodes += [Node(package="controller_manager", executable="spawner", arguments=[name])
+              for name in ("joints", "arm_controller")]
+    for name, values in {"gripper": 1}.items():
+        nodes.append(Node(package="controller_manager", executable="spawner", arguments=[name]))
+    return LaunchDescription(nodes)
+"""
+
+
+def test_loops_are_evaluated_for_each_of_their_values(package):
+    folder = package(sim_dot_launch_dot_py=LOOPS)
+    uses = [use for use in launches_near(folder) if use.description is not None]
+    assert [use.arguments for use in uses] == [
+        {"name": "one", "sim": "true", "port": "7000"},
+        {"name": "two", "sim": "false", "port": "7010"},
+    ]
+    for use in uses:
+        assert set(use.spawned) >= {"joints", "arm_controller", "gripper"}
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "    name = 'a'\n    for _ in range(10**6):\n        name = name + name\n",
+        "    name = ['a']\n    for _ in range(900):\n        name.append(name)\n",
+        "    name = ['a']\n    for _ in range(900):\n        name = name + name\n",
+        "    name = 3\n    for _ in range(900):\n        name = name * name\n",
+        "    name = ''\n" + "".join(
+            f"{'    ' * (2 * depth + 1)}for x in range(99):\n"
+            f"{'    ' * (2 * depth + 2)}for y in range(99):\n" for depth in range(4)
+        ) + f"{'    ' * 9}name = 'a'\n",
+        "    for name in unknown():\n        pass\n",
+    ],
+)  # fmt: skip
+def test_loops_of_strangers_end(package, loop):
+    text = LOOPS.replace("    nodes = []\n", f"    nodes = []\n{loop}").replace(
+        'robot["name"]', "name"
+    )
+    folder = package(sim_dot_launch_dot_py=text)
+    assert any(use.description is not None for use in launches_near(folder))
+
+
 def test_launch_files_are_known_by_their_folder(package):
     folder = package(sim_dot_py=STARTER, rsp_dot_launch_dot_py=INCLUDED)
     use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))

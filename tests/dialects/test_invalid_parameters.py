@@ -1,5 +1,6 @@
 """Plugins with parameters that are invalid, or that contain more than a number."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -111,3 +112,30 @@ def test_text_after_a_vector_is_ignored(tmp_path: Path):
         world.run(0.1)
         position = mailbox.drain()[-1].pose.pose.position
         assert (position.x, position.y) == pytest.approx((1, 2))
+
+
+_CART = """<robot name="cart"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+{wheels}<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+<odometrySource>ENCODER</odometrySource></plugin></gazebo></robot>"""
+_WHEEL = """<link name="{side}"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="{side}_joint" type="continuous"><parent link="base"/><child link="{side}"/>
+<axis xyz="0 1 0"/></joint>"""
+
+
+def test_an_unknown_word_is_replaced_by_the_default_as_in_gazebo(tmp_path: Path):
+    """The utilities of gazebo_plugins warn, and keep the default: the position in the world."""
+    file = tmp_path / "cart.urdf"
+    wheels = "".join(_WHEEL.format(side=side) for side in ("left", "right"))
+    file.write_text(_CART.format(wheels=wheels))
+    with cw.World("empty") as world:
+        model = world.spawn(file)
+        (found,) = coded(world.diagnostics, PLUGIN_PARAMETER_INVALID)
+        assert (found.severity, found.values["used"]) == ("warning", "world")
+        assert 'Did you mean "encoder"?' in str(found.hint)
+        model.pose = replace(model.pose, position=(5.0, 0.0, 0.0))
+        odometry = world.mailbox("/odom", size=100)
+        world.run(0.1)
+        (*_, last) = odometry.drain()
+        assert last.pose.pose.position.x == pytest.approx(5.0, abs=0.01)

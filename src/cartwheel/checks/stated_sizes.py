@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -57,6 +58,11 @@ class Stated:
     """Formats a number as replacement text."""
     place: Place
 
+    @property
+    def used(self) -> float:
+        """The value with which the controller computes, m."""
+        return self.value * self.factor
+
     def steered_by(self, other: Stated) -> bool:
         """Whether one of the wheels is mounted on a steering joint, from which `other` measures the
         wheelbase. Such wheels do not slide, even if there are several on a side.
@@ -70,6 +76,7 @@ class Stated:
         )
 
 
+_SIDES = ("left", "right")
 _MEASURES: Mapping[str, Measure] = {
     "wheel_separation": "apart",
     "wheel_base": "base",
@@ -227,6 +234,11 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
         value = controller.value(*spellings)
         number = value.number if value is not None else None
         times = controller.value(*(f"{each}_multiplier" for each in spellings))
+        # diff_drive_controller prefers the multipliers of the sides.
+        sided = [
+            controller.value(*(f"{side}_{each}_multiplier" for each in spellings))
+            for side in _SIDES
+        ]
         groups = [joints[field] for field in row.wheels]
         if len(groups) == 2 and groups[0] is groups[1]:
             # The distance between both wheels of one axle.
@@ -238,7 +250,9 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
         if written is None or (value is not None and number is None) or not all(sides):
             continue
         name = next((each for each in spellings if controller.has(each)), spellings[0])
-        factor = times.number if times is not None else None
+        general = times.number if times is not None else None
+        factors = [one.number if one is not None else general for one in sided]
+        factor = sum(1.0 if one is None else one for one in factors) / len(factors)
         one = Stated(
             robot=robot,
             measure=_MEASURES[row.role],
@@ -248,7 +262,7 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
             first=sides[0],
             second=sides[1] if len(sides) == 2 else (),
             skids=len(sides[0]) > 1,
-            factor=factor or 1.0,
+            factor=factor,
             origin=written.origin,
             mark=written.text,
             write=written.replaced,
@@ -256,9 +270,15 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
         )
         if value is not None:
             yield one
-        elif one.measure == "apart":
+        elif one.measure == "apart" and times is not None:
             # The controller measures the distance between the wheels itself.
-            yield replace(one, value=mean_between(one, beside=True))
+            apart = mean_between(one, beside=True)
+            yield replace(one, value=apart, write=partial(_unscaled, times))
+
+
+def _unscaled(times: Value, _: str) -> str:
+    """A multiplier without effect."""
+    return times.replaced("1.0")
 
 
 def _known(robot: Robot, values: Sequence[Value | None]) -> Iterator[str]:
@@ -277,6 +297,8 @@ def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
         why: The real size and the consequence, as they follow "but" in the message.
     """
     stated = f"{one.label} is {one.value:g} m"
+    if one.factor != 1.0:
+        stated += f", times its multiplier {one.factor:g}"
     if not one.written:
         stated = f"{one.label} is missing and defaults to {one.value:g} m"
     return code.diagnostic(
@@ -284,11 +306,11 @@ def size_mismatch(code: Code, one: Stated, real: float, why: str) -> Diagnostic:
         values={
             "tag": one.label,
             "joint": one.first[0],
-            "stated": one.value,
+            "stated": one.used,
             "measured": real,
         },
         origin=one.origin,
-        instead=one.write(nodes.short(round(real, 4))),
+        instead=one.write(nodes.short(round(real / one.factor, 4))) if one.factor else "",
         place=one.place,
         mark=one.mark,
     )

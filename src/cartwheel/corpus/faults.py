@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -79,3 +80,9 @@ class Fault:
             return "unknown"
         ours = {code.number for code in _OURS}
         return "unknown" if self.reason.values.get("cause") in ours else "file"
+
+
+def most_severe(found: Iterable[Diagnostic]) -> Diagnostic | None:
+    """The first of the most severe diagnostics."""
+    order = {"error": 0, "warning": 1, "info": 2}
+    return min(found, key=lambda each: order[each.severity], default=None)

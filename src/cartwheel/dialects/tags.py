@@ -13,9 +13,9 @@ from cartwheel.codes import devices
 from cartwheel.description.elements import numbers
 from cartwheel.description.elements.numbers import LARGEST
 from cartwheel.description.model import Element
+from cartwheel.dialects.tag_reports import kept, unknown
 from cartwheel.dialects.tag_roles import JOINT_ROLES, Role, TagRole
 from cartwheel.errors import Diagnostic, Origin, PluginError, Value
-from cartwheel.similar_names import meant_one
 
 C = TypeVar("C")
 
@@ -172,10 +172,16 @@ def read(
                 )
             else:
                 stated = _cut(kind, stated, diagnostics)
-                values[item.name] = _value(kind, stated, item.metadata)
+                try:
+                    values[item.name] = _value(kind, stated, item.metadata)
+                except PluginError as error:
+                    if get_origin(kind) is not typing.Literal or not isinstance(item.default, str):
+                        raise
+                    # Gazebo's plugins warn, and keep the default.
+                    diagnostics.append(kept(error, stated, item.default, get_args(kind)))
         elif item.default is dataclasses.MISSING:
             raise missing(element.tag, names[0], element.origin, hint=item.metadata["doc"])
-    diagnostics += [_unknown(child, known) for child in element.children if child.tag not in known]
+    diagnostics += [unknown(child, known) for child in element.children if child.tag not in known]
     return cls(**values), diagnostics
 
 
@@ -183,30 +189,6 @@ def read(
 def _hints(cls: type) -> dict[str, Any]:
     """The types of a dataclass's fields, which take longer to resolve than to use."""
     return typing.get_type_hints(cls)
-
-
-_OF_SENSORS = {"imu", "ray", "lidar", "camera", "gps", "magnetometer", "altimeter", "noise"}
-"""Elements of a ``<sensor>``, which some descriptions place in a ``<plugin>``."""
-
-
-def _unknown(element: Element, known: Iterable[str]) -> Diagnostic:
-    meant = meant_one(element.tag, sorted(known))
-    hint = f"Did you mean <{meant}>?" if meant else ""
-    of_sensor = element.tag in _OF_SENSORS
-    if of_sensor:
-        noise = next((each for each in ("gaussianNoise", "gaussian_noise") if each in known), "")
-        hint = (
-            f"<{element.tag}> is an element of <sensor>: place it beside the <plugin> in a sensor."
-        )
-        if noise:
-            hint += f" The noise of this plugin is <{noise}>."
-    return devices.PLUGIN_PARAMETER_UNKNOWN.diagnostic(
-        f"<{element.tag}> has no effect: the plugin does not support this tag",
-        origin=element.origin,
-        hint=hint,
-        values={"parameter": element.tag, "meant": meant, "of_sensor": of_sensor},
-        mark=f"<{element.tag}",
-    )
 
 
 def _cut(kind: Any, element: Element, diagnostics: list[Diagnostic]) -> Element:

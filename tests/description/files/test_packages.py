@@ -248,12 +248,14 @@ def test_what_lies_among_temporary_files_belongs_to_nobody(tmp_path, monkeypatch
         found.find("b")
 
 
-@pytest.mark.parametrize("root", ["ws/src", "ws"])
+@pytest.mark.parametrize("root", ["src", ".git", ".gitignore"])
 def test_packages_lie_deep_in_a_workspace_or_repository(tmp_path, root):
-    own = package(tmp_path / "ws" / "src" / "turtle" / "turtle_description")
-    deep = package(tmp_path / "ws" / "src" / "create" / "common" / "more" / "b")
-    if root == "ws":
-        (tmp_path / "ws" / ".git").mkdir()
+    """An archive of a repository contains no ``.git``."""
+    source = tmp_path / "ws" / ("src" if root == "src" else "robots")
+    own = package(source / "turtle" / "turtle_description")
+    deep = package(source / "create" / "common" / "more" / "b")
+    if root != "src":
+        (tmp_path / "ws" / root).mkdir()
     assert packages(robot(own)).find("b") == deep
 
 

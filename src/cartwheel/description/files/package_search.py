@@ -25,6 +25,9 @@ _ROS1 = "ROS_PACKAGE_PATH"
 _PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
 _MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
 
+_OF_REPOSITORIES = (".git", ".gitignore", ".gitmodules", ".gitattributes", ".github")
+"""Entries of the root of a repository. An archive that was downloaded contains no ``.git``."""
+
 
 class PackageSearch:
     """Finds packages and models by name. Packages that were found are remembered.
@@ -157,7 +160,7 @@ class PackageSearch:
         """The folders that ROS searches recursively for packages."""
         yield from self.package_path
         for parent in self._ancestors():
-            if parent.name == "src" or (parent / ".git").exists():
+            if parent.name == "src" or any((parent / each).exists() for each in _OF_REPOSITORIES):
                 yield parent
             elif (parent / "src").is_dir():
                 yield parent / "src"

@@ -9,7 +9,18 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cartwheel.description.files.regular_files import read_regular_text
-from cartwheel.description.launches.use import UNKNOWN, Facts
+from cartwheel.description.launches.python_values import (
+    LONGEST,
+    NOTHING,
+    Unknown,
+    combined,
+    concatenated,
+    is_known,
+    items,
+    joined,
+    text,
+)
+from cartwheel.description.launches.use import Facts
 
 _JOINS = frozenset({"join", "joinpath", "PathJoinSubstitution"})
 _SHARES = frozenset(
@@ -61,11 +72,8 @@ _PASSED = frozenset(
 """Methods whose value is that of the object."""
 
 
-class _Unknown:
-    """A value that cannot be determined."""
-
-
-_NOTHING = _Unknown()
+_MOST_TURNS = 500
+"""Maximum number of times that the bodies of all loops of a file are evaluated."""
 
 
 class _Description:
@@ -107,10 +115,14 @@ class _Reader:
         self._given = given
         self._facts = facts
         self._depth = depth
+        self._turns = _MOST_TURNS
         self._names: dict[str, Any] = {"__file__": str(path)}
 
     def block(self, statements: Iterable[ast.stmt]) -> None:
-        """Evaluates statements in their order; of branches, all, and of loops, the body once."""
+        """Evaluates statements in their order; of branches, all.
+
+        The body of a loop is evaluated for each value, or once if the values are unknown.
+        """
         for each in statements:
             if isinstance(each, ast.Assign):
                 value = self.value(each.value)
@@ -118,9 +130,17 @@ class _Reader:
                     self._assign(target, value)
             elif isinstance(each, ast.AnnAssign) and each.value is not None:
                 self._assign(each.target, self.value(each.value))
-            elif isinstance(each, ast.Expr | ast.Return | ast.AugAssign):
+            elif isinstance(each, ast.AugAssign):
+                held, value = self.value(each.target), self.value(each.value)
+                self._assign(each.target, combined(each.op, held, value))
+            elif isinstance(each, ast.Expr | ast.Return):
                 if each.value is not None:
                     self.value(each.value)
+            elif isinstance(each, ast.For):
+                for item in self._items(each.iter):
+                    self._assign(each.target, item)
+                    self.block(each.body)
+                self.block(each.orelse)
             elif isinstance(each, ast.With):
                 for item in each.items:
                     if item.optional_vars is not None:
@@ -133,6 +153,10 @@ class _Reader:
     def _assign(self, target: ast.expr, value: Any) -> None:
         if isinstance(target, ast.Name):
             self._names[target.id] = value
+        elif isinstance(target, ast.Tuple | ast.List):
+            known = isinstance(value, list) and len(value) == len(target.elts)
+            for index, each in enumerate(target.elts):
+                self._assign(each, value[index] if known else NOTHING)
         elif (
             isinstance(target, ast.Subscript)
             and isinstance(holder := self.value(target.value), dict)
@@ -140,54 +164,85 @@ class _Reader:
         ):
             holder[key] = value
 
+    def _items(self, node: ast.expr) -> Iterator[Any]:
+        """The values of a loop's variable; a single unknown one if nothing is known about them."""
+        kind, values = "", [node]
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            kind, values = node.func.id, node.args
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            kind, values = node.func.attr, [node.func.value]
+        first, *more = items(kind, [self.value(each) for each in values]) or [NOTHING]
+        yield first
+        for item in more:
+            if self._turns <= 0:
+                return
+            self._turns -= 1
+            yield item
+
+    def _collected(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp) -> list[Any]:
+        """The values of a comprehension."""
+        one = node.generators[0]
+        found: list[Any] = []
+        for item in self._items(one.iter):
+            self._assign(one.target, item)
+            for other in node.generators[1:]:
+                self._assign(other.target, NOTHING)
+            if not any(self._holds(test) is False for test in one.ifs):
+                found.append(self.value(node.elt))
+        return found
+
     def value(self, node: ast.expr) -> Any:
-        """The value of an expression; `_NOTHING` if it is unknown."""
+        """The value of an expression; `NOTHING` if it is unknown."""
         if isinstance(node, ast.Constant):
             return node.value
         if isinstance(node, ast.Name):
-            return self._names.get(node.id, _NOTHING)
+            return self._names.get(node.id, NOTHING)
         if isinstance(node, ast.JoinedStr):
-            return "".join(_text(self.value(each)) for each in node.values)
+            return concatenated(self.value(each) for each in node.values)
         if isinstance(node, ast.FormattedValue):
             return self.value(node.value)
         if isinstance(node, ast.List | ast.Tuple | ast.Set):
             return [self.value(each) for each in node.elts]
         if isinstance(node, ast.Dict):
             return {
-                _text(self.value(key)): self.value(value)
+                text(self.value(key)): self.value(value)
                 for key, value in zip(node.keys, node.values, strict=True)
                 if key is not None
             }
         if isinstance(node, ast.BinOp):
-            return _combined(node.op, self.value(node.left), self.value(node.right))
+            return combined(node.op, self.value(node.left), self.value(node.right))
         if isinstance(node, ast.IfExp):
             return self.value(node.orelse if self._holds(node.test) is False else node.body)
         if isinstance(node, ast.Attribute):
             value = self.value(node.value)
             if node.attr == "parent" and isinstance(value, str):
                 return str(PurePosixPath(value).parent)
-            return _NOTHING
+            return NOTHING
         if isinstance(node, ast.Subscript):
             held, key = self.value(node.value), self.value(node.slice)
-            return held.get(key, _NOTHING) if isinstance(held, dict) else _NOTHING
+            if isinstance(held, list) and isinstance(key, int) and 0 <= key < len(held):
+                return held[key]
+            return held.get(key, NOTHING) if isinstance(held, dict) else NOTHING
+        if isinstance(node, ast.ListComp | ast.GeneratorExp | ast.SetComp):
+            return self._collected(node)
         if isinstance(node, ast.Call):
             return self._call(node)
-        return _NOTHING
+        return NOTHING
 
     def _holds(self, test: ast.expr) -> bool | None:
         """Whether a condition on texts holds; None if it is unknown."""
         if isinstance(test, ast.Compare) and len(test.ops) == 1:
             left, right = self.value(test.left), self.value(test.comparators[0])
-            if isinstance(test.ops[0], ast.Eq | ast.NotEq) and _is_known(left, right):
+            if isinstance(test.ops[0], ast.Eq | ast.NotEq) and is_known(left, right):
                 return bool((left == right) == isinstance(test.ops[0], ast.Eq))
             return None
         value = self.value(test)
-        return value != "" if _is_known(value) else None
+        return value != "" if is_known(value) else None
 
     def _call(self, node: ast.Call) -> Any:
         named = isinstance(node.func, ast.Name | ast.Attribute)
         name = node.func.id if isinstance(node.func, ast.Name) else ""
-        holder: Any = _NOTHING
+        holder: Any = NOTHING
         if isinstance(node.func, ast.Attribute):
             name = node.func.attr
             holder = self.value(node.func.value)
@@ -196,35 +251,40 @@ class _Reader:
         ]
         words = {each.arg: self.value(each.value) for each in node.keywords if each.arg}
         if not named:
-            return _NOTHING
-        first = places[0] if places else next((words[w] for w in _FIRST if w in words), _NOTHING)
+            return NOTHING
+        first = places[0] if places else next((words[w] for w in _FIRST if w in words), NOTHING)
         if name in _JOINS:
-            parts = [*([] if isinstance(holder, _Unknown) else [holder]), *places]
+            parts = [*([] if isinstance(holder, Unknown) else [holder]), *places]
             # A part may be a list of substitutions, as in [folder, [name, ".xacro"]].
             steps = [
                 step for each in parts for step in (each if isinstance(each, list) else [each])
             ]
-            return str(PurePosixPath(*map(_joined, steps)))
+            return str(PurePosixPath(*map(joined, steps)))
+        if name in ("append", "extend") and isinstance(holder, list):
+            more = [first] if name == "append" else first
+            if isinstance(more, list) and len(holder) + len(more) <= LONGEST:
+                holder += more
+            return NOTHING
         if name in _SHARES:
-            return self._facts.package(_text(words.get("package", first)))
+            return self._facts.package(text(words.get("package", first)))
         if name in _SAME:
             return words if name == "dict" and words else first
         if name == "dirname":
-            return str(PurePosixPath(_text(first)).parent)
+            return str(PurePosixPath(text(first)).parent)
         if name == "open" or name in _PASSED:
             return first if name == "open" else holder
         if name in ("process_file", "process", "process_doc"):
             # For process_doc, the document is the text of the file that xacro.parse has read.
-            return self._processed(_text(first), words.get("mappings", {}))
+            return self._processed(text(first), words.get("mappings", {}))
         if name == "parse" and isinstance(node.func, ast.Attribute):
             module = node.func.value
-            return first if isinstance(module, ast.Name) and module.id == "xacro" else _NOTHING
+            return first if isinstance(module, ast.Name) and module.id == "xacro" else NOTHING
         maker = _ACTIONS.get(name)
-        return _NOTHING if maker is None else maker(self, first, places, words)
+        return NOTHING if maker is None else maker(self, first, places, words)
 
     def _processed(self, file: str, mappings: Any) -> _Description:
         arguments = (
-            {key: _text(value) for key, value in mappings.items()}
+            {key: text(value) for key, value in mappings.items()}
             if isinstance(mappings, dict)
             else {}
         )
@@ -233,25 +293,25 @@ class _Reader:
 
     def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a launch argument."""
-        name = _text(words.get("variable_name", first))
+        name = text(words.get("variable_name", first))
         if name in self._given:
             return self._given[name]
-        return self.defaults.get(name, words.get("default", _NOTHING))
+        return self.defaults.get(name, words.get("default", NOTHING))
 
     def declaration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Stores the default of a launch argument."""
-        name = _text(words.get("name", first))
+        name = text(words.get("name", first))
         if "default_value" in words and name not in self.defaults:
-            self.defaults[name] = _joined(words["default_value"])
+            self.defaults[name] = joined(words["default_value"])
         if not self._depth and name not in self._given and name in self.defaults:
-            self._facts.defaults[name] = _joined(self.defaults[name])
-        return _NOTHING
+            self._facts.defaults[name] = joined(self.defaults[name])
+        return NOTHING
 
     def setting(self, first: Any, places: list[Any], _: dict[str, Any]) -> Any:
         """Stores the value of a launch argument."""
         if len(places) > 1:
-            self.defaults[_text(first)] = _joined(places[1])
-        return _NOTHING
+            self.defaults[text(first)] = joined(places[1])
+        return NOTHING
 
     def executable(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The name of an executable."""
@@ -259,8 +319,8 @@ class _Reader:
 
     def command(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Adds the description in a command."""
-        self._facts.describe(_joined(words.get("command", first)))
-        return _NOTHING
+        self._facts.describe(joined(words.get("command", first)))
+        return NOTHING
 
     def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Reads an included launch file."""
@@ -268,32 +328,32 @@ class _Reader:
         passed = words.get("launch_arguments", {})
         if isinstance(passed, list):
             pairs = [each for each in passed if isinstance(each, list) and len(each) == 2]
-            passed = {_text(key): value for key, value in pairs}
+            passed = {text(key): value for key, value in pairs}
         arguments = (
-            {key: _joined(value) for key, value in passed.items()}
+            {key: joined(value) for key, value in passed.items()}
             if isinstance(passed, dict)
             else {}
         )
-        self._facts.include(_joined(source), arguments, self._depth)
-        return _NOTHING
+        self._facts.include(joined(source), arguments, self._depth)
+        return NOTHING
 
     def node(self, _first: Any, _places: list[Any], words: dict[str, Any]) -> Any:
         """Adds what a node starts."""
         arguments = words.get("arguments", [])
-        texts = [_joined(each) for each in arguments] if isinstance(arguments, list) else []
+        texts = [joined(each) for each in arguments] if isinstance(arguments, list) else []
         if len(texts) == 1 and " " in texts[0]:
             try:
                 texts = shlex.split(texts[0])
             except ValueError:
                 texts = []
-        package = _text(words.get("package", ""))
-        executable = _text(words.get("executable", words.get("node_executable", "")))
+        package = text(words.get("package", ""))
+        executable = text(words.get("executable", words.get("node_executable", "")))
         self._facts.node(package, executable, texts)
         if package == "controller_manager" and isinstance(words.get("parameters"), list):
             for each in words["parameters"]:
                 if isinstance(each, str | list):
-                    self._facts.parameters(_joined(each))
-        return _NOTHING
+                    self._facts.parameters(joined(each))
+        return NOTHING
 
 
 _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]] = {
@@ -306,41 +366,3 @@ _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]]
     "SetLaunchConfiguration": _Reader.setting,
 }
 """What the classes of launch and launch_ros mean."""
-
-
-def _text(value: Any) -> str:
-    """A value as text; `UNKNOWN` for an unknown one."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, bool | int | float):
-        return str(value)
-    if isinstance(value, list):
-        return _joined(value)
-    return UNKNOWN
-
-
-def _joined(value: Any) -> str:
-    """The text of substitutions, which launch concatenates."""
-    return "".join(_text(each) for each in _flat([value]))
-
-
-def _flat(values: Iterable[Any]) -> Iterator[Any]:
-    for value in values:
-        if isinstance(value, list):
-            yield from _flat(value)
-        else:
-            yield value
-
-
-def _combined(operator: ast.operator, left: Any, right: Any) -> Any:
-    if isinstance(operator, ast.Div):
-        return str(PurePosixPath(_text(left), _text(right)))
-    if isinstance(operator, ast.Add):
-        if isinstance(left, list) and isinstance(right, list):
-            return left + right
-        return _text(left) + _text(right)
-    return _NOTHING
-
-
-def _is_known(*values: Any) -> bool:
-    return all(isinstance(each, str) and UNKNOWN not in each for each in values)

@@ -81,7 +81,6 @@ def test_noise_stays_within_the_limits(make):
     [
         "<gaussianNoise>-1</gaussianNoise>",
         "<updateRate>-5</updateRate>",
-        "<radiation>radio</radiation>",
         "<fov>wide</fov>",
     ],
 )

@@ -9,6 +9,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import devices as devices_codes
 from cartwheel.description.model import PluginTag
+from cartwheel.dialects.catalogue import plugin_named
 from cartwheel.errors import Diagnostic, Origin
 
 _NEXT = 10
@@ -21,8 +22,8 @@ def port_twice(subject: Subject) -> Iterator[Diagnostic]:
     used: dict[tuple[str, int], PluginTag] = {}
     for robot in subject.robots:
         for tag, _ in robot.plugins():
-            if not plugin_tags.is_simulated(tag):
-                continue
+            if plugin_named(tag.filename) is None:
+                continue  # Only a known plugin opens a port, unlike gz-sim's imu and sensors.
             for role in plugin_tags.roles_with(tag.filename, "tcp_port", "udp_port"):
                 element = next((e for name in role.tags if (e := tag.element.find(name))), None)
                 text = element.text if element is not None else str(role.default[0])

@@ -137,6 +137,8 @@ def _impossible_in_sdf(subject: Subject) -> Iterator[Diagnostic]:
 
 @rule(robot_codes.INERTIA_GEOMETRY_MISMATCH)
 def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        yield from _assumed(robot)
     for robot, link, inertial in links_with_mass(subject):
         solids = [solid.vertices for solid in robot.solids(link.name)]
         box = bounds(robot.rigid_cloud(link.name))
@@ -184,6 +186,43 @@ def inertia_unlike_geometry(subject: Subject) -> Iterator[Diagnostic]:
                 origin=_inertia_origin(robot, inertial),
                 instead=advice,
                 place="" if in_sdf else "element",
+            )
+
+
+def _assumed(robot: Robot) -> Iterator[Diagnostic]:
+    """Links of SDF on movable joints for which the defaults 1 kg and 1 kg m² are used."""
+    if robot.description.static:
+        return
+    for joint in robot.joints.values():
+        link = robot.links.get(joint.child)
+        if link is None or link.name not in robot.in_sdf or joint.type == "fixed":
+            continue
+        inertial, like = link.inertial, shape_inertia(robot, link)
+        box = bounds(robot.rigid_cloud(link.name))
+        if inertial is None or is_stated(link) or like is None or box is None:
+            continue
+        if len(robot.rigid_groups[robot.rigid_root(link.name)]) > 1:
+            continue  # The other links may account for the inertia.
+        corner = np.maximum(np.abs(box[0]), np.abs(box[1]))
+        ratio = sum(inertial.diagonal) / 2 / (inertial.mass * float(corner @ corner))
+        if ratio > TOO_LARGE:
+            tensor = _inertia_text(like, 1.0, sdf=True)
+            yield robot_codes.INERTIA_GEOMETRY_MISMATCH.diagnostic(
+                message=f'link "{link.name}" has no <inertial>, so its mass is 1 kg and its '
+                f"moments of inertia are 1 kg m², {ratio_text(ratio)} times the largest ones that "
+                "a 1 kg body of this geometry can have",
+                values={
+                    "link": link.name,
+                    "ratio": ratio,
+                    "mass": inertial.mass,
+                    "attribute": "large",
+                },
+                origin=link.origin,
+                instead=nodes.written("inertial", {}, f"<mass>1</mass>{tensor}"),
+                place="inside",
+                mark="<link",
+                hint="The suggested values are for 1 kg. For a different mass, multiply the mass "
+                "and the inertia by the same factor.",
             )
 
 

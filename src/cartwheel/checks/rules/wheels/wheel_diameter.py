@@ -24,9 +24,9 @@ def wheel_diameter(subject: Subject) -> Iterator[Diagnostic]:
         if radius is None or not is_across(one.robot, wheel):
             continue
         real = radius if one.measure == "radius" else 2 * radius
-        if differs(one.value, real, LEAST / 2):
-            slow = "slower" if one.value > real else "faster"
-            far = abs(real / one.value - 1) if one.value else 1.0
+        if differs(one.used, real, LEAST / 2):
+            slow = "slower" if one.used > real else "faster"
+            far = abs(real / one.used - 1) if one.used else 1.0
             yield size_mismatch(
                 robot_codes.WHEEL_DIAMETER_MISMATCH,
                 one,

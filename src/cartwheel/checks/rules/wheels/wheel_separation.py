@@ -45,12 +45,12 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
                 (each + mean_between(one, beside=False)) / 2 for each in (apart, joints)
             )
         slides = one.skids and not any(one.steered_by(other) for other in sizes)
-        if slides and min(apart, joints) <= one.value * one.factor <= _widest(one, apart):
+        if slides and min(apart, joints) <= one.used <= _widest(one, apart):
             # Such a robot needs a larger value, which a multiplier may contribute.
             continue
         # A wheel may be offset from its joint; either distance is accepted.
-        if differs(one.value, apart, LEAST) and differs(one.value, joints, LEAST):
-            more = "more" if one.value > apart else "less"
+        if differs(one.used, apart, LEAST) and differs(one.used, joints, LEAST):
+            more = "more" if one.used > apart else "less"
             said = (
                 "the wheels are"
                 if one.measure == "apart"
@@ -61,7 +61,7 @@ def wheel_separation(subject: Subject) -> Iterator[Diagnostic]:
                 one,
                 apart,
                 f"{said} {apart:.4g} m{' apart' * (one.measure == 'apart')}, so the robot turns "
-                f"{abs(one.value / apart - 1):.0%} {more} than commanded",
+                f"{abs(one.used / apart - 1):.0%} {more} than commanded",
             )
 
 
@@ -91,10 +91,10 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
             continue
         left, right = (_with_followers(one, side) for side in (one.first, one.second))
         axle = axle_of(one.robot, one.first, one.second, beside=True)
-        ratio = turn_ratio(one.robot, left, right, axle, one.value * one.factor / 2)
+        ratio = turn_ratio(one.robot, left, right, axle, one.used / 2)
         if ratio is None or ratio == 0 or abs(ratio - 1.0) <= _LEAST_SKID:
             continue
-        wanted = one.value * one.factor / ratio
+        wanted = one.used / ratio
         yield robot_codes.SKID_STEERING.diagnostic(
             message=f"the wheels slide when the robot turns, so it turns at {ratio:.0%} of the "
             "commanded rate",
@@ -103,7 +103,7 @@ def skid_steering(subject: Subject) -> Iterator[Diagnostic]:
                 "joint": one.first[0],
                 "ratio": ratio,
                 "stated": one.value,
-                "rolling": one.value * one.factor / mean_between(one, beside=True),
+                "rolling": one.used / mean_between(one, beside=True),
             },
             origin=one.origin,
             hint=f"A wheel separation of {wanted:.4g} m compensates for this.",

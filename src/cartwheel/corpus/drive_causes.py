@@ -1,0 +1,168 @@
+"""Explains why a base does not follow its commands, by diagnostics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from cartwheel.codes import devices, robot, running
+from cartwheel.corpus.faults import most_severe
+from cartwheel.corpus.movers import reports
+from cartwheel.description.model import RobotDescription
+from cartwheel.dialects.catalogue import short_name
+from cartwheel.errors import Diagnostic
+
+_AGREES = 0.15
+"""Relative tolerance between a measured velocity and the one that a mistake predicts."""
+_BRAKED = 0.15
+"""Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
+_PULLED = 0.5
+"""Largest part of the turn rate for which wheels that point to one side account."""
+_FLYWHEEL = 20.0
+"""Ratio of a wheel's inertia to the largest that it can have, beyond which it may tip a robot."""
+_DRIVING = frozenset(
+    {
+        robot.DRIVE_JOINT_UNKNOWN,
+        robot.DRIVE_JOINT_NOT_CONTINUOUS,
+        robot.WHEEL_AXIS_MISALIGNED,
+        robot.WHEEL_NOT_ROUND,
+        robot.WHEEL_FRICTIONLESS,
+        robot.WHEEL_WITHOUT_COLLISION,
+        robot.WHEELS_OFF_GROUND,
+        robot.BODY_ON_GROUND,
+        robot.UNBALANCED,
+        robot.EFFORT_ZERO,
+        robot.OVERLAPPING_COLLISIONS,
+        running.PLUGIN_LEFT_OUT,
+        running.JOINT_DRIVEN_TWICE,
+    }
+)
+"""Mistakes that change a base's velocity by an unknown factor."""
+_TURNING = _DRIVING | {robot.CASTER_FRICTION, running.WHEELS_WITHOUT_ROLLERS}
+
+
+def cause_of_drive(
+    found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool = False
+) -> Diagnostic | None:
+    """The mistake that explains why a base moves at a multiple of the commanded velocity."""
+    factors = {each.code: (each, factor) for each in found if (factor := _factor(each, turning))}
+    if robot.SKID_STEERING in factors:
+        # Its ratio contains the stated separation.
+        factors.pop(robot.WHEEL_SEPARATION_MISMATCH, None)
+    skids, slowest = factors.get(robot.SKID_STEERING, (None, 1.0))
+    if skids is not None and slowest < ratio < max(1.0, _rolling(skids)):
+        # Fewer wheels than predicted carry the robot, or the friction depends on the direction.
+        return skids
+    product = math.prod(factor for _, factor in factors.values())
+    legacy = next((each for each in found if _reverses(each)), None) if turning else None
+    for sign, cause in ((1.0, None), (-1.0, legacy)):
+        if sign < 0 and cause is None:
+            continue
+        for each, factor in (*factors.values(), (cause, 1.0)):
+            ratios = (sign * factor, sign * product)
+            if each is not None and any(_follows(ratio, e) for e in ratios):
+                return each
+    if arc and factors:
+        # Steering and rim speeds contradict each other, so the wheels slide.
+        expected = [1.0, *(factor for _, factor in factors.values())]
+        if min(expected) < ratio < max(expected):
+            return next(iter(factors.values()))[0]
+    toed = next((each for each in found if turning and arc and _pulls(each, ratio)), None)
+    if toed is not None:
+        return toed
+    codes = _TURNING if turning else _DRIVING
+    if 0.0 < ratio < 1.0:
+        codes |= {robot.PLANAR_FRICTION}
+        if turning and skids is None:
+            # Wheels that slide by an unknown amount.
+            codes |= {robot.SKID_STEERING}
+    if 1.0 - _BRAKED < ratio < 1.0:
+        # A caster may also brake a base that drives straight ahead.
+        codes |= {robot.CASTER_FRICTION}
+    return most_severe(each for each in found if each.code in codes and not _only_measures(each))
+
+
+def _pulls(each: Diagnostic, ratio: float) -> bool:
+    """Whether steered wheels that point to one side explain the turn rate of a small angle."""
+    toe = each.values.get("toe")
+    return (
+        each.code is robot.WHEELS_TOED
+        and isinstance(toe, float)
+        and toe * (ratio - 1.0) > 0
+        and abs(ratio - 1.0) < _PULLED
+    )
+
+
+def _only_measures(each: Diagnostic) -> bool:
+    """Whether it is about a plugin that moves nothing, such as one that publishes joint states."""
+    return each.code is running.PLUGIN_LEFT_OUT and reports(
+        short_name(str(each.values.get("plugin", "")))
+    )
+
+
+def _follows(ratio: float, expected: float) -> bool:
+    """Whether a measured ratio follows from a mistake, rather than from none."""
+    error = abs(ratio - expected)
+    return error <= _AGREES * abs(expected) and error < abs(ratio - 1.0)
+
+
+def _rolling(skids: Diagnostic) -> float:
+    """The turn rate of wheels that do not slide, relative to the commanded one."""
+    ratio = skids.values.get("rolling")
+    return ratio if isinstance(ratio, float) else 1.0
+
+
+def flywheel(found: Iterable[Diagnostic], description: RobotDescription) -> Diagnostic | None:
+    """A wheel of such an inertia that the reaction to its acceleration tips the robot."""
+    # SDF's wheels have revolute joints without limits.
+    wheels = {
+        joint.child
+        for joint in description.joints
+        if joint.type == "continuous" or (joint.type == "revolute" and joint.axis.lower is None)
+    }
+    return most_severe(
+        each
+        for each in found
+        if each.code is robot.INERTIA_GEOMETRY_MISMATCH
+        and each.values.get("link") in wheels
+        and isinstance(ratio := each.values.get("ratio"), float)
+        and ratio > _FLYWHEEL
+    )
+
+
+def is_free(said: Iterable[Diagnostic], topic: str) -> bool:
+    """Whether a controller only turns wheels without friction, while another drive pushes them."""
+    names = topic.split("/")
+    return any(
+        each.code is robot.WHEEL_FRICTIONLESS and each.values.get("controller") in names
+        for each in said
+    )
+
+
+def _reverses(finding: Diagnostic) -> bool:
+    """Whether it reports ``<legacyMode>``, which reverses the turning direction."""
+    return (
+        finding.code is devices.PLUGIN_PARAMETER_OBSOLETE
+        and finding.values.get("tag") == "legacyMode"
+    )
+
+
+def _factor(finding: Diagnostic, turning: bool) -> float | None:
+    """The velocity relative to the commanded one that follows from a wrong size."""
+    values = finding.values
+    if finding.code is robot.SKID_STEERING and turning:
+        ratio = values.get("ratio")
+        return ratio if isinstance(ratio, float) else None
+    if finding.code is robot.STEERING_REVERSED and turning:
+        return -1.0
+    if finding.code is robot.WHEELS_SWAPPED:
+        # Seen in the other direction, the robot drives backward instead.
+        return -1.0
+    stated, measured = values.get("stated"), values.get("measured")
+    if not isinstance(stated, float) or not isinstance(measured, float) or stated * measured == 0:
+        return None
+    if finding.code is robot.WHEEL_DIAMETER_MISMATCH:
+        return measured / stated
+    if turning and finding.code in (robot.WHEEL_SEPARATION_MISMATCH, robot.WHEEL_BASE_MISMATCH):
+        return stated / measured
+    return None

@@ -1,0 +1,116 @@
+"""The values of expressions in launch files in Python, and their texts."""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import PurePosixPath
+from typing import Any
+
+from cartwheel.description.launches.use import UNKNOWN
+
+
+class Unknown:
+    """A value that cannot be determined."""
+
+
+NOTHING = Unknown()
+LONGEST = 10_000
+"""Maximum length of a text or list that is computed."""
+_LARGEST = 1e9
+_NUMBERS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+}
+
+
+def text(value: Any) -> str:
+    """A value as text; `UNKNOWN` for an unknown one."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool | int | float):
+        return str(value)
+    if isinstance(value, list):
+        return joined(value)
+    return UNKNOWN
+
+
+def joined(value: Any) -> str:
+    """The text of substitutions, which launch concatenates."""
+    return "".join(text(each) for each in _flat([value]))
+
+
+def _flat(values: Iterable[Any]) -> Iterator[Any]:
+    """The values in nested lists, of which one may contain itself; only the first `LONGEST`."""
+    left = [iter(values)]
+    looked = 0
+    while left and looked < LONGEST:
+        looked += 1
+        value = next(left[-1], None)
+        if value is None:
+            left.pop()
+        elif isinstance(value, list):
+            left.append(iter(value))
+        else:
+            yield value
+
+
+def concatenated(parts: Iterable[Any]) -> Any:
+    """A text made of values; `NOTHING` if it is too long, as texts that grow in loops are."""
+    whole = "".join(text(each) for each in parts)
+    return whole if len(whole) <= LONGEST else NOTHING
+
+
+def combined(sign: ast.operator, left: Any, right: Any) -> Any:
+    """The value of a binary operation on paths, texts, lists or numbers."""
+    if isinstance(sign, ast.Div):
+        return str(PurePosixPath(text(left), text(right)))
+    if type(sign) in _NUMBERS and _is_number(left) and _is_number(right):
+        return _NUMBERS[type(sign)](left, right)
+    if isinstance(sign, ast.Add):
+        if isinstance(left, list) and isinstance(right, list):
+            return left + right if len(left) + len(right) <= LONGEST else NOTHING
+        return concatenated((left, right))
+    return NOTHING
+
+
+def _is_number(value: Any) -> bool:
+    """Whether it is a number, and not so large that computing with it takes time."""
+    return type(value) in (int, float) and abs(value) < _LARGEST
+
+
+def items(kind: str, values: list[Any]) -> list[Any] | None:
+    """The values over which a loop runs.
+
+    Args:
+        kind: The function or method that is called on the values; empty without one.
+        values: Its arguments; the object of a method is the first.
+
+    Returns:
+        The values; None if they are unknown.
+    """
+    first: Any = values[0] if values else NOTHING
+    if isinstance(first, dict):
+        pairs = [[key, value] for key, value in first.items()]
+        column = {"": 0, "keys": 0, "list": 0, "sorted": 0, "values": 1}.get(kind)
+        if column is not None:
+            return [pair[column] for pair in pairs]
+        return pairs if kind == "items" else None
+    if kind == "range" and all(type(each) is int and abs(each) <= LONGEST for each in values):
+        return list(range(*values)) if 1 <= len(values) <= 2 else None
+    if not values or not all(isinstance(each, list) for each in values):
+        return None
+    if kind == "enumerate":
+        return [[index, each] for index, each in enumerate(first)]
+    if kind == "zip":
+        return [list(each) for each in zip(*values, strict=False)]
+    if kind == "reversed":
+        return list(reversed(first))
+    return list(first) if kind in ("", "list", "tuple", "sorted", "set") else None
+
+
+def is_known(*values: Any) -> bool:
+    """Whether values are texts that are completely known."""
+    return all(isinstance(each, str) and UNKNOWN not in each for each in values)
