@@ -281,11 +281,6 @@ class Graph:
         with self._lock:
             return [self._actions[name] for name in sorted(self._actions)]
 
-    def abort_goals(self) -> None:
-        """Ends the goals of a time before a reset that their servers have not ended."""
-        for action in self.actions():
-            action.abort("the world was reset")
-
     def service(self, name: str) -> Service:
         """Service with this name.
 
