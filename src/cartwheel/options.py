@@ -76,7 +76,13 @@ RMW = Option(flag="--rmw", parameter="rmw")
 FOXGLOVE = Option(flag="--foxglove", parameter="foxglove")
 FOXGLOVE_PORT = Option(flag="--foxglove-port", parameter="foxglove", method="serve_foxglove")
 WITHOUT = Option(flag="--without", parameter="without")
+PLUGIN = Option(flag="--plugin", parameter="plugins")
 PORT = Option(flag="--port", parameter="viewer", method="show")
+
+
+def plugin_file() -> str:
+    """How to use a plugin that the caller has written, which is not among those of Cartwheel."""
+    return f"If it is a Python plugin for Cartwheel, pass its file: {PLUGIN.given('FILE')}."
 
 
 def xacro_argument(name: str, value: str = "…") -> str:

@@ -52,6 +52,14 @@ def test_a_file_provides_the_plugin_that_a_robot_names() -> None:
         assert [alarm.data for alarm in alarms.drain()] == [False, False]
 
 
+@pytest.mark.wording
+def test_a_plugin_whose_file_is_not_passed_names_the_option() -> None:
+    with cw.World() as world:
+        world.spawn(EXAMPLE / "robot.urdf", z=0.1)
+        (found,) = coded(world.diagnostics, devices.PLUGIN_UNKNOWN)
+        assert 'plugins="FILE"' in found.hint
+
+
 def test_each_world_has_its_own_files(tmp_path: Path, robot: Path) -> None:
     one, two = greeter(tmp_path, "hello"), greeter(tmp_path, "goodbye")
     with cw.World(plugins=[one]) as first, cw.World(plugins=[two]) as second, cw.World() as third:

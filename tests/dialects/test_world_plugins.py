@@ -29,6 +29,7 @@ def test_a_plugin_that_does_nothing_is_told(filename, code):
     (found,) = told(filename)
     assert found.code is code
     assert found.values["name"] == filename
+    assert bool(found.hint) == (code is devices.PLUGIN_UNKNOWN)
     assert found.origin.line == 1
 
 

@@ -22,6 +22,7 @@ from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.tags import tags_of
 from cartwheel.dialects.world_plugins import BUILT_IN, Faults, create, misplaced
 from cartwheel.errors import CartwheelError, StaticModelError
+from cartwheel.options import plugin_file
 from cartwheel.similar_names import meant_one
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
@@ -140,6 +141,8 @@ def _report_unknown(part: Part, tag: PluginTag, sensor: Sensor | None, more: Plu
     other = None if meant else substitute(tag)
     if other is not None:
         suggested = other.hint(in_sensor=sensor is not None)
+    elif not (meant or broken):
+        suggested = plugin_file()
     part.report(
         devices.PLUGIN_UNKNOWN.diagnostic(
             f'plugin "{tag.filename}" is not supported, so it has no effect',

@@ -11,6 +11,7 @@ from cartwheel.dialects.gz.sensor_tags import SYSTEMS
 from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.errors import CartwheelError, Diagnostic, fault
+from cartwheel.options import plugin_file
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
 
@@ -110,6 +111,7 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
                     f'the world plugin "{tag.filename}" is not supported, so it has no effect',
                     severity="warning",
                     origin=tag.origin,
+                    hint=plugin_file(),
                     values={"name": tag.filename},
                     mark=tag.filename,
                 )
