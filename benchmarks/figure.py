@@ -51,21 +51,24 @@ FULL = Effort(rounds=25, seconds=4.0, images=10, starts=5, carts=(1, 5, 10, 20),
 QUICK = Effort(rounds=2, seconds=0.2, images=1, starts=1, carts=(1, 2), every=20, turn=0.2)
 
 
-def medians(rounds: int, ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:
-    """Median wall time of each variant in s. All variants take turns in each round.
+def medians(
+    rounds: int, ways: Mapping[str, Callable[[], object]], *, wall: bool = True
+) -> dict[str, float]:
+    """Median wall time or CPU time of each variant in s. All variants take turns in each round.
 
     Other programs on the machine slow all variants of a round equally, so ratios are valid on a
     busy machine too. Quote absolute times only from an idle machine.
     """
+    clock = time.perf_counter if wall else time.process_time
     times: dict[str, list[float]] = {name: [] for name in ways}
     for way in ways.values():
         way()
     for _ in range(rounds):
         gc.collect()
         for name, way in ways.items():
-            start = time.perf_counter()
+            start = clock()
             way()
-            times[name].append(time.perf_counter() - start)
+            times[name].append(clock() - start)
     return {name: statistics.median(samples) for name, samples in times.items()}
 
 

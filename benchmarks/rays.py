@@ -156,7 +156,8 @@ def _lidar(house: Path, effort: Effort) -> Figure:
         world.subscribe("/scan", messages.append)
         world.publish("/part2_cmr/cmd_vel", linear_x=0.2, angular_z=0.4)
         world.run(0.3)
-        found = medians(max(2, effort.rounds // 5), {"run": lambda: world.run(seconds)})
+        run = {"run": lambda: world.run(seconds)}
+        found = medians(max(2, effort.rounds // 5), run, wall=False)
         assert messages[-1].width * messages[-1].height > 100_000
     return Figure(
         group=_GROUP,
@@ -165,4 +166,5 @@ def _lidar(house: Path, effort: Effort) -> Figure:
         unit="x real time",
         goal=1.0,
         better="more",
+        note="CPU time of one core",
     )

@@ -13,7 +13,7 @@ from cartwheel.simulation.sensing.ray_query import Band, Hits, Query
 from cartwheel.simulation.sensing.ray_scenes import RayScenes
 from cartwheel.simulation.sensing.ray_triangles import AVAILABLE
 
-_CHUNK = 16384
+_CHUNK = 32768
 """Maximum number of rays that are cast at a time."""
 
 
@@ -88,7 +88,7 @@ class EmbreeCaster:
                 hits = self._cast(start, turn, hidden, band, slice(None))
                 return hits.distances, hits.geoms
             distances, geoms = np.empty(count), np.empty(count, dtype=np.int32)
-            # The intermediate results of a part stay in the processor's cache.
+            # Intermediate results of all rays would need several times their memory.
             for first in range(0, count, _CHUNK):
                 part = slice(first, first + _CHUNK)
                 hits = self._cast(start, turn, hidden, band, part)

@@ -169,6 +169,14 @@ def _turned(profile: list[tuple[float, float]], sides: int, pole: float | None =
 # of rays that miss a surface are NaN, which is neither above nor below any number.
 
 
+def _dot(first: Array, second: Array) -> Array:
+    """Scalar products. `sum` takes several times as long."""
+    products = first * second
+    found: Array = products[:, 0] + products[:, 1]
+    found += products[:, 2]
+    return found
+
+
 def _first(near: Array, far: Array) -> Array:
     """The smaller root that is not negative."""
     found: Array = np.where(near >= 0, near, far)
@@ -177,8 +185,8 @@ def _first(near: Array, far: Array) -> Array:
 
 def _to_sphere(start: Array, ray: Array, radius: Array) -> tuple[Array, Array]:
     """Both roots for spheres about the origin."""
-    b = (start * ray).sum(axis=1)
-    root = np.sqrt(b * b - ((start * start).sum(axis=-1) - radius * radius))
+    b = _dot(start, ray)
+    root = np.sqrt(b * b - (_dot(start, start) - radius * radius))
     return -b - root, -b + root
 
 
@@ -191,8 +199,8 @@ def to_ellipsoid(start: Array, ray: Array, size: Array) -> Array:
     """Distances to ellipsoids with the half-axes ``size``."""
     start, ray = start / size, ray / size
     a = np.einsum("ij,ij->i", ray, ray)
-    b = (start * ray).sum(axis=1)
-    root = np.sqrt(b * b - a * ((start * start).sum(axis=-1) - 1.0))
+    b = _dot(start, ray)
+    root = np.sqrt(b * b - a * (_dot(start, start) - 1.0))
     return _first((-b - root) / a, (-b + root) / a)
 
 
