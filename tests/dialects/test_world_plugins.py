@@ -41,6 +41,7 @@ def test_a_plugin_that_does_nothing_is_told(filename, code):
         "libgazebo_ros_factory.so",
         "libgazebo_ros_state.so",
         "gz-sim-sensors-system",
+        "librotors_gazebo_ros_interface_plugin.so",
     ],
 )
 def test_what_is_built_in_is_not(filename):

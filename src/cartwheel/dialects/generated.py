@@ -101,6 +101,7 @@ PLUGINS = {
     "gz-sim-track-controller-system": "gz.vehicles.track_controller",
     "gz-sim-tracked-vehicle-system": "gz.vehicles.tracked_vehicle",
     "gz-sim-trajectory-follower-system": "gz.vehicles.trajectory_follower",
+    "gz-sim-triggered-publisher-system": "gz.messages.triggered_publisher",
     "gz-sim-velocity-control-system": "gz.velocity_control",
     "gz-sim-wheel-slip-system": "classic.forces.wheel_slip",
     "gz_ros2_control-system": "ros2_control.plugin",

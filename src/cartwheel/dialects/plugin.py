@@ -51,6 +51,8 @@ class Plugin(Component, Generic[C]):
     """Usual type of that sensor, shown in its documentation. Empty if `serves` is set."""
     for_world: ClassVar[bool] = False
     """Whether the plugin belongs directly inside a ``<world>``. Its `part` is then the world's."""
+    also_in_world: ClassVar[bool] = False
+    """Whether a plugin of models may also be directly inside a ``<world>``."""
     empty_is_model: ClassVar[bool] = False
     """Whether an empty ``<robotNamespace>`` selects the model's name instead of no namespace."""
     prefixes_by_namespace: ClassVar[bool] = False

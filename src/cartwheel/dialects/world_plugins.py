@@ -29,8 +29,9 @@ BUILT_IN = {
     "gazebo_ros_properties",
     "gazebo_ros_api_plugin",
     "gazebo_ros_paths_plugin",
+    "rotors_gazebo_ros_interface_plugin",
 }
-"""Plugins for physics, spawning, time and sensors, which Cartwheel always provides."""
+"""Plugins for physics, spawning, time, sensors and ROS, which Cartwheel always provides."""
 
 
 def misplaced(tag: PluginTag, place: str) -> Diagnostic:
@@ -116,7 +117,7 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
                     mark=tag.filename,
                 )
             )
-        elif not plugin.for_world:
+        elif not (plugin.for_world or plugin.also_in_world):
             part.report(misplaced(tag, "model"))
         else:
             behaviours += create(part, shared, plugin, tag)

@@ -1,0 +1,1 @@
+"""Systems of gz-sim that only exchange messages."""
