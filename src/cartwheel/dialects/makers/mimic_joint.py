@@ -64,6 +64,7 @@ class MimicJoint(Plugin[MimicJointParameters]):
         "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so",
         "libroboticsgroup_gazebo_mimic_joint_plugin.so",
         "libgazebo_mimic_joint_plugin.so",
+        "libtmc_gazebo_mimic_plugin.so",
     )
 
     def configure(self) -> None:

@@ -1,0 +1,1 @@
+"""Sensors of gz-sim that need no plugin."""
