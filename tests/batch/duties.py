@@ -40,6 +40,11 @@ def heavier(world: cw.World, random: np.random.Generator) -> None:
     world.model("rosbots").link("base_link").mass = random.uniform(5.0, 50.0)
 
 
+def placed(world: cw.World, random: np.random.Generator) -> None:
+    """Changes the place."""
+    world.model("rosbots").pose = cw.Pose((random.uniform(0.0, 1.0), 0.0, 0.0))
+
+
 OBS = {
     "/imu/data": ["angular_velocity.z", "linear_acceleration.x"],
     "speed": ("/odom", "twist.twist.linear.x"),

@@ -112,10 +112,32 @@ def test_noise_differs_between_worlds(tmp_path):
     with batch(noisy, act={}, obs={topic: "angular_velocity.z"}) as made:
         first = made.reset()[topic]
         assert len(set(first.tolist())) == N
-        assert np.array_equal(made.reset()[topic], first)
+        assert made.seeds == tuple(range(3, 3 + N))
+        assert not set(made.reset()[topic].tolist()) & set(first.tolist())
         other = made.reset(seed=4)[topic]
         assert np.array_equal(other[:-1], first[1:]) and other[-1] not in first
         assert made.step(np.zeros((N, 0)))[topic].shape == (N,)
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_a_reset_without_a_seed_goes_on_to_the_next_one(built, workers):
+    """Each world has its own sequence, whatever the others do and how many there are."""
+
+    def reset(made, **options):
+        found = made.reset(**options)["pose"][:, 0]
+        return made.seeds, found.tolist()
+
+    with batch(built, workers=workers, vary=duties.placed) as made:
+        (first, one), (second, two), (third, _) = (reset(made) for _ in range(3))
+        assert first == tuple(range(3, 3 + N))
+        assert len({*first, *second, *third}) == 3 * N and one != two
+        assert reset(made, seed=3) == (first, one) and reset(made) == (second, two)
+        reset(made, seed=3)
+        partly, few = reset(made, which=[1])
+        assert partly == (first[0], second[1], *first[2:]) and few == [two[1]]
+        assert reset(made, seeds=second) == (second, two)
+    with batch(built, 2, seed=4, vary=duties.placed) as made:
+        assert [reset(made)[0], reset(made)[0]] == [first[1:3], second[1:3]]
 
 
 DEPTH = """<sdf version="1.9"><model name="eye"><static>1</static><pose>0 5 0.3 0 0 1.5708</pose>

@@ -21,6 +21,9 @@ from cartwheel.jobs import AT_TOP_LEVEL, cores, unpicklable
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
 
+_SEEDS = 2**31
+"""Number of seeds that follow others."""
+
 
 class Batch:
     """Worlds that receive actions and return observations as arrays.
@@ -95,6 +98,9 @@ class Batch:
         if count < 0:
             raise invalid(f"the number of processes must be at least 0 (got {count})", "workers")
         seeds = [seed + index for index in range(n)]
+        self._seeds = [*seeds]
+        self._begun = [False] * n
+        """Whether each world has been reset."""
         self._closed = False
         self._here: Lanes | None = None
         self._processes: list[Process] = []
@@ -129,6 +135,11 @@ class Batch:
         """Topic and field of each column of the actions."""
         return self._plan.action_names
 
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """The seed of each world, with which its current episode can be repeated."""
+        return tuple(self._seeds)
+
     def world(self, index: int) -> World:
         """A world, if all worlds are in this process.
 
@@ -147,7 +158,9 @@ class Batch:
         """Returns worlds to their start, and runs a step without an action.
 
         Args:
-            seed: New seed of world 0; world i has this seed plus i. None keeps all seeds.
+            seed: New seed of world 0; world i has this seed plus i. None: the first reset keeps
+                the seed of a world, and each further one takes the next seed, which depends only
+                on the one before it. `seeds` contains them.
             which: Indices of the worlds; None is all of them.
             seeds: Instead of `seed`, the seed of each of these worlds.
 
@@ -159,12 +172,20 @@ class Batch:
         """
         chosen = self._chosen(which)
         if seeds is not None:
-            given: list[int | None] = [int(each) for each in seeds]
+            given = [int(each) for each in seeds]
             if len(given) != len(chosen):
                 raise invalid(f"{len(chosen)} seeds are required (got {len(given)})", "seeds")
+        elif seed is not None:
+            given = [seed + index for index in chosen]
         else:
-            given = [None if seed is None else seed + index for index in chosen]
-        return self._call("reset", chosen, lambda rows: [given[row] for row in rows])
+            given = [
+                _after(self._seeds[index]) if self._begun[index] else self._seeds[index]
+                for index in chosen
+            ]
+        values = self._call("reset", chosen, lambda rows: [given[row] for row in rows])
+        for index, each in zip(chosen, given, strict=True):
+            self._seeds[index], self._begun[index] = each, True
+        return values
 
     def step(self, actions: Array, *, which: Sequence[int] | Array | None = None) -> Values:
         """Publishes actions, and runs the worlds for a period.
@@ -260,3 +281,8 @@ def _joined(asked: Sequence[tuple[Callable[[], Values], list[int]]], count: int)
         for rows, part in answers:
             found[name][rows] = part[name]
     return found
+
+
+def _after(seed: int) -> int:
+    """The seed that follows another one, at random, so that worlds do not share episodes."""
+    return int(np.random.default_rng(seed).integers(_SEEDS))
