@@ -6,11 +6,12 @@ import pickle
 import numpy as np
 import pytest
 from tests.api.scenes import LASER
-from tests.coded import raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
+from cartwheel.api.exchange import faults as fault_module
 from cartwheel.codes.command import OPTION_INVALID
-from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID, TOPIC_UNKNOWN
+from cartwheel.codes.graph import DELAYED_LOST, FIELD_UNKNOWN, FIELD_VALUE_INVALID, TOPIC_UNKNOWN
 from cartwheel.codes.world import NUMBER_OUT_OF_RANGE, SIMULATION_CLOSED, VALUE_INVALID
 from cartwheel.errors import CartwheelError, GraphError, SimulationError, UnknownNameError
 from cartwheel.msgs.geometry_msgs import Twist
@@ -180,6 +181,42 @@ def test_an_error_of_the_function_stops_the_run(world, cart):
     world.fault("/odom", change=lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         world.run(0.1)
+
+
+def test_late_messages_are_bounded(world, cart, monkeypatch):
+    monkeypatch.setattr(fault_module, "_MOST_LATE", 20)
+    odometry = cart.topic("/odom")
+    fault = world.fault("/odom", delay=1.0)
+    world.run(0.5)
+    state = world.save()
+    world.run(1.0)
+    # 20 are late, and those after them are lost until the first ones are delivered.
+    first = odometry.values("header.stamp")
+    assert len(first) == 20
+    (found,) = coded(world, DELAYED_LOST, topic="/odom", delay=1.0, messages=20)
+    assert found.severity == "warning"
+    world.run(1.0)
+    assert np.array(odometry.times()) - odometry.values("header.stamp") == pytest.approx(1.0)
+    seen = odometry.values("header.stamp")
+    assert 20 < len(seen) <= 40 and seen[20] > first[-1] + 0.5
+    # Those of a saved state are late again, and count.
+    world.restore(state)
+    world.run(2.0)
+    assert odometry.values("header.stamp")[:20] == pytest.approx(first)
+    assert len(coded(world, DELAYED_LOST)) == 1
+    fault.delay = 0.1
+    world.run(1.0)
+    count = odometry.count
+    world.run(1.0)
+    assert odometry.count == count + 100
+
+
+def test_the_size_of_late_messages_is_bounded(world, cart, monkeypatch):
+    monkeypatch.setattr(fault_module, "_MOST_BYTES", 3 * 320 * 240 * 3)
+    images = cart.topic("/cart/camera1/image_raw")
+    world.fault(images.name, delay=0.5)
+    world.run(0.9)
+    assert images.count == 3 and coded(world, DELAYED_LOST, messages=3)
 
 
 def test_commands_are_lost_and_late(world, cart):

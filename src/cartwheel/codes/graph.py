@@ -128,3 +128,9 @@ FRAMES_NOT_CONNECTED = Code(
 TRANSFORM_TIME = Code(
     "CW738", "transform-time", "error", "a transform is not known at the requested time"
 )
+DELAYED_LOST = Code(
+    "CW739",
+    "delayed-messages-lost",
+    "warning",
+    "a fault delays more messages than it can hold",
+)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -16,11 +17,13 @@ from cartwheel.api.exchange.transforms import FramedWorld
 from cartwheel.api.handles import Sealed
 from cartwheel.api.values import scalar
 from cartwheel.arrays.fields import with_changed
+from cartwheel.codes.graph import DELAYED_LOST
 from cartwheel.errors import GraphError
 from cartwheel.geometry import Array
 from cartwheel.graph.interception import Interception
 from cartwheel.graph.topic import checked_message
 from cartwheel.messages import zero
+from cartwheel.messages.fields import fields
 from cartwheel.simulation.alarms import Alarm
 from cartwheel.simulation.limits import duration_ns
 from cartwheel.simulation.random_numbers import RandomNumbers
@@ -29,6 +32,8 @@ if TYPE_CHECKING:
     from cartwheel.graph.topic import Callback
     from cartwheel.simulation import Simulation
 
+_MOST_LATE, _MOST_BYTES = 10_000, 256_000_000
+"""Maximum number and size of the messages of a topic that are late at the same time."""
 Numbers = Mapping[str, float]
 """Fields of a message, such as ``linear_acceleration.x`` or ``ranges``, and a number for each."""
 
@@ -59,7 +64,9 @@ class FaultyWorld(FramedWorld):
             topics: Names of existing topics. Several have the same fault, such as an image and its
                 camera_info.
             drop: Share of the messages that are lost, from 0 to 1; 1 switches a sensor off.
-            delay: Time by which messages are late, s. Their stamps are unchanged.
+            delay: Time by which messages are late, s. Their stamps are unchanged. At most 10,000
+                messages of a topic, and 256 MB, are late at the same time; further ones are lost
+                (CW739).
             frozen: Repeat the first message of the fault, with new stamps.
             noise: Standard deviation of additional Gaussian noise, for fields with a number or an
                 array of numbers.
@@ -104,8 +111,8 @@ class Fault(Sealed):
     """A fault of topics, which `World.fault` returns. Its attributes can be changed."""
 
     __slots__ = (
-        "_bias", "_change", "_delay_ns", "_drop", "_frozen", "_interceptions", "_kept", "_noise",
-        "_random", "_rewinds", "_simulation", "_topics",
+        "_bias", "_change", "_delay_ns", "_drop", "_frozen", "_full", "_interceptions", "_kept",
+        "_late", "_noise", "_random", "_rewinds", "_simulation", "_topics",
     )  # fmt: skip
 
     def __init__(
@@ -125,6 +132,10 @@ class Fault(Sealed):
         self._interceptions: list[Interception] = []
         self._kept: dict[str, Any] = {}
         """The message that is repeated, by topic."""
+        self._late: dict[str, _Held] = {}
+        """Late messages by topic."""
+        self._full: set[str] = set()
+        """Topics of which messages were lost because too many are late."""
         self._rewinds = simulation.engine.rewinds
         self._random = RandomNumbers("fault")
         self.drop, self.delay, self.frozen = drop, delay, frozen
@@ -239,15 +250,49 @@ class Fault(Sealed):
                 pass_on(disturbed)
                 return
             due = self._simulation.time_ns + self._delay_ns
-            self._simulation.alarms.add(Alarm(lambda: pass_on(disturbed), due))
+            late = _Late(self, topic, disturbed, pass_on, due)
+            if self._holds(late):
+                self._simulation.alarms.add(late)
 
         return receive
+
+    def _holds(self, late: _Late) -> bool:
+        """Whether a late message is held; otherwise it is lost, which is reported once."""
+        held = self._late.setdefault(late.topic, _Held())
+        if held.messages < _MOST_LATE and held.size + late.size <= _MOST_BYTES:
+            held.add(late)
+            return True
+        if late.topic not in self._full:
+            self._full.add(late.topic)
+            values: dict[str, str | float] = {
+                "topic": late.topic,
+                "delay": self.delay,
+                "messages": held.messages,
+            }
+            self._simulation.engine.report(
+                DELAYED_LOST.diagnostic(
+                    f"messages of {late.topic} are lost: a fault delays them by {self.delay:g} s, "
+                    f"and holds at most {_MOST_LATE} messages and {_MOST_BYTES / 1e6:g} MB",
+                    hint="Use a shorter delay.",
+                    values=values,
+                )
+            )
+        return False
+
+    def release(self, late: _Late) -> None:
+        """Called when a late message is delivered."""
+        self._late.setdefault(late.topic, _Held()).add(late, -1)
 
     def _disturbed(self, topic: str, message: Any) -> Any:
         """The message that is delivered; None if it is lost."""
         if self._rewinds != self._simulation.engine.rewinds:
             self._rewinds = self._simulation.engine.rewinds
             self._kept.clear()
+            # Those of a saved state are late again.
+            self._late = {}
+            for each in self._simulation.alarms.pending:
+                if isinstance(each, _Late) and each.fault is self:
+                    self._late.setdefault(each.topic, _Held()).add(each)
         if self._change is not None:
             message = self._changed(topic, self._change(copy.deepcopy(message)))
             if message is None:
@@ -291,6 +336,45 @@ class Fault(Sealed):
         return {
             field: scalar(number, f"{name} of {field}", **limits) for field, number in given.items()
         }
+
+
+class _Late(Alarm):
+    """A message of a fault that is late.
+
+    Args:
+        fault: The fault.
+        topic: The topic.
+        message: The message.
+        pass_on: Delivers it.
+        due_ns: When it is delivered.
+    """
+
+    def __init__(
+        self, fault: Fault, topic: str, message: Any, pass_on: Callback, due_ns: int
+    ) -> None:
+        super().__init__(self._deliver, due_ns)
+        self._message, self._pass_on = message, pass_on
+        self.fault, self.topic = fault, topic
+        values = (getattr(message, field.name) for field in fields(message.__msgtype__))
+        self.size = sum(getattr(each, "nbytes", 0) for each in values)
+        """Size of its arrays, bytes."""
+
+    def _deliver(self) -> None:
+        self.fault.release(self)
+        self._pass_on(self._message)
+
+
+@dataclass(slots=True)
+class _Held:
+    """Number and size of the messages of a topic that are late at the same time."""
+
+    messages: int = 0
+    size: int = 0
+
+    def add(self, late: _Late, sign: int = 1) -> None:
+        """Counts a message, or with the sign -1 no longer."""
+        self.messages += sign
+        self.size += sign * late.size
 
 
 def _noisy(generator: np.random.Generator, deviation: float, numbers: Array) -> Array:
