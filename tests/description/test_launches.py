@@ -211,6 +211,28 @@ def generate_launch_description():
 """
 
 
+@pytest.mark.parametrize(
+    ("content", "names"),
+    [
+        ("robots: [{name: one}, {name: two}]", ["one", "two"]),
+        ("robots: {name: one}", []),
+        ("robots: [", []),
+        ("- name: one", []),
+        ("", []),
+    ],
+)
+def test_robots_that_a_yaml_file_lists_are_known(package, content, names):
+    text = LOOPS.replace(
+        LOOPS[: LOOPS.index("def generate")],
+        "with open(get_package_share_directory('arm') + '/config/robots.yaml') as file:\n"
+        "    robots = yaml.safe_load(file)['robots']\n",
+    )
+    folder = package(sim_dot_launch_dot_py=text)
+    (folder / "config/robots.yaml").write_text(content)
+    uses = [use for use in launches_near(folder) if use.description is not None]
+    assert [use.arguments["name"] for use in uses if "name" in use.arguments] == names
+
+
 def test_loops_are_evaluated_for_each_of_their_values(package):
     folder = package(sim_dot_launch_dot_py=LOOPS)
     uses = [use for use in launches_near(folder) if use.description is not None]

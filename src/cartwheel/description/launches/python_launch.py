@@ -18,6 +18,7 @@ from cartwheel.description.launches.python_values import (
     is_known,
     items,
     joined,
+    loaded,
     text,
 )
 from cartwheel.description.launches.use import Facts
@@ -222,7 +223,8 @@ class _Reader:
             held, key = self.value(node.value), self.value(node.slice)
             if isinstance(held, list) and isinstance(key, int) and 0 <= key < len(held):
                 return held[key]
-            return held.get(key, NOTHING) if isinstance(held, dict) else NOTHING
+            known = isinstance(held, dict) and isinstance(key, str | int)
+            return held.get(key, NOTHING) if known else NOTHING
         if isinstance(node, ast.ListComp | ast.GeneratorExp | ast.SetComp):
             return self._collected(node)
         if isinstance(node, ast.Call):
@@ -276,9 +278,11 @@ class _Reader:
         if name in ("process_file", "process", "process_doc"):
             # For process_doc, the document is the text of the file that xacro.parse has read.
             return self._processed(text(first), words.get("mappings", {}))
-        if name == "parse" and isinstance(node.func, ast.Attribute):
-            module = node.func.value
-            return first if isinstance(module, ast.Name) and module.id == "xacro" else NOTHING
+        if name in ("safe_load", "full_load", "load") and _is_module(node.func, "yaml"):
+            # A file that was opened is its path.
+            return loaded(text(first))
+        if name == "parse":
+            return first if _is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
         return NOTHING if maker is None else maker(self, first, places, words)
 
@@ -354,6 +358,15 @@ class _Reader:
                 if isinstance(each, str | list):
                     self._facts.parameters(joined(each))
         return NOTHING
+
+
+def _is_module(function: ast.expr, name: str) -> bool:
+    """Whether a function is called as one of a module."""
+    return (
+        isinstance(function, ast.Attribute)
+        and isinstance(function.value, ast.Name)
+        and function.value.id == name
+    )
 
 
 _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]] = {

@@ -5,9 +5,10 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import Any
 
+from cartwheel import yaml_text
 from cartwheel.description.launches.use import UNKNOWN
 
 
@@ -109,6 +110,16 @@ def items(kind: str, values: list[Any]) -> list[Any] | None:
     if kind == "reversed":
         return list(reversed(first))
     return list(first) if kind in ("", "list", "tuple", "sorted", "set") else None
+
+
+def loaded(path: str) -> Any:
+    """The contents of a YAML file; `NOTHING` if it cannot be read."""
+    import yaml
+
+    try:
+        return yaml_text.load(yaml_text.read(Path(path)))
+    except (OSError, ValueError, yaml.YAMLError):
+        return NOTHING
 
 
 def is_known(*values: Any) -> bool:
