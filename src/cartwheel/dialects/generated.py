@@ -79,6 +79,7 @@ PLUGINS = {
     "gz-sim-ackermann-steering-system": "gz.ackermann",
     "gz-sim-advanced-lift-drag-system": "gz.fluids.advanced_lift_drag",
     "gz-sim-apply-joint-force-system": "gz.joint_controller",
+    "gz-sim-apply-link-wrench-system": "gz.forces.apply_link_wrench",
     "gz-sim-buoyancy-engine-system": "gz.fluids.buoyancy_engine",
     "gz-sim-buoyancy-system": "gz.fluids.buoyancy",
     "gz-sim-detachable-joint-system": "gz.detachable_joint",

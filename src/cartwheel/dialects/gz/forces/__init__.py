@@ -1,0 +1,1 @@
+"""Forces on the links of a world in gz-sim."""
