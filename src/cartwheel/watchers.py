@@ -1,4 +1,4 @@
-"""Functions that are called with each world that a program makes.
+"""Functions that are called with each world that a program makes, and each program under test.
 
 The plugin for pytest adds one before anything of the simulation is imported, so this module imports
 nothing either. It belongs to the process, not to a run.
@@ -14,11 +14,12 @@ _watchers: list[Watcher] = []
 
 
 def watch(watcher: Watcher) -> Callable[[], None]:
-    """Calls a function with each world that is made from now on.
+    """Calls a function with each world, and each program under test, that starts from now on.
 
     Args:
-        watcher: Receives a `cartwheel.api.World`, on the thread that makes it. Worlds that
-            Cartwheel makes for itself, such as those of a batch, are left out.
+        watcher: Receives a `cartwheel.api.World` or a `cartwheel.testing.launching.Launched`, on
+            the thread that makes it. Worlds that Cartwheel makes for itself, such as those of a
+            batch, are left out.
 
     Returns:
         A function that ends the calls.
@@ -27,7 +28,7 @@ def watch(watcher: Watcher) -> Callable[[], None]:
     return lambda: _watchers.remove(watcher)
 
 
-def announce(world: Any) -> None:
-    """Calls all watchers with a new world."""
+def announce(made: Any) -> None:
+    """Calls all watchers with a new world or program."""
     for watcher in tuple(_watchers):
-        watcher(world)
+        watcher(made)

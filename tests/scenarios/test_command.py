@@ -132,6 +132,16 @@ def test_a_program_needs_permission(command):
     assert command("drive.yaml", "--allow-launch") == 0
 
 
+def test_the_output_of_the_program_of_a_failed_case_is_shown(command, capsys):
+    write("launch: {command: [seq, '30']}\nduration: 0.1\nexpect: [{expression: 'False'}]\n")
+    for _ in range(20):
+        assert command("drive.yaml", "--allow-launch") == 1
+        shown = capsys.readouterr().out
+        if results()[0]["output"].endswith("\n30\n"):  # it may end later than the case
+            break
+    assert "output of the program:\n    …\n    21\n" in shown and "\n    30\n" in shown
+
+
 def test_resume_runs_only_what_has_not_passed(command, capsys):
     write(MIXED)
     command("drive.yaml")

@@ -9,7 +9,7 @@ import pytest
 from tests.coded import raises
 
 import cartwheel as cw
-from cartwheel.codes.command import LAUNCH_FAILED
+from cartwheel.codes.command import COMMAND_MISSING, LAUNCH_FAILED
 from cartwheel.codes.graph import TOPIC_UNKNOWN
 from cartwheel.codes.world import VALUE_INVALID, WAIT_TIMED_OUT
 from cartwheel.errors import CartwheelError, TimedOutError, UnknownNameError
@@ -44,26 +44,62 @@ def drive():
         return cart.pose, reached - start
 
 
-def test_two_runs_with_a_node_are_equal(domain):
-    """The first commands arrive after any number of periods, in which the cart only settles."""
-    (pose, took), (other, also) = drive(), drive()
-    assert pose.position == pytest.approx(other.position, abs=1e-8)
-    assert pose.yaw == pytest.approx(other.yaw, abs=1e-8)
-    assert took == pytest.approx(also, abs=1e-9)
+def test_two_runs_with_a_node_have_the_same_bits(domain):
+    """Time stands still until the node is connected, so the first command arrives at one time."""
+    first = drive()
+    assert drive() == first
 
 
 def test_a_program_that_fails_ends_the_run():
     with cw.World("empty") as world:
         world.spawn("rosbots.xacro")
-        with (
-            launch([sys.executable, "-c", "import sys; sys.exit('no map')"]) as program,
-            world.lockstep(DRIVE, check=program.check) as lock,
-        ):
-            with raises(LAUNCH_FAILED, CartwheelError, status=1):
-                world.run(1.0)
-            assert program.output.strip() == "no map"
-        lock.close()
+        with raises(LAUNCH_FAILED, CartwheelError, status=1) as caught:
+            fail(world)
+        (note,) = caught.value.__notes__
+        assert note.splitlines()[-1] == "  no map"
         world.run(0.5)
+
+
+def fail(world):
+    code = "print('one'); import sys; sys.exit('no map')"
+    with (
+        launch([sys.executable, "-S", "-c", code]) as program,
+        world.lockstep(DRIVE, check=program.check),
+    ):
+        world.run(1.0)
+
+
+def test_a_program_that_sends_no_command_ends_the_run(domain):
+    with cw.World("empty") as world, Node("deaf") as node:
+        world.spawn("rosbots.xacro")
+        with (
+            world.lockstep(DRIVE, start_timeout=0.3),
+            raises(COMMAND_MISSING, TimedOutError, topics=(DRIVE,), connected=False),
+        ):
+            world.run(0.1)
+        world.connect_ros2()
+        node.subscribe("/odom", lambda _: None, type=Odometry)
+        with (
+            world.lockstep(DRIVE, start_timeout=5.0),
+            raises(COMMAND_MISSING, TimedOutError, timeout=5.0, connected=True, read=("/odom",)),
+        ):
+            world.step()
+
+
+def test_an_error_states_late_messages():
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        world.on(0.05, lambda: world.graph.publish(DRIVE, "geometry_msgs/msg/Twist", Twist()))
+        with pytest.raises(ZeroDivisionError) as caught:
+            run_late(world)
+        (note,) = caught.value.__notes__
+        assert "2 periods" in note and DRIVE in note
+
+
+def run_late(world):
+    with world.lockstep(DRIVE, wall_timeout=0.01, period=0.1):
+        world.run(0.25)
+        _ = 1 / 0
 
 
 def test_time_runs_freely_again_after_the_block():

@@ -114,8 +114,11 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
 
 
 OWN_WORLDS = """
+import sys
+import time
 import pytest
 import cartwheel as cw
+from cartwheel.testing import launch
 
 @pytest.fixture(scope="module")
 def driven():
@@ -124,6 +127,17 @@ def driven():
         cart.publish("/part2_cmr/cmd_vel", linear_x=0.2)
         world.run(0.3)
         yield world
+
+@pytest.fixture
+def program():
+    code = "import time; print('no map', flush=True); time.sleep(60)"
+    with launch([sys.executable, "-S", "-c", code]) as program:
+        while not program.output:
+            time.sleep(0.01)
+        yield program
+
+def test_program(program):
+    raise ValueError
 
 def test_closed():
     with cw.World("post") as world:
@@ -151,9 +165,10 @@ def test_shared_again(driven):
 
 def test_worlds_that_a_test_makes_are_reported_too(pytester_run, tmp_path):
     done = pytester_run(OWN_WORLDS, "--cartwheel-artifacts=out")
-    assert "5 failed" in done.stdout, done.stdout
+    assert "6 failed" in done.stdout, done.stdout
     _, *reports = done.stdout.partition("short test summary")[0].split("____ test_")
-    closed, many, shared, without, again = reports
+    program, closed, many, shared, without, again = reports
+    assert "cartwheel: program" in program and "  no map" in program
     for text in ("cart: x 0.000", "/odom at 0.500", "recording: ", "test_it.py_test_closed.png"):
         assert text in closed
     # Those that were made last; without a run, there is nothing to show.

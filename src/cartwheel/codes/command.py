@@ -125,6 +125,12 @@ COMMAND_EXTRA = Code(
     "warning",
     "a stack under test in lockstep sent several commands in a period",
 )
+COMMAND_MISSING = Code(
+    "CW045",
+    "command-missing",
+    "error",
+    "a stack under test in lockstep has sent no command",
+)
 NO_TEST_ROBOT = Code(
     "CW042", "no-test-robot", "error", "a test uses the fixture robot, but names no robot"
 )

@@ -207,7 +207,11 @@ class Runner:
             )
         try:
             if lockstep is not None:
-                lockstep.start()
+                try:
+                    lockstep.start()
+                except CartwheelError as error:
+                    error.origin = error.origin or scenario.document.origin(("lockstep",))
+                    raise
             trial = Trial(world, scenario.document, value, outcome, advance=advance)
             trial.run(Steps(lambda name: place_of(scenario, name)).perform)
         finally:

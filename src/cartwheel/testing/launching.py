@@ -18,11 +18,14 @@ from xmlrpc.client import ServerProxy
 
 from cartwheel.codes.command import LAUNCH_FAILED
 from cartwheel.errors import CartwheelError
+from cartwheel.watchers import announce
 
 _GRACE = 5.0
 """Wall time between SIGINT, SIGTERM and SIGKILL, s."""
 _OUTPUT = 20_000
 """Maximum length of the kept output in bytes."""
+_LINES = 20
+"""Maximum number of lines of the output in an error."""
 _LOOK = 0.05
 _MARK = "CARTWHEEL_LAUNCHED"
 """Environment variable of launched programs."""
@@ -50,6 +53,8 @@ class Launched:
         self, command: Sequence[str], folder: Path, environment: Mapping[str, str]
     ) -> None:
         self.command = list(command)
+        self.reported = False
+        """Whether an error contains the last output."""
         self._mark = f"{_MARK}={secrets.token_hex(16)}"
         self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         try:
@@ -69,6 +74,7 @@ class Launched:
                 code=LAUNCH_FAILED,
                 values={"command": self.command[0]},
             ) from None
+        announce(self)
 
     def __enter__(self) -> Self:
         return self
@@ -79,7 +85,18 @@ class Launched:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if error is not None:
+            error.add_note(self.summary)
+            self.reported = True
         self.close()
+
+    @property
+    def summary(self) -> str:
+        """The last lines of the program's output, for an error."""
+        lines = self.output.splitlines()[-_LINES:]
+        if not lines:
+            return f'"{self.command[0]}" has printed nothing'
+        return "\n  ".join([f'the last output of "{self.command[0]}":', *lines])
 
     def check(self) -> None:
         """Raises an error if the program has failed.
@@ -92,9 +109,13 @@ class Launched:
             raise CartwheelError(
                 f'"{self.command[0]}" ended with status {status}',
                 code=LAUNCH_FAILED,
-                hint="See the output of the program in the report.",
                 values={"command": self.command[0], "status": status},
             )
+
+    @property
+    def ended(self) -> bool:
+        """Whether `close` was called. The output is no longer available then."""
+        return self._output.closed
 
     @property
     def output(self) -> str:
@@ -162,7 +183,8 @@ def launch(
 
     Returns:
         The program. `Launched.check` raises an error if it has failed, for `World.lockstep`, and
-        `Launched.output` is what it has printed.
+        `Launched.output` is what it has printed. An error that ends the block contains the last
+        lines.
 
     Raises:
         CartwheelError: The program cannot be started.

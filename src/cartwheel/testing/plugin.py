@@ -69,9 +69,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Records each world that a test makes from now on."""
+    """Records each world that a test makes, and each program that it starts, from now on."""
     config = session.config
-    config.add_cleanup(watch(lambda world: _witnesses(config).add(world)))
+    config.add_cleanup(watch(lambda made: _witnesses(config).note(made)))
 
 
 def _witnesses(config: pytest.Config) -> Witnesses:

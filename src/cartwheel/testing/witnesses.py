@@ -1,4 +1,4 @@
-"""The worlds that tests use, and what is recorded of them until a test fails."""
+"""The worlds and programs that tests use, and what is recorded of them until a test fails."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from cartwheel.testing.launching import Launched
 from cartwheel.testing.recent import Recent
 from cartwheel.testing.report import Report, recorded_seconds
 from cartwheel.testing.showing import show
@@ -35,6 +36,8 @@ class Witnesses:
         self._item: pytest.Item | None = None
         self._known: list[_Witness] = []
         """The oldest first."""
+        self._programs: list[Launched] = []
+        """The programs under test that have not ended."""
 
     def begin(self, item: pytest.Item) -> None:
         """Begins a test."""
@@ -48,6 +51,17 @@ class Witnesses:
             each.release()
         self._known = [each for each in self._known if each.open]
         self._item = None
+
+    def note(self, made: World | Launched) -> None:
+        """Records a new world or program.
+
+        Raises:
+            CartwheelError: As for `add`.
+        """
+        if isinstance(made, Launched):
+            self._programs = [each for each in self._programs if not each.ended] + [made]
+        else:
+            self.add(made)
 
     def add(self, world: World, robots: Sequence[str] = ()) -> None:
         """Records a new world, and shows it with ``--cartwheel-view``.
@@ -72,6 +86,11 @@ class Witnesses:
 
     def sections(self, item: pytest.Item) -> list[tuple[str, str]]:
         """Titles and texts of the report of a failed test."""
+        programs = [
+            ("cartwheel: program", each.summary)
+            for each in self._programs
+            if not (each.ended or each.reported)
+        ]
         given = list(_worlds(getattr(item, "funcargs", {}).values()))
         used = [
             (each, world)
@@ -85,7 +104,7 @@ class Witnesses:
                 found += report.sections()
             except Exception as error:  # noqa: BLE001 - the error of the test is to be shown
                 found.append(("cartwheel", f"no report: {type(error).__name__}: {error}"))
-        return found
+        return found + programs
 
 
 class _Witness:

@@ -17,7 +17,8 @@ from typing import Any, Self
 from cartwheel.api.arguments import several
 from cartwheel.api.exchange.faults import FaultyWorld
 from cartwheel.api.values import invalid, scalar
-from cartwheel.codes.command import COMMAND_EXTRA, COMMAND_LATE
+from cartwheel.codes.command import COMMAND_EXTRA, COMMAND_LATE, COMMAND_MISSING
+from cartwheel.errors import TimedOutError
 from cartwheel.graph.holding import hold_back, let_pass
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import duration_ns
@@ -27,7 +28,13 @@ WALL_TIMEOUT = 5.0
 START_TIMEOUT = 60.0
 _RETRY = 1.0
 """Wall time after which time advances by a period before the first commands, s. Until a stack
-under test has connected all its topics, it may have missed a message."""
+under test has connected all its topics, it may have missed a message. A stack that needed longer
+to connect has as much time."""
+_STILL = 0.5
+"""Wall time without a new subscription after which a stack under test is connected, s."""
+_ALONE = 5.0
+"""Wall time to wait for the first messages in a world that no other program can reach, s. They may
+come from another thread."""
 _QUIET = 2.0
 """Wall time without a command after which all commands of the start have arrived, s.
 
@@ -35,6 +42,10 @@ A stack that needed longer for its first command has as much time for each furth
 _MOST = 100
 """Maximum number of commands that are kept back for a topic."""
 _TIME_ERROR = 1e-9
+_OF_CONNECTIONS = "CW8"
+"""The codes of diagnostics of connections begin with it."""
+_MOST_WARNINGS = 5
+"""Maximum number of warnings in an error."""
 
 
 class SteppedWorld(FaultyWorld):
@@ -55,6 +66,9 @@ class SteppedWorld(FaultyWorld):
         message has arrived on each command topic. The messages take effect at that time, so runs
         are repeatable, however fast the other program is. The lockstep ends with
         `Lockstep.close`, or with a ``with`` block.
+
+        The first of these calls waits for the first messages, and raises a `TimedOutError` if they
+        do not arrive within `start_timeout`.
 
         Args:
             commands: Topics on which the other program publishes once in each period.
@@ -148,6 +162,12 @@ class Lockstep:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if error is not None and self.late:
+            topic, when = next(iter(self.missing.items()))
+            error.add_note(
+                f"lockstep: {self.late} periods without a message in time, the first one on "
+                f"{topic} at {when:.3f} s"
+            )
         self.close()
 
     def close(self) -> None:
@@ -178,22 +198,95 @@ class Lockstep:
         """Waits for the first message on each command topic.
 
         The stack under test usually sends a command for each message of a sensor. It cannot have
-        received a message that was published before it subscribed. So time advances by one period
-        for each second in which no command arrives. A slow stack may then send several commands.
+        received a message that was published before it subscribed. So time stands still until the
+        stack has subscribed to its topics, and then advances by one period each time that no
+        command has arrived for a while. A slow stack may then send several commands.
+
+        Raises:
+            TimedOutError: No message has arrived on a topic in time.
         """
         begin = time.monotonic()
-        end = begin + self._start_timeout
+        alone = self._world._connections is None
+        patience = min(self._start_timeout, _ALONE) if alone else self._start_timeout
+        end = begin + patience
+        if not alone:
+            self._connect(begin + patience / 2)
+        connected = time.monotonic()
+        retry = max(_RETRY, connected - begin)
         periods = 0
-        while not self._complete() and (left := end - time.monotonic()) > 0:
-            if not self._wait(min(_RETRY, left)):
-                periods += 1
-                self._run(self._period)
-        if periods and self._complete():
-            took = min(time.monotonic() - begin, self._wall_timeout)
+        while not self._complete():
+            # In a connected stack, nothing happens before the first period.
+            if (periods or alone) and self._wait(min(retry, end - time.monotonic())):
+                break
+            if time.monotonic() >= end:
+                raise self._missing(patience, alone=alone)
+            periods += 1
+            self._run(self._period)
+        if periods:
+            took = min(time.monotonic() - connected, self._wall_timeout)
             self._settle(periods + 1, max(_QUIET, took))
         self._release()
         self._begun = True
         self._due = self._now
+
+    def _connect(self, end: float) -> None:
+        """Waits until the stack under test reads topics of the simulation, or has sent commands.
+
+        Args:
+            end: When to go on all the same, on the monotonic clock, s.
+        """
+        before, changed = self._read_topics(), time.monotonic()
+        while not self._complete() and (now := time.monotonic()) < end:
+            if before and now >= changed + _STILL:
+                return
+            self._wait(min(0.1, end - now))
+            topics = self._read_topics()
+            if topics != before:
+                before, changed = topics, time.monotonic()
+
+    def _read_topics(self) -> set[str]:
+        """The topics that nodes of ROS read."""
+        from cartwheel.bridges.mirror import BRIDGES
+
+        return {
+            each.name
+            for each in self._world.session.graph.topics()
+            if not BRIDGES.isdisjoint(each.subscribers)
+        }
+
+    def _missing(self, seconds: float, *, alone: bool) -> TimedOutError:
+        """The error for a stack under test that has sent no command.
+
+        Args:
+            seconds: The wall time of the wait.
+            alone: Whether the world is not connected.
+        """
+        with self._lock:
+            topics = [topic for topic, box in self._boxes.items() if not box]
+        read = tuple(sorted(self._read_topics()))
+        if alone:
+            hint = "The world is not connected. Call connect_ros2() or connect_ros1() before."
+        else:
+            # Such as those of topics that a node cannot receive because of its quality of service.
+            warnings = [
+                f"{each.message} [{each.code.number}]."
+                for each in self._world.session.diagnostics
+                if each.code.number.startswith(_OF_CONNECTIONS)
+            ]
+            topic = ", ".join(read) or "no topic of the simulation"
+            hint = " ".join([f"Other nodes read {topic}.", *warnings[-_MOST_WARNINGS:]])
+        return TimedOutError(
+            f"no message arrived on {', '.join(topics)} within {seconds:g} s of wall time, so the "
+            "lockstep did not begin",
+            code=COMMAND_MISSING,
+            hint=hint,
+            values={
+                "topics": tuple(topics),
+                "timeout": seconds,
+                "connected": not alone,
+                "read": read,
+            },
+        )
 
     def _settle(self, most: int, quiet: float) -> None:
         """Waits for further commands of the start.

@@ -42,6 +42,8 @@ _SUFFIXES = (".yaml", ".yml")
 _REPORT = "report.html"
 _INTERVAL = 10.0
 """Wall time between two lines about the progress, s."""
+_MOST_LINES = 10
+"""Maximum number of lines of a program's output for a case that failed."""
 _MOST_SHOWN = 20
 """Maximum number of failed cases that are shown at the end."""
 
@@ -269,6 +271,10 @@ def _show(request: Request, outcomes: Sequence[Outcome], count: int) -> None:
         say(paint(outcome.id, "bold", "red"))
         for finding in outcome.findings:
             say(finding.text)
+        if outcome.late:
+            say(f"  lockstep: {outcome.late} periods without a message in time")
+        if outcome.output:
+            say("\n    ".join(["  output of the program:", *_last_lines(outcome.output)]))
         for name, file in (("recording", outcome.recording), ("picture", outcome.picture)):
             if file:
                 say(f"  {name}: {request.output / file}")
@@ -285,6 +291,12 @@ def _show(request: Request, outcomes: Sequence[Outcome], count: int) -> None:
     if not request.view:
         note(f"report: {request.output / _REPORT}")
     sys.stdout.flush()
+
+
+def _last_lines(output: str) -> list[str]:
+    """The end of a program's output, for a terminal."""
+    lines = output.rstrip().splitlines()
+    return lines if len(lines) <= _MOST_LINES else ["…", *lines[-_MOST_LINES:]]
 
 
 class _Lines:
