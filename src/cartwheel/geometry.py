@@ -8,7 +8,7 @@ Ry(pitch) Rx(roll)``. Units are metres and radians.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import FrozenInstanceError, dataclass
 from typing import Any, Never, TypeVar, overload
 
@@ -112,6 +112,13 @@ def rotate(q: Sequence[float], v: Sequence[float]) -> Vec3:
     )
 
 
+def cross(a: Iterable[float], b: Iterable[float]) -> Array:
+    """Cross product of two vectors, shape (3,). `numpy.cross` has the same bits."""
+    ax, ay, az = map(float, a)
+    bx, by, bz = map(float, b)
+    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
+
+
 def quat_from_axis_angle(axis: Sequence[float], angle: float) -> Quat:
     """Rotation by `angle` radians about `axis`, which can have any nonzero length."""
     norm = math.sqrt(sum(c * c for c in axis))
@@ -160,8 +167,8 @@ def quat_between(source: Sequence[float], target: Sequence[float]) -> Quat:
     w = 1 + float(a @ b)
     if w < 1e-9:
         helper = np.array([1.0, 0, 0]) if abs(a[0]) < 0.9 else np.array([0, 1.0, 0])
-        return quat_from_axis_angle(np.cross(a, helper).tolist(), math.pi)
-    x, y, z = np.cross(a, b)
+        return quat_from_axis_angle(cross(a, helper).tolist(), math.pi)
+    x, y, z = cross(a, b)
     return quat_normalize((float(x), float(y), float(z), w))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.codes.graph import ENTITY_AMBIGUOUS, ENTITY_UNKNOWN
 from cartwheel.description.model import Joint, Light, Link, RobotDescription
 from cartwheel.errors import GraphError, UnknownNameError
-from cartwheel.geometry import Pose, Vec3, quat_conjugate, rotate
+from cartwheel.geometry import Pose, Vec3, cross, quat_conjugate, rotate
 from cartwheel.similar_names import suggestion
 from cartwheel.simulation import LinkHandle, PlacedModel, Simulation
 from cartwheel.world.entry import scoped
@@ -35,7 +35,7 @@ class Motion:
         """The motion of a frame fixed to this frame at `offset`."""
         place = self.pose @ offset
         arm = np.subtract(place.position, self.pose.position)
-        vx, vy, vz = (np.asarray(self.linear) + np.cross(self.angular, arm)).tolist()
+        vx, vy, vz = (np.asarray(self.linear) + cross(self.angular, arm)).tolist()
         return Motion(place, (vx, vy, vz), self.angular)
 
     def seen_from(self, frame: Motion) -> Motion:

@@ -10,7 +10,7 @@ from cartwheel.codes.graph import ENTITY_FIXED
 from cartwheel.errors import GraphError
 from cartwheel.gazebo.entities import INERTIAL, Entities
 from cartwheel.gazebo.requests import Answer, Offer, named, vector
-from cartwheel.geometry import rotate
+from cartwheel.geometry import cross, rotate
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation import Simulation
 from cartwheel.simulation.limits import STRONGEST, number
@@ -74,7 +74,7 @@ class Pushes:
             arm = np.array(rotate(frame.orientation, point))
         else:
             arm = np.subtract(frame.apply(point), simulation.data.xipos[body])
-        moment = np.add(rotate(frame.orientation, torque), np.cross(arm, turned))
+        moment = np.add(rotate(frame.orientation, torque), cross(arm, turned))
         x, y, z = moment.tolist()
         start, duration = _span(request)
         simulation.forces.wrench(

@@ -19,6 +19,7 @@ from cartwheel.geometry import (
     Pose,
     Quat,
     Vec3,
+    cross,
     from_wxyz,
     matrix_from_quat,
     rotate,
@@ -141,9 +142,7 @@ class LinkHandle:
         if any(offset):
             arm = np.asarray(offset, dtype=float)
             _, rate = self.velocity(local=True)
-            acceleration = (
-                acceleration + np.cross(six[:3], arm) + np.cross(rate, np.cross(rate, arm))
-            )
+            acceleration = acceleration + cross(six[:3], arm) + cross(rate, cross(rate, arm))
         return acceleration, six[:3]
 
     def _find_accelerations(self) -> None:
@@ -165,7 +164,7 @@ class LinkHandle:
         torque, force = self._data.cfrc_int[self.id, :3], self._data.cfrc_int[self.id, 3:]
         turn: Array = self._data.xmat[self.id].reshape(3, 3)
         about = self._position + turn @ np.asarray(point, dtype=float)
-        torque = torque - np.cross(about - self._centre, force)
+        torque = torque - cross(about - self._centre, force)
         return -turn.T @ force, -turn.T @ torque
 
     def load(self) -> tuple[Array, Array]:
@@ -177,7 +176,7 @@ class LinkHandle:
         # MuJoCo stores it about the tree's centre of mass.
         torque, force = self._data.cfrc_ext[self.id, :3], self._data.cfrc_ext[self.id, 3:]
         arm = self._data.xipos[self.id] - self._centre
-        return force.copy(), torque - np.cross(arm, force)
+        return force.copy(), torque - cross(arm, force)
 
     @property
     def gravity(self) -> list[float]:

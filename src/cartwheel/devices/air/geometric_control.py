@@ -11,7 +11,7 @@ import numpy as np
 from cartwheel.component import Component, Scope
 from cartwheel.description.model import RobotDescription
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
-from cartwheel.geometry import Array, Vec3, matrix_from_quat
+from cartwheel.geometry import Array, Vec3, cross, matrix_from_quat
 from cartwheel.messages import zero
 from cartwheel.world.build import DEFAULT_STEP
 
@@ -248,8 +248,8 @@ def demanded_wrench(
 def _axes_along(up: Array, axes: Array) -> Array:
     """Orientation with this z axis whose x axis is as near as possible to that of `axes`."""
     for ahead in axes.T:
-        left = np.cross(up, ahead)
+        left = cross(up, ahead)
         if left @ left >= _PARALLEL:
             break
     left = left / np.linalg.norm(left)
-    return np.column_stack([np.cross(left, up), left, up])
+    return np.column_stack([cross(left, up), left, up])

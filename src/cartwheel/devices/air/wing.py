@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cartwheel.component import Component, Scope
-from cartwheel.geometry import Array, Vec3, matrix_from_quat
+from cartwheel.geometry import Array, Vec3, cross, matrix_from_quat
 
 _SLOWEST = 1e-9
 """Airspeed below which there is no force, m/s."""
@@ -105,9 +105,9 @@ class Wing(Component):
         effects = np.zeros(6)
         for joint, surface in zip(self._joints, config.surfaces, strict=True):
             effects += math.degrees(joint.position) * surface.effects
-        velocity = np.array(linear) + np.cross(angular, config.centre)
+        velocity = np.array(linear) + cross(angular, config.centre)
         force, moment = air_loads(config, velocity, np.array(angular), effects)
-        torque = moment + np.cross(self._arm, force)
+        torque = moment + cross(self._arm, force)
         axes = matrix_from_quat(orientation)
         self._wrench.apply((axes @ force).tolist(), (axes @ torque).tolist())
 
@@ -124,7 +124,7 @@ def air_loads(
         controls: What the control surfaces add to each coefficient, shape (6,).
     """
     ahead, down = np.array(config.forward), -np.array(config.upward)
-    right = np.cross(down, ahead)
+    right = cross(down, ahead)
     flow = velocity - (velocity @ right) * right
     speed = float(np.linalg.norm(flow))
     if speed <= _SLOWEST:
@@ -137,7 +137,7 @@ def air_loads(
     half = np.array([rates[0] * span, -rates[1] * chord, -rates[2] * span]) / 2
     loads = coefficients(config, attack, sideslip, controls) + config.by_rates @ half / speed
     loads = loads * 0.5 * config.air_density * speed * speed * config.area
-    force: Array = -loads[LIFT] * np.cross(along, right) - loads[DRAG] * along + loads[SIDE] * right
+    force: Array = -loads[LIFT] * cross(along, right) - loads[DRAG] * along + loads[SIDE] * right
     moment: Array = (
         loads[ROLL] * span * ahead + loads[PITCH] * chord * right + loads[YAW] * span * down
     )

@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.component import Scope
 from cartwheel.devices.noise import ErrorConfig, sensor_error
 from cartwheel.devices.position.link_sensor import LinkSensor
-from cartwheel.geometry import Array, Vec3
+from cartwheel.geometry import Array, Vec3, cross
 from cartwheel.graph import Publisher
 from cartwheel.messages import message_class
 
@@ -111,7 +111,7 @@ class Gps(LinkSensor):
         pose, projection = self._link.pose, self._config.projection
         linear, angular = self._link.motion(local=False)
         arm = np.array(pose.apply(self._config.mount)) - np.array(pose.position)
-        x, y, z = (np.array(linear) + np.cross(angular, arm)).tolist()
+        x, y, z = (np.array(linear) + cross(angular, arm)).tolist()
         if self._config.velocity_error_axes == "world":
             x, y, z = self._velocity_error.add((x, y, z))
             return projection.geographic((x, y, z))

@@ -14,6 +14,7 @@ from cartwheel.geometry import (
     Pose,
     Quat,
     Vec3,
+    cross,
     quat_conjugate,
     quat_from_rpy,
     quat_multiply,
@@ -161,7 +162,7 @@ class BaseTruth(Component):
         pose = self._link.pose @ config.mount
         origin_velocity, angular = self._link.motion(local=False)
         arm = rotate(self._link.pose.orientation, config.mount.position)
-        linear = np.array(origin_velocity) + np.cross(angular, arm)
+        linear = np.array(origin_velocity) + cross(angular, arm)
         place, orientation = pose.position, pose.orientation
         if config.planar:
             place, orientation = planar_pose(place, orientation)

@@ -10,7 +10,7 @@ import numpy as np
 from cartwheel.component import Component, Scope
 from cartwheel.devices.air.velocity_control import merged_inertia
 from cartwheel.devices.periodic import Elapsed
-from cartwheel.geometry import Array, Vec3, quat_conjugate, rotate
+from cartwheel.geometry import Array, Vec3, cross, quat_conjugate, rotate
 
 _LIGHTEST = 1e-6
 """Least mass in kg and moment of inertia in kg m² with which the forces are computed."""
@@ -111,7 +111,7 @@ class Hydrodynamics(Component):
             other=other,
             seconds=seconds,
         )
-        torque = wrench[3:] + np.cross(self._to_origin, wrench[:3])
+        torque = wrench[3:] + cross(self._to_origin, wrench[:3])
         self._wrench.apply(
             rotate(orientation, tuple(wrench[:3].tolist())),
             rotate(orientation, tuple(torque.tolist())),
@@ -144,8 +144,8 @@ def coriolis(added_mass: Array, state: Array) -> Array:
     linear, angular = state[:3], state[3:]
     return np.concatenate(
         [
-            np.cross(angular, momentum[:3]),
-            np.cross(linear, momentum[:3]) + np.cross(angular, momentum[3:]),
+            cross(angular, momentum[:3]),
+            cross(linear, momentum[:3]) + cross(angular, momentum[3:]),
         ]
     )
 

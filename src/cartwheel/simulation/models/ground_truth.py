@@ -12,7 +12,7 @@ from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import SimulationError, UnknownNameError
-from cartwheel.geometry import Array, Vec3
+from cartwheel.geometry import Array, Vec3, cross
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle, LinkHandle
 from cartwheel.simulation.limits import STRONGEST, number, numbers
@@ -171,7 +171,7 @@ class GroundTruth:
             numbers(at, "the point of application")
             self.locate()
             arm = np.subtract(at, self._engine.data.xipos[handle.id])
-            x, y, z = np.add(torque, np.cross(arm, force)).tolist()
+            x, y, z = np.add(torque, cross(arm, force)).tolist()
             torque = (x, y, z)
         self._forces.wrench(model, link, force=force, torque=torque, duration_ns=duration_ns)
         self._apply_forces()

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cartwheel.description.model import RobotDescription
-from cartwheel.geometry import Pose, Vec3
+from cartwheel.geometry import Pose, Vec3, cross
 from cartwheel.simulation.engine import Engine
 from cartwheel.world.entry import ModelEntry
 
@@ -58,7 +58,7 @@ def push_off(engine: Engine, entry: ModelEntry, linear: Vec3, angular: Vec3) -> 
 def _carried(place: Pose, pose: Pose, linear: Vec3, angular: Vec3) -> Vec3:
     """The velocity of a link's origin that moves with a frame as a rigid body, m/s."""
     arm = np.subtract(place.position, pose.position)
-    vx, vy, vz = (np.asarray(linear) + np.cross(angular, arm)).tolist()
+    vx, vy, vz = (np.asarray(linear) + cross(angular, arm)).tolist()
     return vx, vy, vz
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from cartwheel.geometry import cross
 from cartwheel.simulation.snapshot import Contact
 from cartwheel.world.entry import collision_of, part_name
 
@@ -73,7 +74,7 @@ def contacts_of(model: Any, data: Any, wanted: Mapping[int, str]) -> list[Contac
                         depth=depth,
                         force=sign * force,
                         torque=sign * torque
-                        + np.cross(position - data.xipos[model.geom_bodyid[first]], sign * force),
+                        + cross(position - data.xipos[model.geom_bodyid[first]], sign * force),
                     )
                 )
     return found

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.geometry import Pose, matrix_from_quat
+from cartwheel.geometry import Pose, cross, matrix_from_quat
 
 _STEEP = 0.9999
 """Vertical part of a unit vector that is taken as vertical."""
@@ -70,9 +70,9 @@ def axes_towards(direction: Any) -> Any:
     """The axes of a camera that looks in a direction; see `View.axes`."""
     back = -direction / np.linalg.norm(direction)
     upright = np.array([0.0, 1.0, 0.0] if abs(back[2]) > _STEEP else [0.0, 0.0, 1.0])
-    right = np.cross(upright, back)
+    right = cross(upright, back)
     right /= np.linalg.norm(right)
-    return np.column_stack([right, np.cross(back, right), back])
+    return np.column_stack([right, cross(back, right), back])
 
 
 def out_of_view(model: Any, data: Any, view: View) -> Any:
