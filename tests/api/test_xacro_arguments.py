@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
-from tests.coded import raises
+from tests.coded import coded, raises
 
 import cartwheel as cw
 from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.files import ARGUMENT_UNKNOWN
+from cartwheel.errors import DescriptionError
 
 XACRO = """<robot name="bot" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="top" default="false"/><xacro:arg name="size" default="1"/>
@@ -30,6 +32,22 @@ def test_numbers_and_booleans_are_written_as_xacro_does(value, there, make):
     if make == "spawn":
         world.spawn(**robot)
     assert ("top" in world.model("bot").links) is there
+
+
+def test_a_misspelt_argument_is_an_error():
+    robot = {"robot": XACRO, "arguments": {"tob": True}}
+    with raises(ARGUMENT_UNKNOWN, DescriptionError, name="tob", meant="top"):
+        cw.World().spawn(**robot)
+    with raises(ARGUMENT_UNKNOWN, DescriptionError, name="tob"):
+        cw.build("empty", robot)
+    # Unless it is ignored, or a file that is missing might declare it.
+    cw.World(ignore="CW123").spawn(**robot)
+    cw.build("empty", robot, ignore="CW123")
+    include = '<xacro:include filename="$(find not_there)/more.xacro"/>'
+    robot["robot"] = XACRO.replace("<xacro:arg", f"{include}<xacro:arg", 1)
+    with cw.World() as world:
+        world.spawn(**robot)
+        assert coded(world, ARGUMENT_UNKNOWN, name="tob")
 
 
 @pytest.mark.parametrize(

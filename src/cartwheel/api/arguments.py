@@ -9,8 +9,9 @@ from typing import TypeVar
 import numpy as np
 
 from cartwheel.codes.command import OPTION_INVALID
+from cartwheel.codes.files import ARGUMENT_UNKNOWN, INCLUDE_ABSENT
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import CartwheelError
+from cartwheel.errors import CartwheelError, Code, DescriptionError
 
 T = TypeVar("T", bound=str | Path)
 
@@ -62,6 +63,28 @@ def xacro_arguments(values: object) -> dict[str, str] | None:
     if not isinstance(values, Mapping):
         raise refused("arguments", "a mapping", values)
     return {text(name, "the name of an argument"): _written(name, values[name]) for name in values}
+
+
+def check_xacro_arguments(robot: RobotDescription, ignored: Collection[Code] = ()) -> None:
+    """Refuses arguments that the description does not declare.
+
+    If an included file is missing, it might declare them, and they are only reported.
+
+    Args:
+        robot: The description, which was read with the arguments.
+        ignored: Codes that are no errors.
+
+    Raises:
+        DescriptionError: It does not declare one of them.
+    """
+    if any(each.code is INCLUDE_ABSENT for each in robot.diagnostics):
+        return
+    for each in robot.diagnostics:
+        if each.code is ARGUMENT_UNKNOWN and each.code not in ignored:
+            raise DescriptionError(
+                each.message, code=each.code, origin=each.origin, hint=each.hint,
+                values=each.values,
+            )  # fmt: skip
 
 
 def _written(name: str, value: object) -> str:

@@ -8,12 +8,20 @@ from pathlib import Path
 from typing import Any
 
 from cartwheel import description as descriptions
-from cartwheel.api.arguments import paths, refused, source, xacro_arguments
+from cartwheel.api.arguments import (
+    check_xacro_arguments,
+    paths,
+    refused,
+    several,
+    source,
+    xacro_arguments,
+)
 from cartwheel.api.world import World
+from cartwheel.codes import codes_matching
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
 from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
-from cartwheel.errors import CartwheelError, Diagnostic
+from cartwheel.errors import CartwheelError, Code, Diagnostic
 from cartwheel.similar_names import meant, suggestion
 from cartwheel.simulation.models.compilations import SharedCompiler
 
@@ -158,9 +166,10 @@ def build(
     source(world, "world")
     if not isinstance(world, WorldDescription):
         world = descriptions.load_world(world)
+    ignored = frozenset[Code]().union(*map(codes_matching, several(ignore, "ignore")))
     built = Built(
         world,
-        [_read(robot, package_path) for robot in _listed(robots)],
+        [_read(robot, package_path, ignored) for robot in _listed(robots)],
         {
             "strict": strict,
             "ignore": ignore,
@@ -187,7 +196,9 @@ def _listed(robots: Robot | Sequence[Robot]) -> Sequence[Robot]:
     return robots
 
 
-def _read(robot: Robot, package_path: str | Path | Sequence[str | Path]) -> dict[str, Any]:
+def _read(
+    robot: Robot, package_path: str | Path | Sequence[str | Path], ignored: frozenset[Code]
+) -> dict[str, Any]:
     """The arguments of `World.spawn` for a robot, with its description instead of its file."""
     given: dict[str, Any] = dict(robot) if isinstance(robot, Mapping) else {"robot": robot}
     given.setdefault("package_path", package_path)
@@ -208,4 +219,5 @@ def _read(robot: Robot, package_path: str | Path | Sequence[str | Path]) -> dict
             arguments=xacro_arguments(given.pop("arguments", None)),
             package_path=paths(given["package_path"], "package_path"),
         )
+        check_xacro_arguments(given["robot"], ignored)
     return given

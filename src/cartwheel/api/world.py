@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import Literal, Never, SupportsFloat
 
 from cartwheel import description as descriptions
-from cartwheel.api.arguments import paths, refused, several, source, text, xacro_arguments
+from cartwheel.api.arguments import (
+    check_xacro_arguments,
+    paths,
+    refused,
+    several,
+    source,
+    text,
+    xacro_arguments,
+)
 from cartwheel.api.calling import CallingWorld
 from cartwheel.api.handles import unknown_attribute
 from cartwheel.api.model import Model
@@ -265,7 +273,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 manager then has none; an empty list gives no warning.
 
         Raises:
-            DescriptionError: The file cannot be used.
+            DescriptionError: The file cannot be used, or does not declare an argument (CW123).
             WorldError: The name is in use, or the model cannot be built.
             PluginError: A plugin cannot be used, the model has no controller manager, or a
                 controller file is invalid.
@@ -287,6 +295,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 arguments=values,
                 package_path=folders,
             )
+            check_xacro_arguments(robot, self._ignored)
         with self.used(change=True):
             spawned = self.session.spawn(
                 robot,
