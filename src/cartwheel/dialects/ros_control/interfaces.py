@@ -143,6 +143,16 @@ def simulated_systems(description: RobotDescription) -> list[Element]:
     return simulated or list(description.ros2_control)
 
 
+def _loaded_by(description: RobotDescription) -> frozenset[str]:
+    """The simulated hardware that the description's plugin of ros2_control loads."""
+    classic, *others = SYSTEMS
+    names = [each.filename for each in description.plugins]
+    found = {classic} if any("gazebo_ros2_control" in each for each in names) else set[str]()
+    if any(re.search(r"(gz|ign)_ros2_control", each) for each in names):
+        found.update(others)
+    return frozenset(found)
+
+
 def ros2_control(
     description: RobotDescription,
 ) -> tuple[list[JointInterfaces], list[SensorInterfaces], list[Diagnostic]]:
@@ -154,7 +164,11 @@ def ros2_control(
     joints: dict[str, JointInterfaces] = {}
     sensors: list[SensorInterfaces] = []
     notes: list[Diagnostic] = []
-    for system in simulated_systems(description):
+    # Hardware that the plugin of this Gazebo cannot load is skipped there, so the other's joints
+    # count if both list them.
+    loads = _loaded_by(description)
+    systems = sorted(simulated_systems(description), key=lambda each: hardware_of(each) in loads)
+    for system in systems:
         for element in system.find_all("joint"):
             name = element.attribute("name") or ""
             if not _movable(description, name):
