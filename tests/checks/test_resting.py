@@ -308,3 +308,13 @@ def test_a_robot_whose_casters_are_too_high_tilts(tmp_path, z, tilt):
 def test_a_robot_on_two_wheels_is_reported(tmp_path):
     (finding,) = balanced(tmp_path, drive())
     assert finding.values["outside"] == 0.0
+
+
+def test_a_robot_on_two_wheels_that_no_drive_names_is_reported(tmp_path):
+    """A program balances it by efforts, perhaps."""
+    text = drive()
+    bare = text[: text.index("<gazebo>")] + "</robot>"
+    (finding,) = balanced(tmp_path, bare)
+    assert finding.values["outside"] == 0.0
+    ball = link("ball", 1.0, f'<sphere radius="{BALL}"/>') + joint("ball", "fixed", "0.15 0 -0.03")
+    assert balanced(tmp_path, bare.replace("</robot>", f"{ball}</robot>")) == []

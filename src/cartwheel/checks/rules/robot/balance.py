@@ -11,7 +11,13 @@ from cartwheel.checks.resting import Rest, center_of_mass, rest_of, starting_pos
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
-from cartwheel.checks.wheels import wheel_axis, wheel_joints, wheel_links, wheel_middle
+from cartwheel.checks.wheels import (
+    passive_axle,
+    wheel_axis,
+    wheel_joints,
+    wheel_links,
+    wheel_middle,
+)
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic
@@ -75,6 +81,9 @@ def _tilted(robot: Robot, rest: Rest) -> Iterator[Diagnostic]:
 def _on_an_axle(robot: Robot, rest: Rest | None) -> Iterator[Diagnostic]:
     """A robot that stands only on wheels with a common axle."""
     joints = wheel_joints(robot)
+    if not joints and rest is not None:
+        # A program may balance the robot by efforts on single joints.
+        joints = [robot.joints[name] for name in passive_axle(robot, ())]
     wheels = {name for joint in joints for name in wheel_links(robot, joint)}
     others = [name for name in robot.links if name not in wheels]
     height = rest.height(robot, others) if rest is not None else None
