@@ -203,9 +203,8 @@ def _clean(every: int) -> Iterator[Figure]:
             note="no folder of published robots (CARTWHEEL_CORPUS)",
         )
         return
-    skip = min(every, 4)
-    for folder in sorted(each for each in corpus.iterdir() if each.is_dir())[::skip]:
-        yield _report(folder.name, robots_in(folder, package_path=[folder])[::skip], folder)
+    for folder in sorted(each for each in corpus.iterdir() if each.is_dir())[::every]:
+        yield _report(folder.name, robots_in(folder, package_path=[folder])[::every], folder)
 
 
 def _report(name: str, files: Sequence[Path], folder: Path) -> Figure:

@@ -24,13 +24,13 @@ def figures(effort: Effort) -> Iterator[Figure]:
     mir = with_two_lasers()
     if mir is not None:
         yield _robot(mir, "MiR with two scanners", 4.0, effort)
-    count = min(20, 10 * max(effort.carts))
+    count = min(20, 2 * max(effort.carts))
     with driving(count) as world:
         listener = Listener(world, READ)
         yield _compared(world, f"{count} carts, odometry, tf, joint states and IMU", 1.9, effort,
                         seconds=effort.seconds / count)  # fmt: skip
         assert listener.count
-    yield _many(min(100, 10 * max(effort.carts)), effort)
+    yield _many(min(100, 5 * max(effort.carts)), effort)
 
 
 def _robot(robot: RobotDescription, name: str, goal: float, effort: Effort) -> Figure:

@@ -11,7 +11,7 @@ from cartwheel.description import load_robot
 from cartwheel.description.model import RobotDescription
 
 _ROOT = Path(__file__).parents[1]
-_BURGER = "turtlebot3/turtlebot3_description/urdf/turtlebot3_burger.urdf.xacro"
+BURGER = "turtlebot3/turtlebot3_description/urdf/turtlebot3_burger.urdf.xacro"
 _MIR = "mir_robot/mir_description/urdf/mir.urdf.xacro"
 TWIST = "geometry_msgs/msg/Twist"
 
@@ -26,7 +26,7 @@ def with_laser() -> tuple[RobotDescription, str]:
     """A TurtleBot3 Burger, or else a cart with the same laser, and its name."""
     folder = corpus()
     if folder is not None:
-        return load_robot(folder / _BURGER), "burger"
+        return load_robot(folder / BURGER), "burger"
     return carrying(scanner(columns=360, rate=5.0, reach=3.5)), "cart"
 
 

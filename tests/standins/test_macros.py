@@ -24,7 +24,17 @@ HUNG = """<joint name="hung" type="fixed"><parent link="base_link"/><child link=
   <origin xyz="0.1 0 0.2"/></joint>"""
 
 
+_ROBOTS: dict[int, RobotDescription] = {}
+"""By the identity of the call: the tests of frames and of topics read the same robots."""
+
+
 def robot_of(call: Call) -> RobotDescription:
+    if id(call) not in _ROBOTS:
+        _ROBOTS[id(call)] = _read(call)
+    return _ROBOTS[id(call)]
+
+
+def _read(call: Call) -> RobotDescription:
     package, path = call.file.split("/", 1)
     robot = load_text(
         f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{BASE}'
@@ -148,7 +158,7 @@ def test_realsense_gazebo_plugin(make):
         {},
     )
     world: cw.World = make.world()
-    world.session.spawn(robot_of(call), pose=Pose((0, 0, 0.2)))
+    world.session.spawn(_read(call), pose=Pose((0, 0, 0.2)))
     box = world.mailbox("/camera/color/image_raw")
     world.run(0.1)
     message = box.drain()[0]

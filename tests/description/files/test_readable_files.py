@@ -9,7 +9,7 @@ from tests.coded import raises
 
 from cartwheel.codes import files
 from cartwheel.description import load
-from cartwheel.description.files.readable_files import Reach, is_inside
+from cartwheel.description.files.readable_files import Reach, is_inside, with_targets
 from cartwheel.description.loading import load_plain, open_description
 
 NS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -264,7 +264,12 @@ def test_the_way_back_from_a_link_leaves_a_trusted_folder(workspace):
     linked = workspace / "linked"
     linked.symlink_to(trusted)
     for folder in (trusted, linked):
-        assert is_inside(folder / "pack/meshes/../meshes/a.stl", folder)
-        assert is_inside(folder / "pack/away/a.yaml", folder)
-        assert not is_inside(folder / "pack/away/../secret.yaml", folder)
-        assert not is_inside(folder / "../away/secret.yaml", folder)
+        folders = with_targets([folder])
+        assert is_inside(folder, folders)
+        assert is_inside(folder / "pack/meshes/../meshes/a.stl", folders)
+        assert is_inside(folder / "pack/away/a.yaml", folders)
+        assert not is_inside(folder / "pack/away/../secret.yaml", folders)
+        assert not is_inside(folder / "../away/secret.yaml", folders)
+        assert not is_inside(folder.with_name(f"{folder.name}2"), folders)
+    assert is_inside(trusted / "pack", with_targets([linked]))
+    assert not is_inside(linked / "pack", with_targets([trusted]))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import chain
 from pathlib import Path
 
@@ -29,6 +29,7 @@ _PACKAGE = re.compile(rb"<package[\s/>]")
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 
 
+@cache
 def share() -> Path:
     """The folder with the built-in ``robots``, ``worlds``, ``models`` and ``standins``.
 

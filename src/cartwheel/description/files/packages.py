@@ -37,6 +37,7 @@ from cartwheel.description.files.readable_files import (
     is_inside,
     is_named,
     real,
+    with_targets,
 )
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
 
@@ -228,7 +229,7 @@ class Packages:
         A description received over the network may read files in packages and models, and those in
         `reach`.
         """
-        if any(is_inside(path, root) for root in self._trusted()):
+        if is_inside(path, self._trusted):
             return True
         if any(is_below(path, root) for root in self._own) or self._in_package(path):
             return True
@@ -265,8 +266,12 @@ class Packages:
             hint=self.reach.hint if self.reach is not None else NAME_IT,
         )
 
-    def _trusted(self) -> Iterator[Path]:
+    @cached_property
+    def _trusted(self) -> frozenset[Path]:
         """Folders that the user specified in options and variables."""
+        return with_targets(self._specified())
+
+    def _specified(self) -> Iterator[Path]:
         yield from self.package_path
         yield from self._search.environment_roots()
         for variable in _RESOURCES:

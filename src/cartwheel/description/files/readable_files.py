@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -52,21 +53,31 @@ def is_below(path: Path, folder: Path) -> bool:
     return not any(part.startswith(".") for part in file.relative_to(root).parts)
 
 
-def is_inside(path: Path, folder: Path) -> bool:
+def with_targets(folders: Iterable[Path]) -> frozenset[Path]:
+    """The folders by their names and, where links lead to them, by those of the links' targets."""
+    names = set()
+    for folder in folders:
+        with contextlib.suppress(OSError, ValueError):
+            names |= {folder.absolute(), Path(os.path.realpath(folder))}
+    return frozenset(names)
+
+
+def is_inside(path: Path, folders: Set[Path]) -> bool:
     """Whether a path is in a folder by its name; links in a trusted folder are allowed.
 
     ``..`` after a link is relative to the link's target.
+
+    Args:
+        path: The path.
+        folders: The trusted folders, from `with_targets`.
     """
     try:
         parts = path.absolute().parts
         back = len(parts) - parts[::-1].index("..") if ".." in parts else 0
-        file = Path(os.path.realpath(Path(*parts[:back])), *parts[back:])
-        return any(
-            file.is_relative_to(root)
-            for root in (folder.absolute(), Path(os.path.realpath(folder)))
-        )
+        file = Path(os.path.realpath(Path(*parts[:back])), *parts[back:]) if back else Path(*parts)
     except (OSError, ValueError):
         return False
+    return file in folders or not folders.isdisjoint(file.parents)
 
 
 def is_common(folder: Path) -> bool:
