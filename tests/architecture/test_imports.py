@@ -156,10 +156,58 @@ def room_of(path: Path) -> str:
     return path.relative_to(SOURCE).parts[0].removesuffix(".py")
 
 
+@functools.cache
+def imports(path: Path) -> list[tuple[ast.Import | ast.ImportFrom, bool]]:
+    """The imports of a file, wherever in the file, and whether each is made when it runs."""
+    found: list[tuple[ast.Import | ast.ImportFrom, bool]] = []
+    pending: list[tuple[ast.AST, bool]] = [(parsed(path), True)]
+    while pending:
+        node, runs = pending.pop()
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            found.append((node, runs))
+            continue
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            runs = False
+        # Imports are statements, which only these fields of a node contain.
+        for name in ("body", "orelse", "finalbody", "handlers", "cases"):
+            below = getattr(node, name, ())
+            if isinstance(below, list):  # not of an expression
+                pending += [(each, runs) for each in below]
+    return found
+
+
+def test_imports_are_found_wherever_they_are(tmp_path: Path) -> None:
+    file = tmp_path / "file.py"
+    file.write_text("""
+import a
+from typing import TYPE_CHECKING
+if TYPE_CHECKING:
+    import b
+class C:
+    def f(self):
+        async def g():
+            for x in y:
+                with z: import d
+            else: import e
+            while z: import f
+        try: import h
+        except E: import i
+        else: import j
+        finally: import k
+        match x:
+            case 1: from l import m
+        if x: pass
+        elif y: import n
+x = 1 if y else (lambda: 2)
+""")
+    names = {each.name: runs for node, runs in imports(file) for each in node.names}
+    assert names == {"TYPE_CHECKING": True, **dict.fromkeys("adefhijkmn", True), "b": False}
+
+
 def imported_rooms(path: Path) -> set[tuple[str, int]]:
     """Every room of ours that a file imports, wherever in the file, with its line."""
     found = set()
-    for node in ast.walk(parsed(path)):
+    for node, _ in imports(path):
         names = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -221,13 +269,9 @@ def imported_modules(path: Path) -> frozenset[str]:
 
 
 def _imported_modules(path: Path) -> Iterator[str]:
-    pending: list[ast.AST] = [parsed(path)]
-    while pending:
-        node = pending.pop()
-        if isinstance(node, ast.ImportFrom):
+    for node, runs in imports(path):
+        if isinstance(node, ast.ImportFrom) and runs:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
-        elif not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
-            pending += ast.iter_child_nodes(node)
 
 
 def test_the_files_and_folders_of_a_folder_import_each_other_one_way() -> None:
@@ -289,7 +333,7 @@ def test_wires_and_browser_are_imported_only_in_their_rooms() -> None:
         "mujoco": None,
     }
     for path in FILES:
-        for node in ast.walk(parsed(path)):
+        for node, _ in imports(path):
             names = []
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 
 from cartwheel.description.elements import numbers
+from cartwheel.description.files import fuel
 from cartwheel.description.files.missing_packages import Advice, how_to_install
 from cartwheel.description.files.package_folders import (
     around,
@@ -20,9 +22,11 @@ from cartwheel.description.files.package_folders import (
     share,
     stand_ins,
 )
+from cartwheel.description.files.readable_files import with_targets
 
 _ROS1 = "ROS_PACKAGE_PATH"
 _PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
+RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
 _MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH")
 
 _OF_REPOSITORIES = (".git", ".gitignore", ".gitmodules", ".gitattributes", ".github")
@@ -98,6 +102,16 @@ class PackageSearch:
                 yield prefix / "share"
         for variable in _MODELS:
             yield from self.paths(variable)
+
+    @cached_property
+    def trusted(self) -> frozenset[Path]:
+        """The folders that the user specified in options and variables; see `is_inside`."""
+        return with_targets([
+            *(*self.package_path, *self.environment_roots()),
+            *(folder for variable in RESOURCES for folder in self.paths(variable)),
+            *(Path("~/.gazebo/models").expanduser(), *fuel.caches(self.environment)),
+            *(share() / each for each in ("models", "robots", "worlds", "standins")),
+        ])  # fmt: skip
 
     def paths(self, variable: str) -> list[Path]:
         """The folders in an environment variable."""

@@ -26,10 +26,9 @@ from cartwheel.description.files.package_folders import (
     is_file,
     package_above,
     package_name,
-    share,
     stand_in_name,
 )
-from cartwheel.description.files.package_search import PackageSearch, listed
+from cartwheel.description.files.package_search import RESOURCES, PackageSearch, listed
 from cartwheel.description.files.readable_files import (
     NAME_IT,
     Reach,
@@ -37,11 +36,8 @@ from cartwheel.description.files.readable_files import (
     is_inside,
     is_named,
     real,
-    with_targets,
 )
 from cartwheel.errors import DescriptionError, Diagnostic, Origin
-
-_RESOURCES = ("GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
 
 
 class Packages:
@@ -229,7 +225,7 @@ class Packages:
         A description received over the network may read files in packages and models, and those in
         `reach`.
         """
-        if is_inside(path, self._trusted):
+        if is_inside(path, self._search.trusted):
             return True
         if any(is_below(path, root) for root in self._own) or self._in_package(path):
             return True
@@ -265,19 +261,6 @@ class Packages:
             origin=origin,
             hint=self.reach.hint if self.reach is not None else NAME_IT,
         )
-
-    @cached_property
-    def _trusted(self) -> frozenset[Path]:
-        """Folders that the user specified in options and variables."""
-        return with_targets(self._specified())
-
-    def _specified(self) -> Iterator[Path]:
-        yield from self.package_path
-        yield from self._search.environment_roots()
-        for variable in _RESOURCES:
-            yield from self._search.paths(variable)
-        yield from (Path("~/.gazebo/models").expanduser(), *fuel.caches(self._environment))
-        yield from (share() / each for each in ("models", "robots", "worlds", "standins"))
 
     def _workspace(self, folder: Path) -> list[Path]:
         """The folders around a file that it may read."""
@@ -355,7 +338,7 @@ class Packages:
             folders.insert(0, Path(origin.file).absolute().parent)
         # A package with gazebo_media_path exports is itself in GAZEBO_RESOURCE_PATH.
         above = [root for root in map(package_above, folders) if root is not None]
-        for variable in _RESOURCES:
+        for variable in RESOURCES:
             folders += self._search.paths(variable)
         folders += above
         yield from dict.fromkeys(folder / given for folder in (*folders, *self.package_path))
