@@ -10,11 +10,13 @@ from tests.coded import raises
 
 import cartwheel as cw
 from cartwheel.codes.command import COMMAND_MISSING, LAUNCH_FAILED
-from cartwheel.codes.graph import TOPIC_UNKNOWN
+from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN, TOPIC_UNKNOWN
+from cartwheel.codes.wires import QOS_INCOMPATIBLE
 from cartwheel.codes.world import VALUE_INVALID, WAIT_TIMED_OUT
 from cartwheel.errors import CartwheelError, TimedOutError, UnknownNameError
 from cartwheel.msgs.geometry_msgs import Twist
 from cartwheel.msgs.nav_msgs import Odometry
+from cartwheel.msgs.sensor_msgs import Imu, NavSatFix
 from cartwheel.testing import Node, launch, reaches
 
 DRIVE = "/part2_cmr/cmd_vel"
@@ -78,12 +80,19 @@ def test_a_program_that_sends_no_command_ends_the_run(domain):
         ):
             world.run(0.1)
         world.connect_ros2()
-        node.subscribe("/odom", lambda _: None, type=Odometry)
+        heard = []
+        node.subscribe("/imu/data", heard.append, type=Imu)
+        node.subscribe("/gps/fix", heard.append, type=NavSatFix, reliable=True)
+        world.graph.advertise("/gps/fix", "sensor_msgs/msg/NavSatFix", qos="sensor")
         with (
             world.lockstep(DRIVE, start_timeout=5.0),
-            raises(COMMAND_MISSING, TimedOutError, timeout=5.0, connected=True, read=("/odom",)),
+            raises(COMMAND_MISSING, TimedOutError, timeout=5.0, connected=True) as caught,
         ):
             world.step()
+        # Sensors are best effort, and the node accepts this unless it must be reliable.
+        assert caught.value.values["read"] == ("/imu/data",)
+        assert caught.value.values["warnings"] == (QOS_INCOMPATIBLE.number,)
+        assert heard and {each.__msgtype__ for each in heard} == {"sensor_msgs/msg/Imu"}
 
 
 def test_an_error_states_late_messages():
@@ -145,6 +154,27 @@ def test_nodes_exchange_messages(domain):
                 break
     assert heard[0] == 2.5
     one.close()
+
+
+def test_nodes_know_the_types_of_packages(domain, tmp_path):
+    package = tmp_path / "plant_msgs"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text(
+        "<package><name>plant_msgs</name><depend>ament_cmake</depend></package>"
+    )
+    (package / "msg" / "Leaf.msg").write_text("float64 area\nstring[] colors\n")
+    heard, done = [], threading.Event()
+    with Node("one", package_path=[tmp_path]) as one, Node("two") as two:
+        with raises(MESSAGE_TYPE_UNKNOWN, UnknownNameError):
+            two.advertise("/leaf", "plant_msgs/msg/Stem")
+        leaf = one.message_class("plant_msgs/msg/Leaf")
+        # A latched message arrives although it was sent before.
+        one.advertise("/leaf", leaf, latched=True).publish(area=0.5, colors=["green"])
+        two.subscribe(
+            "/leaf", lambda message: (heard.append(message), done.set()), type=leaf, latched=True
+        )
+        assert done.wait(30)
+    assert heard == [leaf(area=0.5, colors=["green"])]
 
 
 def test_what_cannot_run_in_lockstep_is_refused():

@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cartwheel.bridges.ros2.plain_node import Node, NodePublisher
     from cartwheel.testing.launching import Launched, launch
     from cartwheel.testing.matchers import (
         UnmetError,
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
         touches,
         touches_nothing,
     )
+    from cartwheel.testing.node import Node, NodePublisher
 
 __all__ = [
     "Launched",
@@ -47,9 +47,9 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(name)
     if name in ("Node", "NodePublisher"):
-        from cartwheel.bridges.ros2 import plain_node
+        from cartwheel.testing import node
 
-        return getattr(plain_node, name)
+        return getattr(node, name)
     if name in ("Launched", "launch"):
         from cartwheel.testing import launching
 

@@ -264,17 +264,18 @@ class Lockstep:
         with self._lock:
             topics = [topic for topic, box in self._boxes.items() if not box]
         read = tuple(sorted(self._read_topics()))
+        warnings = [
+            each
+            for each in self._world.session.diagnostics
+            if each.code.number.startswith(_OF_CONNECTIONS)
+        ][-_MOST_WARNINGS:]
         if alone:
             hint = "The world is not connected. Call connect_ros2() or connect_ros1() before."
         else:
-            # Such as those of topics that a node cannot receive because of its quality of service.
-            warnings = [
-                f"{each.message} [{each.code.number}]."
-                for each in self._world.session.diagnostics
-                if each.code.number.startswith(_OF_CONNECTIONS)
-            ]
             topic = ", ".join(read) or "no topic of the simulation"
-            hint = " ".join([f"Other nodes read {topic}.", *warnings[-_MOST_WARNINGS:]])
+            # Such as those of topics that a node cannot receive because of its quality of service.
+            told = [f"{each.message} [{each.code.number}]." for each in warnings]
+            hint = " ".join([f"Other nodes read {topic}.", *told])
         return TimedOutError(
             f"no message arrived on {', '.join(topics)} within {seconds:g} s of wall time, so the "
             "lockstep did not begin",
@@ -285,6 +286,7 @@ class Lockstep:
                 "timeout": seconds,
                 "connected": not alone,
                 "read": read,
+                "warnings": tuple(each.code.number for each in warnings),
             },
         )
 
