@@ -491,6 +491,12 @@ LIFT = (
 """A cart of 1 kg on a vertical slide, whose hardware contains a PID controller."""
 
 
+def test_a_robot_without_controllers_does_not_move_with_any_hardware(tried):
+    other = LIFT.format(kind="position", gains="").replace("gazebo_ros2_control/Gaz", "own/Own")
+    (fault,) = tried(other).faults
+    assert (fault.test, fault.code, fault.source) == ("controller", CONTROLLERS_NOT_FOUND, "file")
+
+
 @pytest.mark.parametrize(
     ("kind", "gains", "error"),
     [

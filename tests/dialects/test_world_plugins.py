@@ -48,6 +48,16 @@ def test_what_is_built_in_is_not(filename):
     assert not told(filename)
 
 
+@pytest.mark.parametrize("place", ["world", "model"])
+def test_a_plugin_that_only_draws_is_a_note(place):
+    plugin = '<plugin name="p" filename="libLinkPlot3DPlugin.so"/>'
+    inside = plugin if place == "world" else f'<model name="m"><link name="l"/>{plugin}</model>'
+    session = Session(load_text(f'<sdf version="1.6"><world name="w">{inside}</world></sdf>'))
+    (found,) = [d for d in session.diagnostics if d.code is devices.PLUGIN_UNKNOWN]
+    session.close()
+    assert found.severity == "info"
+
+
 WORLD = """<sdf version="1.9"><world name="w"><model name="cart">
   <link name="a"/><link name="b"/>
   <joint name="left" type="continuous"><parent>a</parent><child>b</child>

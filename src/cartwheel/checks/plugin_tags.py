@@ -14,7 +14,7 @@ from cartwheel.dialects.catalogue import all_plugins, plugin_named, plugin_names
 from cartwheel.dialects.tag_roles import WHEEL_ROLES, Role, TagRole
 from cartwheel.dialects.tags import default_joints as default_joints_of
 from cartwheel.dialects.tags import read, roles_of, tags_of
-from cartwheel.dialects.world_plugins import BUILT_IN
+from cartwheel.dialects.world_plugins import BUILT_IN, DISPLAY_ONLY
 from cartwheel.errors import Diagnostic, PluginError
 
 _RELATED = {
@@ -29,7 +29,8 @@ _RELATED = {
 
 def is_simulated(tag: PluginTag) -> bool:
     """Whether Cartwheel simulates a plugin, or does itself what the plugin does."""
-    return plugin_named(tag.filename) is not None or short_name(tag.filename) in BUILT_IN
+    name = short_name(tag.filename)
+    return plugin_named(tag.filename) is not None or name in BUILT_IN | DISPLAY_ONLY
 
 
 def diagnostics_of(tag: PluginTag) -> list[Diagnostic]:

@@ -130,10 +130,13 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         for each in said
         if each.code is devices.HARDWARE_NOT_SIMULATED and "hardware" in each.values
     ]
-    # Such hardware may move a robot without joints, such as a quadrotor.
+    # Such hardware may move a robot without joints, such as a quadrotor. Joints that have no
+    # controllers do not move with any hardware.
+    moves = any(joint.type != "fixed" for joint in description.joints)
+    stopped = replaced if verdict.controller_files or not moves else []
     for tag in managers(description, jointless=bool(replaced)):
         reason = (
-            most_severe(replaced)
+            most_severe(stopped)
             or most_severe(each for each in said if each.code in _CONTROL and _concerns(each, tag))
             or devices.CONTROLLERS_NOT_FOUND.diagnostic(
                 "no file contains controllers for this controller manager", origin=tag.origin

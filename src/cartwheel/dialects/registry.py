@@ -20,7 +20,14 @@ from cartwheel.dialects.plugin import Plugin
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.substitutes import substitute
 from cartwheel.dialects.tags import tags_of
-from cartwheel.dialects.world_plugins import BUILT_IN, Faults, create, misplaced
+from cartwheel.dialects.world_plugins import (
+    BUILT_IN,
+    DISPLAY_ONLY,
+    Faults,
+    create,
+    display_only,
+    misplaced,
+)
 from cartwheel.errors import CartwheelError, StaticModelError
 from cartwheel.options import plugin_file
 from cartwheel.similar_names import meant_one
@@ -61,7 +68,9 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
             own_system = in_world and short_name(tag.filename).startswith("gz-sim-")
             if plugin is None and short_name(tag.filename) in BUILT_IN:
                 continue
-            if plugin is None:
+            if plugin is None and short_name(tag.filename) in DISPLAY_ONLY:
+                part.report(display_only(tag))
+            elif plugin is None:
                 _report_unknown(part, tag, sensor, more)
             elif plugin.for_world or (plugin.for_sensor and sensor is None):
                 part.report(misplaced(tag, "world" if plugin.for_world else "sensor"))

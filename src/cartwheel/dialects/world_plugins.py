@@ -32,6 +32,31 @@ BUILT_IN = {
     "rotors_gazebo_ros_interface_plugin",
 }
 """Plugins for physics, spawning, time, sensors and ROS, which Cartwheel always provides."""
+DISPLAY_ONLY = frozenset(
+    {
+        "BloomVisualPlugin",
+        "DrawForcePlugin",
+        "HeightmapLODPlugin",
+        "KeyboardGUIPlugin",
+        "LensFlareSensorPlugin",
+        "LensFlareVisualPlugin",
+        "LinkPlot3DPlugin",
+        "gz-sim-lens-flare-system",
+        "unitreeDrawForcePlugin",
+    }
+)
+"""Plugins that only change what Gazebo's window shows."""
+
+
+def display_only(tag: PluginTag) -> Diagnostic:
+    """Returns the note about a plugin that only changes what Gazebo's window shows."""
+    return devices.PLUGIN_UNKNOWN.diagnostic(
+        f'plugin "{tag.filename}" only changes what Gazebo\'s window shows, so it has no effect',
+        severity="info",
+        origin=tag.origin,
+        values={"name": tag.filename},
+        mark=tag.filename,
+    )
 
 
 def misplaced(tag: PluginTag, place: str) -> Diagnostic:
@@ -104,6 +129,9 @@ def attach_world(part: Part, shared: Shared) -> list[Behaviour]:
     for tag in part.world.plugins:
         name = short_name(tag.filename)
         if name in BUILT_IN:
+            continue
+        if name in DISPLAY_ONLY:
+            part.report(display_only(tag))
             continue
         plugin = plugin_named(tag.filename, shared.get(PluginFiles).classes)
         if plugin is None:
