@@ -9,6 +9,7 @@ from tests.coded import coded, raises
 
 import cartwheel as cw
 from cartwheel.codes import devices, running
+from cartwheel.errors import PluginError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
 GREETER = """
@@ -29,6 +30,34 @@ class Greeter(Plugin[Parameters]):
 """
 ROBOT = """<robot name="r"><link name="base"/>
 <gazebo><plugin name="g" filename="libgreeter.so"/></gazebo></robot>"""
+
+
+SCALE = """
+from dataclasses import dataclass
+from cartwheel.plugin import Plugin, tag
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    collision: str = tag("collision", doc="The collision.")
+
+class Scale(Plugin[Parameters]):
+    filenames = ("libscale.so",)
+    parameters = Parameters
+
+    def configure(self):
+        self.load = self.advertise("load", "std_msgs/msg/Float64")
+        self.part.schedule(10.0, after=self.weigh)
+
+    def weigh(self):
+        contacts = self.part.contacts([f"tray::{self.config.collision}"])
+        self.load.publish(self.message_class("std_msgs/msg/Float64")(
+            float(sum(each.force[2] for each in contacts))))
+"""
+TRAY = """<robot name="tray"><link name="tray"><inertial><mass value="2"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision name="plate"><geometry><box size="0.5 0.5 0.1"/></geometry></collision></link>
+<gazebo><plugin name="s" filename="libscale.so"><collision>{name}</collision></plugin></gazebo>
+</robot>"""
 
 
 def greeter(folder: Path, word: str, filename: str = "libgreeter.so") -> Path:
@@ -252,6 +281,31 @@ def test_a_handle_instead_of_a_name_is_explained(tmp_path: Path) -> None:
     (tmp_path / "all.py").write_text(wrong)
     (tmp_path / "machine.sdf").write_text(MACHINE)
     with cw.World(plugins=[tmp_path / "all.py"]) as world:
+        with raises(running.PLUGIN_FAILED, PluginError) as caught:
+            world.spawn(tmp_path / "machine.sdf")
+        assert world.models == ("ground_plane",)
+    assert "link.name" in caught.value.message
+    line = 1 + wrong[: wrong.index("part.wrench(self.link)")].count("\n")
+    assert caught.value.message.endswith(f"(all.py:{line})")
+    assert str(caught.value.origin).partition(":")[0].endswith("machine.sdf")
+    with cw.World(plugins=[tmp_path / "all.py"], lenient=True) as world:
         world.spawn(tmp_path / "machine.sdf")
-        (told,) = coded(world, running.PLUGIN_FAILED)
-    assert "link.name" in told.message
+        assert coded(world, running.PLUGIN_FAILED)
+
+
+def test_contacts_of_collisions_by_their_names_in_a_urdf(tmp_path: Path) -> None:
+    (tmp_path / "scale.py").write_text(SCALE)
+    robot = tmp_path / "r.urdf"
+    with cw.World(plugins=[tmp_path / "scale.py"]) as world:
+        for number, name in enumerate(("plate", "plate_collision")):
+            robot.write_text(TRAY.format(name=name))
+            world.spawn(robot, name=name, namespace=name, x=2.0 * number, z=0.05)
+        loads = [world.topic(f"/{name}/load") for name in ("plate", "plate_collision")]
+        world.run(1.0)
+        assert [each.latest.data for each in loads] == pytest.approx([19.6, 19.6], rel=0.01)
+        robot.write_text(TRAY.format(name="plaet"))
+        world.spawn(robot, name="wrong", namespace="wrong", x=4.0)
+        world.topic("/wrong/load")
+        world.run(0.1)
+        (found,) = coded(world, running.PLUGIN_FAILED)
+        assert found.values["cause"] == devices.CONTACT_COLLISION_UNKNOWN.number

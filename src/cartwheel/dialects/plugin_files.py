@@ -112,3 +112,10 @@ def _line(error: BaseException, path: Path) -> int:
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame.lineno or 0 for frame in frames if frame.filename == str(path)]
     return lines[-1] if lines else 0
+
+
+def raised_at(error: BaseException, plugin: type[Plugin[Any]]) -> str:
+    """Where the file of a plugin raised an error, for messages; empty if it did not."""
+    path = getattr(sys.modules.get(plugin.__module__), "__file__", None)
+    line = _line(error, Path(path)) if path else 0
+    return f" ({Path(path).name}:{line})" if path and line else ""

@@ -45,7 +45,7 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
     If a plugin cannot be created and `lenient` is False, the model is not loaded. These plugins
     are always skipped with a report: gz-sim systems in a model that is part of a world, as in
     Gazebo; plugins for sensors without a ``<plugin>``; plugins that would drive a joint of a static
-    model; and plugins that raise an unexpected exception.
+    model; and plugins that raise an unexpected exception, unless they are in a file of the user.
 
     Args:
         part: The model's part of the simulation.
@@ -76,7 +76,10 @@ def attach(part: Part, shared: Shared, *, lenient: bool = False) -> list[Behavio
                 part.report(misplaced(tag, "world" if plugin.for_world else "sensor"))
             else:
                 forgiven = _ANY if lenient or own_system else _HARMLESS
-                plugins += create(part, shared, plugin, tag, sensor, forgiven=forgiven)
+                plugins += create(
+                    part, shared, plugin, tag, sensor,
+                    forgiven=forgiven, raises=plugin in more and not lenient,
+                )  # fmt: skip
         alone = [
             one
             for one in sensors

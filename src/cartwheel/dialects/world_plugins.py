@@ -9,8 +9,8 @@ from cartwheel.description.model import PluginTag, Sensor
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.gz.sensor_tags import SYSTEMS
 from cartwheel.dialects.plugin import Plugin
-from cartwheel.dialects.plugin_files import PluginFiles
-from cartwheel.errors import CartwheelError, Diagnostic, fault
+from cartwheel.dialects.plugin_files import PluginFiles, raised_at
+from cartwheel.errors import CartwheelError, Diagnostic, PluginError, fault
 from cartwheel.options import plugin_file
 from cartwheel.simulation import Part
 from cartwheel.simulation.models.resident import Behaviour
@@ -76,8 +76,22 @@ def create(
     sensor: Sensor | None = None,
     *,
     forgiven: Faults = (CartwheelError,),
+    raises: bool = False,
 ) -> list[Plugin[object]]:
-    """Returns a list of the plugin; empty, with a report, if it cannot be created."""
+    """Returns a list of the plugin; empty, with a report, if it cannot be created.
+
+    Args:
+        part: The model's or the world's part of the simulation.
+        shared: Objects that all components of the simulation share.
+        plugin: Its class.
+        tag: Its tag.
+        sensor: The sensor around the tag.
+        forgiven: Errors after which it is skipped, with a report.
+        raises: Whether an unexpected exception is an error, instead of a report.
+
+    Raises:
+        CartwheelError: It cannot be created.
+    """
     try:
         return [part.made(lambda: plugin(part, shared, tag, sensor))]
     except CartwheelError as error:
@@ -85,8 +99,14 @@ def create(
             error.origin = error.origin or tag.origin
             raise
         part.report(_left_out(tag, error))
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - a plugin's own
-        part.report(_failed(tag, error))
+    except (Exception, SystemExit) as error:
+        found = _failed(tag, error, raises=raises)
+        if raises:
+            raise PluginError(
+                f"{found.message}{raised_at(error, plugin)}", code=found.code, origin=found.origin,
+                values=found.values,
+            ) from error  # fmt: skip
+        part.report(found)
     return []
 
 
@@ -100,11 +120,11 @@ def _left_out(tag: PluginTag, error: CartwheelError) -> Diagnostic:
     )
 
 
-def _failed(tag: PluginTag, error: BaseException) -> Diagnostic:
+def _failed(tag: PluginTag, error: BaseException, *, raises: bool) -> Diagnostic:
     """Returns the diagnostic for a plugin or sensor with an unexpected exception at creation."""
     raise_exit(error)
     return fault(
-        f"{_title(tag)} failed and is ignored",
+        f"{_title(tag)} failed{'' if raises else ' and is ignored'}",
         error,
         tag.origin,
         code=running.PLUGIN_FAILED,

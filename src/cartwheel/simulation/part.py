@@ -8,8 +8,9 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
+from cartwheel.codes.devices import CONTACT_COLLISION_UNKNOWN
 from cartwheel.description.model import WorldDescription
-from cartwheel.errors import Origin
+from cartwheel.errors import Origin, UnknownNameError
 from cartwheel.geometry import Pose
 from cartwheel.simulation.clock import NANOSECONDS, SLOWEST, Task
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
@@ -174,16 +175,38 @@ class Part(MotorRequests):
         return self._random.stream(name, seed=engine.seed, time_ns=engine.time_ns)
 
     def contacts(self, collisions: Collection[str]) -> list[Contact]:
-        """Contacts of these collisions (``link::collision``), each as `first`."""
+        """Contacts of these collisions, each as `first`; after a forward pass.
+
+        Args:
+            collisions: ``link::collision``, with the name of the collision in the URDF or in
+                Gazebo, which appends ``_collision`` to names of a URDF.
+
+        Raises:
+            UnknownNameError: A collision does not exist.
+        """
         model, key = self._engine.model, frozenset(collisions)
         if model is not self._touched_in:
             self._touched_in = model
             self._touched.clear()
         geoms = self._touched.get(key)
         if geoms is None:
-            names = {scoped(self.name, collision) for collision in collisions}
+            names = {scoped(self.name, self._collision(name)) for name in collisions}
             geoms = self._touched[key] = geoms_of(model, names)
         return contacts_of(model, self._engine.data, geoms)
+
+    def _collision(self, name: str) -> str:
+        """The name of a collision in the world, as ``link::collision``."""
+        known: dict[str, str] = {}
+        for link in self.description.links:
+            for each in link.collisions:
+                known[scoped(link.name, each.name)] = scoped(link.name, each.name)
+            for each in link.collisions:
+                for alias in each.aliases:
+                    known.setdefault(scoped(link.name, alias), scoped(link.name, each.name))
+        if name not in known:
+            names = sorted(set(known.values()))
+            raise UnknownNameError("collision", name, names, code=CONTACT_COLLISION_UNKNOWN)
+        return known[name]
 
     def surface(self, link: str, *, origin: Origin | None = None) -> SurfaceHandle:
         """The surfaces of a link's collisions, which can move along themselves.
