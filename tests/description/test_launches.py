@@ -1,5 +1,7 @@
 """What launch files say about robots."""
 
+from pathlib import Path
+
 import pytest
 
 from cartwheel.description.launches import chosen, launches_near, search
@@ -419,3 +421,20 @@ def test_the_launch_file_that_starts_controllers_is_chosen(package):
     use = chosen(folder / "urdf/arm.urdf.xacro", launches)
     assert use.file == folder / "launch/b.launch"
     assert use.spawned == ("arm_controller", "joints")
+
+
+@pytest.mark.parametrize(
+    ("content", "namespace", "name"),
+    [
+        ("type: a/B\njoint: j", 'ns="left/grip_controller"', "grip_controller="),
+        ("type: a/B\njoint: j", "", ""),
+        ("arm_controller: {type: a/B}", 'ns="robot"', ""),
+        ("type: a/B", 'ns="$(arg unknown)"', ""),
+    ],
+)
+def test_the_namespace_of_a_single_controller_is_its_name(package, content, namespace, name):
+    loaded = CONTROL.replace("<rosparam ", f"<rosparam {namespace} ")
+    folder = package(a_dot_launch=ROS1, control_dot_launch=loaded)
+    (folder / "config/a.yaml").write_text(content)
+    (use,) = [each for each in launches_near(folder) if each.file.name == "a.launch"]
+    assert use.controllers == (Path(f"{name}{folder}/config/a.yaml"),)

@@ -9,7 +9,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from cartwheel import yaml_text
 from cartwheel.description.files.package_folders import is_file
+from cartwheel.errors import CartwheelError
 
 UNKNOWN = "\0"
 """A character in texts of which a part is unknown."""
@@ -60,7 +62,8 @@ class LaunchUse:
     unknown: int = 0
     """Number of arguments whose values are unknown."""
     controllers: tuple[Path, ...] = ()
-    """YAML files that it loads."""
+    """YAML files that it loads. One with a single controller, which a launch file loads into the
+    namespace NAME, is ``NAME=FILE``."""
     spawned: tuple[str, ...] = ()
     """Names of the controllers that it starts."""
     simulated: bool = False
@@ -68,6 +71,14 @@ class LaunchUse:
     guessed: bool = False
     """Whether an argument is the whole name of the description, which is not its default. It may
     then be any file, also one that is not a robot."""
+
+
+def _is_single(file: Path) -> bool:
+    """Whether a YAML file contains the parameters of a single controller."""
+    try:
+        return re.search(r"^type\s*:", yaml_text.read(file), re.MULTILINE) is not None
+    except (CartwheelError, OSError, UnicodeDecodeError):
+        return False
 
 
 @dataclass(kw_only=True)
@@ -160,10 +171,19 @@ class Facts:
             elif word not in ("spawn", "load", "start") and re.fullmatch(r"[\w/]+", word):
                 self.spawned.append(word.rsplit("/", 1)[-1])
 
-    def parameters(self, text: str) -> None:
-        """Adds a YAML file if it exists."""
+    def parameters(self, text: str, namespace: str = "") -> None:
+        """Adds a YAML file if it exists.
+
+        Args:
+            text: Its name.
+            namespace: Namespace into which ROS 1 loads it. It is the name of the controller if the
+                file contains the parameters of a single one.
+        """
         path = Path(text.strip())
         if UNKNOWN not in text and path.suffix in (".yaml", ".yml") and is_file(path):
+            name = namespace.strip("/ ").rpartition("/")[2]
+            if re.fullmatch(r"\w+", name) and _is_single(path):
+                path = Path(f"{name}={path}")
             self.yamls.append(path)
 
     def include(self, text: str, arguments: Mapping[str, str], depth: int) -> None:

@@ -70,7 +70,7 @@ class _Reader:
             self._parameter(node)
         elif tag == "rosparam":
             if node.attributes.get("command", "load") == "load" and "file" in node.attributes:
-                facts.parameters(self._value(node, "file"))
+                facts.parameters(self._value(node, "file"), self._value(node, "ns"))
         elif tag == "node":
             kind = "exec" if "exec" in node.attributes else "type"
             facts.node(
