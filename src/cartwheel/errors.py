@@ -343,7 +343,8 @@ class StaticModelError(PluginError):
 class UnknownNameError(CartwheelError):
     """An unknown name; the message lists existing names or suggests the likely one.
 
-    The values are ``kind``, ``name`` and ``meant``, the likely name or an empty string.
+    The values are ``kind``, ``name`` and ``meant``, the likely name or an empty string. A `message`
+    replaces the statement that the name does not exist.
     """
 
     def __init__(
@@ -354,12 +355,13 @@ class UnknownNameError(CartwheelError):
         *,
         code: Code | None = None,
         origin: Origin | None = None,
+        message: str = "",
     ) -> None:
         known = sorted(set(existing))
         shown = name if len(name) <= LONGEST else f"{name[:LONGEST]}…"
         close = closest(name, known, SIMILAR)
         super().__init__(
-            f'{kind} "{shown}" does not exist',
+            message or f'{kind} "{shown}" does not exist',
             code=code,
             origin=origin,
             hint=suggested(close, known),

@@ -148,12 +148,15 @@ class Requests:
                 values={"model": self.name, "joint": name},
             )
         if name not in movable:
+            kind = next((each.type for each in self.description.joints if each.name == name), "")
+            other = f'joint "{name}" has the type {kind}, so it cannot be driven' if kind else ""
             raise UnknownNameError(
                 "movable joint",
                 name,
                 movable,
                 code=devices.PLUGIN_JOINT_UNKNOWN,
                 origin=origin,
+                message=other,
             )
         handle = JointHandle(self.name, name)
         self.handles.append(handle)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.coded import coded
+from tests.coded import coded, raises
 
 from cartwheel.codes import devices, running
 from cartwheel.geometry import Pose, rotate
@@ -275,6 +275,17 @@ def test_torque_is_read_under_its_older_name(make, rosbots, stated, used):
     assert world.session.simulation.model.tendon_frictionloss.tolist() == [used, used]
     (note,) = coded(world, devices.PLUGIN_PARAMETER_OBSOLETE, parameter="torque", torque=used)
     assert note.severity == "info"
+
+
+@pytest.mark.wording
+def test_a_wheel_joint_that_is_fixed_is_said_to_be_so(make, rosbots):
+    from cartwheel.errors import UnknownNameError
+
+    fixed = next(joint.name for joint in rosbots.joints if joint.type == "fixed")
+    wrong = make.with_parameters(rosbots, PLUGIN, leftJoint=fixed)
+    with raises(devices.PLUGIN_JOINT_UNKNOWN, UnknownNameError, name=fixed) as caught:
+        make.world().session.spawn(wrong)
+    assert caught.value.message == f'joint "{fixed}" has the type fixed, so it cannot be driven'
 
 
 def test_unknown_joint_names_the_likely_one(make, rosbots):
