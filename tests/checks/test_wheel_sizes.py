@@ -540,3 +540,24 @@ def test_wheels_of_one_axle_do_not_slide_and_more_axles_turn_more_slowly(places)
     else:
         # The middle axle helps: faster than two axles at ±0.1 m, slower than one.
         assert ratio([-0.1, 0.1]) < ratio(places) < 1.0
+
+
+@pytest.mark.parametrize("crossed", [False, True])
+def test_the_side_of_a_wheel_is_that_of_its_shape(bench, crossed):
+    """A joint may be anywhere on the axle, even beyond the other wheel."""
+    parts = []
+    for side, y in (("rear_left", TRACK / 2), ("rear_right", -TRACK / 2)):
+        at = -y if crossed else y
+        shape = WHEEL.replace("<origin ", f'<origin xyz="0 {y - at} 0" ')
+        parts += [
+            link(f"{side}_wheel", shape),
+            joint(f"{side}_joint", ("base_link", f"{side}_wheel"), f"0 {at} 0", "0 1 0"),
+        ]
+    tags = {"leftJoint": "rear_left_joint", "rightJoint": "rear_right_joint"}
+    drive = plugin("libgazebo_ros_diff_drive.so", **tags)
+    body = link("base_link") + "".join(parts)
+    text = f'<robot name="car">{body}<gazebo>{drive}</gazebo></robot>'
+    assert not bench.find(text, "wheels-swapped")
+    swapped = dict(zip(tags, reversed(tags.values()), strict=True))
+    other = text.replace(drive, plugin("libgazebo_ros_diff_drive.so", **swapped))
+    assert bench.find(other, "wheels-swapped")

@@ -203,11 +203,10 @@ def gap_between(robot: Robot, left: Joint, right: Joint) -> Floats:
     """Vector from the right wheel to the left wheel in the model frame, shape (3,), m."""
     places = [np.array(wheel_place(robot, joint).position) for joint in (left, right)]
     gap = np.asarray(places[0] - places[1])
-    if np.linalg.norm(gap) < _SAME:
-        # The wheels' shapes are offset from their joints.
-        middles = [np.array(wheel_middle(robot, joint)) for joint in (left, right)]
-        gap = np.asarray(middles[0] - middles[1])
-    return gap
+    middles = [np.array(wheel_middle(robot, joint)) for joint in (left, right)]
+    between = np.asarray(middles[0] - middles[1])
+    # The wheels' shapes may be offset from their joints, even to the other side.
+    return between if np.linalg.norm(gap) < _SAME or gap @ between < 0 else gap
 
 
 def is_legacy(drive: Drive) -> bool:

@@ -24,11 +24,11 @@ from cartwheel.errors import Diagnostic
 @rule(robot_codes.WHEELS_SWAPPED)
 def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in wheel_pairs(subject):
-        sides = [wheel_place(robot, joint).y for joint in (left, right)]
-        if sides[0] == sides[1]:
-            sides = [wheel_middle(robot, joint)[1] for joint in (left, right)]
         element = drive.left_tag
         gap = gap_between(robot, left, right)
+        sides = [wheel_place(robot, joint).y for joint in (left, right)]
+        if (sides[0] - sides[1]) * gap[1] <= 0:
+            sides = [wheel_middle(robot, joint)[1] for joint in (left, right)]
         if element is None or is_legacy(drive):
             continue
         senses = axis_senses(robot, left, right)
