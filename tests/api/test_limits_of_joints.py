@@ -8,6 +8,7 @@ from tests.coded import raises
 from tests.dialects.ros_control.arms import (
     ARM,
     GRAVITY,
+    INERTIA,
     MASS,
     ROS1,
     beam,
@@ -189,12 +190,36 @@ def test_a_weak_drive_does_not_move(make, rosbots):
     assert cart.velocity.linear[0] == pytest.approx(0.5, abs=0.01)
 
 
+def test_a_motor_that_has_failed(arm, make, rosbots):
+    """The joint turns freely: a beam falls, and a wheel rolls."""
+    model, joint = arm("Position")
+    world = world_of(model)
+    world.run(0.1)
+    joint.effort_limit = 0.0
+    assert joint.effort_limit == 0.0
+    world.run(0.1)
+    # Its angular acceleration is m g l / (m l² + I).
+    assert joint.velocity == pytest.approx(0.1 * WEIGHT / (MASS * ARM**2 + INERTIA), rel=0.02)
+    other = make.world()
+    cart = other.spawn(rosbots, z=0.05)
+    other.run(0.2)
+    cart.joints["wheel_left_joint"].effort_limit = 0
+    cart.publish("/part2_cmr/cmd_vel", linear_x=0.3)
+    other.run(3.0)
+    assert cart.pose.yaw > 0.2
+    cart.joints["wheel_left_joint"].effort_limit = 20.0
+    other.run(1.0)
+    assert abs(cart.velocity.angular[2]) < 0.05
+
+
 def test_limits_that_a_joint_cannot_have(arm, make, rosbots):
     model, joint = arm("Position")
     for name in ("effort_limit", "velocity_limit"):
-        for value in (0.0, -1.0, math.nan, math.inf, "much"):
+        for value in (-1.0, math.nan, math.inf, "much"):
             with raises(VALUE_INVALID, name=name):
                 setattr(joint, name, value)
+    with raises(VALUE_INVALID, name="velocity_limit"):
+        joint.velocity_limit = 0.0
     assert (joint.effort_limit, joint.velocity_limit) == (100.0, 10.0)
     cart = world_of(model).spawn(rosbots, name="cart", y=3.0)
     wheel = cart.joints["wheel_left_joint"]

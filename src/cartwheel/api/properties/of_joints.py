@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from cartwheel.simulation import Simulation
 
 
+_FAILED = 1e-9
+"""Maximum effort of a motor that has failed, N m or N. In descriptions, 0 is unlimited."""
+
+
 @dataclass(frozen=True, slots=True)
 class Gains:
     """Gains of a PID controller of a joint."""
@@ -68,22 +72,23 @@ class JointProperties(Handle):
         """Maximum effort of the joint's motor or controller, N m or N; None is unlimited.
 
         Setting it replaces the limits of the file, the plugin and the controller, for a weak or a
-        strong motor.
+        strong motor. 0 is a motor that has failed: the joint turns freely.
 
         Raises:
-            CartwheelError: The limit is not finite, or not above 0.
+            CartwheelError: The limit is not finite, or negative.
             UnknownNameError: The model does not exist any more.
             SimulationError: The world is closed.
         """
         with self._joints.world.lock:
             simulation = self._joints.world.session.simulation
             self._find(simulation)
-            return simulation.truth.limits.effort(self._joints.model, self.name)
+            found = simulation.truth.limits.effort(self._joints.model, self.name)
+            return 0.0 if found == _FAILED else found
 
     @effort_limit.setter
     def effort_limit(self, effort: float | None) -> None:
         if effort is not None:
-            effort = scalar(effort, "effort_limit", above=0.0)
+            effort = scalar(effort, "effort_limit", least=0.0) or _FAILED
         self._limit(effort=effort)
 
     @property
