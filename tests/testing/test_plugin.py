@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -9,10 +10,33 @@ import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from tests import launching
 
+from cartwheel.msgs.nav_msgs import Odometry
+from cartwheel.msgs.sensor_msgs import Image, LaserScan
+from cartwheel.msgs.tf2_msgs import TFMessage
+from cartwheel.testing.summary import summary
+
+SEEDS = """
+import pytest
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_parameter(world, seed):
+    assert world.session.simulation.engine.seed == seed
+
+@pytest.mark.seed(3)
+@pytest.mark.parametrize("seed", ["a", 6])
+def test_mark(world, seed):
+    assert world.session.simulation.engine.seed == 3
+
+@pytest.mark.parametrize("seed", [True, 2.0, None])
+def test_something_else(world, seed):
+    assert world.session.simulation.engine.seed == 0
+"""
 PASSING = """
 import pytest
 
@@ -72,6 +96,25 @@ def test_marks_select_world_robots_and_seed(pytester_run):
     assert "3 passed" in done.stdout
 
 
+def test_a_parameter_is_the_seed(pytester_run):
+    done = pytester_run(SEEDS)
+    assert "7 passed" in done.stdout, done.stdout
+
+
+def test_a_summary_of_a_message() -> None:
+    scan = LaserScan(ranges=[math.inf, *range(10)], intensities=[1, 2.5], range_max=0.1)
+    found = summary(scan)
+    assert "ranges: 11 numbers, 0 to 9" in found and "intensities: [1, 2.5]" in found
+    assert "range_max: 0.1" in found and not any("header" in each for each in found)
+    odometry = Odometry(child_frame_id="x" * 300)
+    odometry.pose.pose.position.x = 1.25
+    text = "\n".join(summary(odometry))
+    assert "    position: x 1.25, y 0, z 0" in text and "covariance" not in text
+    assert "(300 characters)" in text
+    assert summary(Image(data=np.zeros(20, np.uint8)))[-1] == "data: 20 numbers, 0 to 0"
+    assert summary(TFMessage()) == ["transforms: 0 x geometry_msgs/msg/TransformStamped"]
+
+
 def test_ini_and_options_name_a_robot(pytester_run):
     test = "def test_it(robot, world):\n    assert ('post' in world.models) is {}\n"
     ini = "cartwheel_robot = rosbots.xacro\ncartwheel_world = post"
@@ -93,7 +136,7 @@ def test_files_beside_the_test_are_found(pytester_run, tmp_path):
 
 
 def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
-    done = pytester_run(FAILING, "--cartwheel-artifacts=out")
+    done = pytester_run(FAILING, "--cartwheel-artifacts=out", "--junit-xml=junit.xml")
     assert done.returncode == 1
     for text in (
         "cartwheel: world", "cartwheel: last messages", "cartwheel: artifacts", "/odom at 1.000",
@@ -104,6 +147,12 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
     assert "/robot_description at" not in done.stdout and "<?xml" not in done.stdout
     (recording,) = (tmp_path / "out").glob("*.mcap")
     (picture,) = (tmp_path / "out").glob("*.png")
+    properties = ElementTree.parse(tmp_path / "junit.xml").iter("property")
+    assert {each.get("name"): each.get("value") for each in properties} == {
+        "cartwheel_recording": str(recording), "cartwheel_picture": str(picture),
+    }  # fmt: skip
+    assert "linear_acceleration: x " in done.stdout and "covariance" not in done.stdout
+    assert "name: [wheel_left_joint, wheel_right_joint]" in done.stdout
     assert picture.stat().st_size > 1000 and (tmp_path / "out/.gitignore").exists()
     info = launching.run(
         [sys.executable, "-m", "cartwheel", "info", str(recording)],

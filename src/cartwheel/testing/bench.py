@@ -89,7 +89,7 @@ class _Marks:
         self._folder, self._root = node.path.parent, config.rootpath
         self.options: dict[str, Any] = {}
         self.world: str | Path = self._file(str(config.getini("cartwheel_world")))
-        self.seed = 0
+        self.seed = _parameter(node, "seed")
         robots: list[Any] = []
         # From the outermost mark to the innermost one, which takes precedence.
         for mark in reversed(list(node.iter_markers("cartwheel"))):
@@ -145,6 +145,13 @@ class _Marks:
             if (folder / name).is_file():
                 return folder / name
         return name
+
+
+def _parameter(node: pytest.Item, name: str) -> int:
+    """A whole number among the parameters of a test; 0 without one."""
+    call = getattr(node, "callspec", None)
+    value = None if call is None else call.params.get(name)
+    return value if isinstance(value, int) and not isinstance(value, bool) else 0
 
 
 def _listed(value: Any) -> list[Any]:

@@ -144,4 +144,4 @@ def pytest_runtest_makereport(
     if witnesses is not None and call.excinfo is not None and call.when != "teardown":
         report = outcome.get_result()
         if report.failed:
-            report.sections += witnesses.sections(item)
+            witnesses.complete(report, item)

@@ -13,8 +13,8 @@ import pytest
 
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.errors import CartwheelError, RecordingError
-from cartwheel.messages.echo import to_yaml
 from cartwheel.testing.recent import Recent
+from cartwheel.testing.summary import summary
 
 if TYPE_CHECKING:
     from cartwheel.api import World
@@ -26,8 +26,6 @@ _MOST_LINES = 12
 _UNINFORMATIVE = ("dynamic_reconfigure/", "rosgraph_msgs/", "sensor_msgs/msg/CameraInfo")
 """Types of messages that the report omits."""
 _TEXT = "std_msgs/msg/String"
-_LONGEST = 300
-"""Characters of a line of a message in a report."""
 
 
 class Report:
@@ -52,6 +50,8 @@ class Report:
     ) -> None:
         self.world, self._recent, self._item = world, recent, item
         self._robots, (self._number, self._count) = robots, number
+        self.files: list[tuple[str, object]] = []
+        """The files that `sections` has written, as properties of the test."""
 
     def sections(self) -> list[tuple[str, str]]:
         """Titles and texts."""
@@ -94,10 +94,10 @@ class Report:
             and not (latest[1].__msgtype__ == _TEXT and self._recent.is_latched(topic))
         ]
         for topic, time_ns, message in shown[:_MOST_TOPICS]:
-            lines = _without_header(to_yaml(message, arrays=False).splitlines())
+            lines = summary(message)
             if len(lines) > _MOST_LINES:
                 lines = [*lines[:_MOST_LINES], "…"]
-            body = "\n".join(f"  {_shortened(line.rstrip())}" for line in lines)
+            body = "\n".join(f"  {line}" for line in lines)
             parts.append(f"{topic} at {time_ns / 1e9:.3f} s\n{body}")
         return "\n".join(parts)
 
@@ -121,6 +121,7 @@ class Report:
             self._recent.write(path)
         except (RecordingError, OSError) as error:
             return [f"recording: {error}"]
+        self.files.append(("cartwheel_recording", str(path)))
         return [f"recording: {path}", f"replay:    {shlex.join(['cartwheel', 'play', str(path)])}"]
 
     def _picture(self, path: Path) -> list[str]:
@@ -128,6 +129,7 @@ class Report:
             self.world.picture().save(path)
         except (CartwheelError, OSError) as error:
             return [f"picture:   none: {error}"]
+        self.files.append(("cartwheel_picture", str(path)))
         return [f"picture:   {path}"]
 
 
@@ -172,16 +174,3 @@ def _make(folder: Path) -> None:
     if not folder.exists():
         folder.mkdir(parents=True)
         (folder / ".gitignore").write_text("*\n")
-
-
-def _shortened(line: str) -> str:
-    if len(line) <= _LONGEST:
-        return line
-    return f"{line[:_LONGEST]}… ({len(line)} characters)"
-
-
-def _without_header(lines: list[str]) -> list[str]:
-    """The lines of a message without its header, whose time is shown elsewhere."""
-    if lines[:1] != ["header: "]:
-        return lines
-    return lines[next((i for i, line in enumerate(lines[1:], 1) if line[:1] != " "), len(lines)) :]

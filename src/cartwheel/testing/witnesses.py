@@ -84,8 +84,8 @@ class Witnesses:
         if self._item is not None and self._config.getoption("--cartwheel-view"):
             show(world, self._item)
 
-    def sections(self, item: pytest.Item) -> list[tuple[str, str]]:
-        """Titles and texts of the report of a failed test."""
+    def complete(self, report: pytest.TestReport, item: pytest.Item) -> None:
+        """Adds sections to the report of a failed test, and the files to its properties."""
         programs = [
             ("cartwheel: program", each.summary)
             for each in self._programs
@@ -97,14 +97,16 @@ class Witnesses:
             for each in self._known
             if (world := each.world) is not None and (each.used or world in given)
         ][-_MOST_REPORTED:]
-        found = []
         for index, (each, world) in enumerate(used, 1):
-            report = Report(world, each.recent, item, robots=each.robots, number=(index, len(used)))
+            own = Report(world, each.recent, item, robots=each.robots, number=(index, len(used)))
             try:
-                found += report.sections()
+                report.sections += own.sections()
             except Exception as error:  # noqa: BLE001 - the error of the test is to be shown
-                found.append(("cartwheel", f"no report: {type(error).__name__}: {error}"))
-        return found + programs
+                text = f"no report: {type(error).__name__}: {error}"
+                report.sections.append(("cartwheel", text))
+            # The JUnit report takes them from the report of the teardown, which follows.
+            item.user_properties += own.files
+        report.sections += programs
 
 
 class _Witness:
