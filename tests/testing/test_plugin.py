@@ -152,7 +152,7 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
         "cartwheel_recording": str(recording), "cartwheel_picture": str(picture),
     }  # fmt: skip
     assert "linear_acceleration: x " in done.stdout and "covariance" not in done.stdout
-    assert "name: [wheel_left_joint, wheel_right_joint]" in done.stdout
+    assert "name: [wheel_right_joint, wheel_left_joint]" in done.stdout
     assert picture.stat().st_size > 1000 and (tmp_path / "out/.gitignore").exists()
     info = launching.run(
         [sys.executable, "-m", "cartwheel", "info", str(recording)],
