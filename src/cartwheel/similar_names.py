@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 from collections.abc import Iterable, Sequence
 
 SIMILAR = 0.6
@@ -15,7 +16,7 @@ LONGEST = 500
 
 def meant_one(name: str, existing: Iterable[str], *, cutoff: float = 0.75) -> str:
     """The most similar name in `existing`, or an empty string."""
-    close = closest(name, list(existing), cutoff)
+    close = closest(name, existing, cutoff)
     return close[0] if close else ""
 
 
@@ -39,20 +40,26 @@ def suggested(close: Sequence[str], known: Sequence[str]) -> str:
     return f"Valid names: {shown}{', …' if len(known) > 12 else ''}."
 
 
-def closest(name: str, known: list[str], cutoff: float) -> list[str]:
+def closest(name: str, known: Iterable[str], cutoff: float) -> list[str]:
     """The most similar name; empty for overlong names, which remote clients may send.
+
+    The last results are kept: an error may recur for each message, and to compare with all types
+    of messages takes 10 ms.
 
     Of the names of topics, those that end with all of the name are the most similar ones:
     ``/base/odom`` for ``/odom``, with the fewest parts. If none is similar, those with a similar
     last part: ``/base/odom`` for ``/odm``.
     """
-    if len(name) > LONGEST:
-        return []
+    return [] if len(name) > LONGEST else list(_closest(name, tuple(known), cutoff))
+
+
+@functools.lru_cache(maxsize=64)
+def _closest(name: str, known: tuple[str, ...], cutoff: float) -> tuple[str, ...]:
     if "/" in name:
         end = f"/{name.strip('/')}"
         scoped = [each for each in known if len(each) <= LONGEST and each.endswith(end)]
         if scoped and name not in known:
-            return [min(scoped, key=lambda each: (each.count("/"), each))]
+            return (min(scoped, key=lambda each: (each.count("/"), each)),)
     best = most_similar(name, known, cutoff)
     if best is None and "/" in name:
         ends: dict[str, str] = {}
@@ -60,7 +67,7 @@ def closest(name: str, known: list[str], cutoff: float) -> list[str]:
             ends.setdefault(each[:LONGEST].rpartition("/")[2], each)
         last = most_similar(name.rpartition("/")[2], ends, max(cutoff, _SIMILAR_END))
         best = None if last is None else ends[last]
-    return [best] if best is not None else []
+    return (best,) if best is not None else ()
 
 
 def most_similar(name: str, known: Iterable[str], cutoff: float) -> str | None:
