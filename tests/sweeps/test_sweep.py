@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests import launching
 from tests.coded import raises
 from tests.sweeps.duties import counted, drive
 
@@ -60,19 +61,19 @@ def test_a_case_that_fails_is_run_again(built, tmp_path, how):
 def test_a_sweep_that_was_killed_continues(tmp_path):
     script = tmp_path / "study.py"
     script.write_text(
-        "import cartwheel as cw\n"
+        "import sys, cartwheel as cw\n"
         "def far(world, case):\n"
         "    world.publish('/part2_cmr/cmd_vel', linear_x=case['speed'])\n"
         "    world.run(case['seconds'])\n"
         "    return {'x': world.model('rosbots').pose.x}\n"
         "if __name__ == '__main__':\n"
         "    built = cw.build('empty', ['rosbots.xacro'])\n"
-        "    cases = [{'speed': i / 100, 'seconds': 5.0} for i in range(40)]\n"
-        "    table = cw.sweep(far, cases, built, results='out.jsonl', jobs=2)\n"
+        "    cases = [{'speed': i / 100, 'seconds': 2.0} for i in range(40)]\n"
+        "    table = cw.sweep(far, cases, built, results='out.jsonl', jobs=int(sys.argv[1]))\n"
         "    import json; print(json.dumps(table.columns()))\n"
     )
     out = tmp_path / "out.jsonl"
-    first = subprocess.Popen([sys.executable, script], cwd=tmp_path, stdout=subprocess.DEVNULL)
+    first = subprocess.Popen([sys.executable, script, "2"], cwd=tmp_path, stdout=subprocess.DEVNULL)
     end = time.monotonic() + 120
     while not (out.exists() and len(out.read_text().splitlines()) > 4):
         assert time.monotonic() < end and first.poll() is None
@@ -83,8 +84,8 @@ def test_a_sweep_that_was_killed_continues(tmp_path):
     # The line that it wrote when it was killed.
     with out.open("a") as file:
         file.write('{"case": {"spe')
-    run = [sys.executable, script]
-    second = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True)
+    options = {"cwd": tmp_path, "capture_output": True, "text": True, "check": True}
+    second = launching.run([sys.executable, script, "2"], **options)
     rows = [json.loads(line) for line in out.read_text().splitlines()][1:]
     assert done >= 4 and len(rows) == 40
     assert len({json.dumps(row["case"]) for row in rows}) == 40
@@ -92,7 +93,7 @@ def test_a_sweep_that_was_killed_continues(tmp_path):
     assert table["speed"] == [i / 100 for i in range(40)]
     assert table["x"] == sorted(table["x"]) and table["error"] == [""] * 40
     out.unlink()
-    whole = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True)
+    whole = launching.run([sys.executable, script, "0"], **options)
     assert whole.stdout == second.stdout
 
 
