@@ -45,6 +45,12 @@ def placed(world: cw.World, random: np.random.Generator) -> None:
     world.model("rosbots").pose = cw.Pose((random.uniform(0.0, 1.0), 0.0, 0.0))
 
 
+def drive(world: cw.World, action: np.ndarray) -> None:
+    """Drives at a speed and turn rate."""
+    speed, turn = action.tolist()
+    world.publish("/part2_cmr/cmd_vel", linear_x=speed, angular_z=turn)
+
+
 OBS = {
     "/imu/data": ["angular_velocity.z", "linear_acceleration.x"],
     "speed": ("/odom", "twist.twist.linear.x"),

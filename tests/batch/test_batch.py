@@ -9,17 +9,19 @@ import numpy as np
 import pytest
 from tests.batch import duties
 from tests.coded import raises
+from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_plugin, ros2_system
 
 import cartwheel as cw
 from cartwheel import arrays
 from cartwheel.batch import Batch
-from cartwheel.codes.graph import FIELD_UNKNOWN, NO_MESSAGE, TOPIC_UNKNOWN
+from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID, NO_MESSAGE, TOPIC_UNKNOWN
 from cartwheel.codes.world import (
     BATCH_CLOSED,
     BATCH_INVALID,
     BATCH_PROCESS_ENDED,
     NUMBER_OUT_OF_RANGE,
 )
+from cartwheel.messages.making import expanded, maker
 
 N = 5
 ACTIONS = np.random.default_rng(0).uniform(-1.0, 1.0, (8, N, 2))
@@ -283,3 +285,70 @@ def test_an_interrupted_step_leaves_no_answer_for_the_next(built, monkeypatch):
         found = made.step(ACTIONS[1])
         for name, value in expected[2].items():
             assert np.array_equal(found[name], value), name
+
+
+def test_a_function_acts_as_fields_do(built):
+    applied = {"drive": (duties.drive, 2)}
+    with batch(built, 2) as one, batch(built, 2, act=applied) as other:
+        assert other.action_names == ("drive 0", "drive 1")
+        one.reset()
+        other.reset()
+        for actions in ACTIONS[:3, :2]:
+            expected, found = one.step(actions), other.step(actions)
+            assert all(np.array_equal(expected[name], found[name]) for name in expected)
+
+
+ARM = robot(
+    beam("beam", "world") + beam("tip", "world")
+    + ros2_system(ros2_joint("beam_joint", "position"), ros2_joint("tip_joint", "position")),
+    ros2_plugin(),
+)  # fmt: skip
+GROUP = """
+controller_manager:
+  ros__parameters:
+    arm: {type: position_controllers/JointGroupPositionController}
+arm:
+  ros__parameters: {joints: [beam_joint, tip_joint]}
+"""
+
+
+def joints(world):
+    arm = world.models[-1]
+    return [world.model(arm).joint(each) for each in ("beam_joint", "tip_joint")]
+
+
+@pytest.mark.parametrize("fields", [["data[:2]"], ["data[0]", "data[1]"], ["data[1]", "data[0]"]])
+def test_elements_of_an_array_are_columns(tmp_path, fields):
+    (tmp_path / "group.yaml").write_text(GROUP)
+    arm = cw.build("empty", [{"robot": ARM, "controllers": tmp_path / "group.yaml"}])
+    with Batch(arm, 1, act={"/arm/commands": fields}, obs={"q": joints}, workers=0) as made:
+        swapped = fields[0] == "data[1]"
+        assert made.action_names[0] == f"/arm/commands data[{int(swapped)}]"
+        made.reset()
+        for _ in range(10):
+            ((first, second),) = made.step(np.array([[0.3, -0.2]]))["q"]
+        expected = (-0.2, 0.3) if swapped else (0.3, -0.2)
+        assert (first, second) == pytest.approx(expected, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("field", "code"),
+    [
+        ("data", FIELD_UNKNOWN), ("data[:0]", FIELD_UNKNOWN), ("data[99999]", FIELD_UNKNOWN),
+        ("data[x]", FIELD_UNKNOWN), ("date[0]", FIELD_UNKNOWN), ("data[0].x", FIELD_VALUE_INVALID),
+    ],
+)  # fmt: skip
+def test_what_is_no_element_is_refused(field, code):
+    with raises(code):
+        maker("std_msgs/msg/Float64MultiArray", expanded(field))
+
+
+def test_elements_within_messages_are_set():
+    make = maker("trajectory_msgs/msg/JointTrajectory", ["points[1].positions[2]"])
+    message = make([0.5])
+    assert message.points[0].positions.tolist() == []
+    assert message.points[1].positions.tolist() == [0.0, 0.0, 0.5]
+    covariance = maker("geometry_msgs/msg/PoseWithCovariance", ["covariance[7]"])([2.0]).covariance
+    assert len(covariance) == 36 and covariance[7] == covariance.sum() == 2.0
+    with raises(FIELD_UNKNOWN):
+        maker("geometry_msgs/msg/PoseWithCovariance", ["covariance[36]"])

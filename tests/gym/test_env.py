@@ -267,3 +267,24 @@ def test_what_cannot_be_restored_is_refused_by_name(job):
     assert "/lamp" in str(caught.value)
     if env is not None:
         env.close()
+
+
+def drive(world, action):
+    speed, turn = action.tolist()
+    world.publish("/part2_cmr/cmd_vel", linear_x=speed, angular_z=turn)
+
+
+def test_a_function_and_elements_of_arrays_act(job):
+    applied = dataclasses.replace(job, act={"drive": (drive, [(-1.0, 1.0), (-2.0, 2.0)])})
+    one, other = Env(job), Env(applied)
+    assert other.action_space.high.tolist() == [1.0, 2.0]
+    one.reset(seed=4)
+    other.reset(seed=4)
+    expected, found = one.step(FORWARD)[0], other.step(FORWARD)[0]
+    assert all(np.array_equal(expected[name], found[name]) for name in expected)
+    one.close()
+    other.close()
+    group = dataclasses.replace(job, act={"/arm/commands": {"data[:3]": (-0.5, 1.5)}})
+    assert group.action_space().low.tolist() == [-0.5] * 3
+    with raises(BATCH_INVALID):
+        Env(dataclasses.replace(job, act={"drive": (drive, [(1.0, 1.0)])}))

@@ -1,6 +1,6 @@
 """Many worlds that run together, with actions and observations as arrays."""
 
 from cartwheel.batch.batch import Batch
-from cartwheel.batch.plan import Actions, Observation, Observations, Vary
+from cartwheel.batch.plan import Actions, Apply, Observation, Observations, Vary
 
-__all__ = ["Actions", "Batch", "Observation", "Observations", "Vary"]
+__all__ = ["Actions", "Apply", "Batch", "Observation", "Observations", "Vary"]

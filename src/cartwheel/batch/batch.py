@@ -36,7 +36,9 @@ class Batch:
         built: What `cartwheel.build` returned.
         n: Number of worlds.
         act: For each topic, the fields that the columns of the actions set, such as
-            ``{"/cmd_vel": ["linear.x", "angular.z"]}``.
+            ``{"/cmd_vel": ["linear.x", "angular.z"]}``. ``data[0]`` is an element of an array, and
+            ``data[:3]`` are its first three. Or for any name, a tuple of a function and its number
+            of columns: it receives the `World` and the columns as an array before each step.
         obs: The observations by name. Each is a field of the newest message of the topic of this
             name, a list of fields, a tuple of a topic and its fields, or a function that receives
             the `World` and returns numbers. The field ``data`` of an image is its picture, of shape
@@ -107,7 +109,7 @@ class Batch:
         self._edges = np.linspace(0, n, count + 2).astype(int).tolist()
         """The first world of each process, from this one on, and the number of worlds."""
         if count and start_method != "fork" and (reason := unpicklable(self._plan)):
-            error = invalid(f"obs or vary cannot be passed to processes: {reason}", "workers")
+            error = invalid(f"act, obs or vary cannot be passed to processes: {reason}", "workers")
             error.hint = f"{AT_TOP_LEVEL}, or pass workers=0."
             raise error
         try:
@@ -132,7 +134,7 @@ class Batch:
 
     @property
     def action_names(self) -> tuple[str, ...]:
-        """Topic and field of each column of the actions."""
+        """Topic and field of each column of the actions, or name and number of a function's."""
         return self._plan.action_names
 
     @property

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cartwheel.arrays import depth, image, reader
-from cartwheel.batch.plan import AbsoluteVary, Plan, TopicFields, invalid
+from cartwheel.batch.plan import AbsoluteVary, Applied, Plan, TopicFields, invalid
 from cartwheel.batch.start import Start
 from cartwheel.codes.graph import NO_MESSAGE
 from cartwheel.errors import CartwheelError
 from cartwheel.geometry import Array
-from cartwheel.messages.making import Maker, maker
+from cartwheel.messages.making import maker
 
 if TYPE_CHECKING:
     from cartwheel.api import Built, World
@@ -41,15 +41,15 @@ class Lane:
         self._plan, self._seed = plan, seed
         self.world: World = built.world(seed=seed, _watched=False)
         self._newest: dict[str, Any] = {}
-        self._actions: list[tuple[str, str, Maker, slice]] = []
+        self._actions: list[Callable[[Sequence[float]], object]] = []
         self._sources: list[tuple[str, TopicFields | Observer, list[Reader]]] = []
         self._start: Start | None = None
         try:
             column = 0
-            for topic, names in plan.act.items():
-                kind = self.world.graph.topic(topic).type
-                columns = slice(column, column + len(names))
-                self._actions.append((topic, kind, maker(kind, names), columns))
+            for name, action in plan.act.items():
+                count = action.count if isinstance(action, Applied) else len(action)
+                columns = slice(column, column + count)
+                self._actions.append(self._action(name, action, columns))
                 column = columns.stop
             for name, each in plan.obs.items():
                 readers = []
@@ -65,6 +65,18 @@ class Lane:
         except BaseException:
             self.world.close()
             raise
+
+    def _action(
+        self, name: str, action: Sequence[str] | Applied, columns: slice
+    ) -> Callable[[Sequence[float]], object]:
+        """A function that applies its columns of the actions."""
+        world, graph = self.world, self.world.graph
+        if isinstance(action, Applied):
+            function = action.function
+            return lambda values: function(world, np.array(values[columns]))
+        kind = graph.topic(name).type
+        make = maker(kind, action)
+        return lambda values: graph.publish(name, kind, make(values[columns]))
 
     def _keeper(self, topic: str) -> Callable[[Any], None]:
         def keep(message: Any) -> None:
@@ -86,10 +98,9 @@ class Lane:
             self._newest[topic] = None
 
     def act(self, action: Sequence[float]) -> None:
-        """Publishes the actions."""
-        graph = self.world.graph
-        for topic, kind, make, columns in self._actions:
-            graph.publish(topic, kind, make(action[columns]))
+        """Publishes or applies the actions."""
+        for each in self._actions:
+            each(action)
 
     def observe(self) -> Values:
         """The observations at the current time.

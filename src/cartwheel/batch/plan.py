@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -11,13 +11,18 @@ import numpy as np
 
 from cartwheel.codes.world import BATCH_INVALID
 from cartwheel.errors import CartwheelError
+from cartwheel.geometry import Array
+from cartwheel.messages.making import expanded
 
 if TYPE_CHECKING:
     from cartwheel.api import World
 
-Actions = Mapping[str, Sequence[str]]
+Apply = Callable[["World", Array], object]
+"""Applies an action to a world: receives the world and some columns of the actions, shape (k,)."""
+Actions = Mapping[str, Sequence[str] | tuple[Apply, int]]
 """The fields that are set in the messages of each topic, such as
-``{"/cmd_vel": ["linear.x", "angular.z"]}``."""
+``{"/cmd_vel": ["linear.x", "angular.z"]}``. Or for any name, a function and its number of columns.
+"""
 Fields = str | Sequence[str]
 """A field that is a number or an array of numbers, such as ``ranges``; or several numbers."""
 Observation = Fields | tuple[str, Fields] | Callable[["World"], Any]
@@ -52,6 +57,14 @@ class TopicFields:
 
 
 @dataclass(frozen=True)
+class Applied:
+    """Columns of the actions that a function applies."""
+
+    function: Apply
+    count: int
+
+
+@dataclass(frozen=True)
 class Plan:
     """How each world of a batch runs. It can be pickled if its functions can.
 
@@ -59,7 +72,7 @@ class Plan:
         CartwheelError: A value is invalid.
     """
 
-    act: Mapping[str, tuple[str, ...]]
+    act: Mapping[str, tuple[str, ...] | Applied]
     obs: Mapping[str, TopicFields | Callable[[World], Any]]
     period: float
     """Simulation time of a step, s."""
@@ -70,11 +83,7 @@ class Plan:
         cls, act: Actions, obs: Observations, *, period: float, vary: Vary | None = None
     ) -> Plan:
         """Checks and completes the arguments of `Batch`."""
-        actions: dict[str, tuple[str, ...]] = {}
-        for topic, fields in act.items():
-            if isinstance(fields, str) or not fields:
-                raise invalid(f'the action "{topic}" must have a list of fields', "act")
-            actions[topic] = tuple(fields)
+        actions = {name: _action(name, each) for name, each in act.items()}
         if not obs:
             raise invalid("a batch requires at least one observation", "obs")
         return cls(actions, {name: _observation(name, each) for name, each in obs.items()}, period,
@@ -82,13 +91,35 @@ class Plan:
 
     @property
     def action_names(self) -> tuple[str, ...]:
-        """Topic and field of each column of the actions."""
-        return tuple(f"{topic} {field}" for topic, field in self._actions())
+        """Topic and field of each column of the actions, or the name and number of a function's."""
+        return tuple(
+            f"{name} {field}"
+            for name, each in self.act.items()
+            for field in (range(each.count) if isinstance(each, Applied) else each)
+        )
 
-    def _actions(self) -> Iterator[tuple[str, str]]:
-        for topic, fields in self.act.items():
-            for field in fields:
-                yield topic, field
+
+def _action(name: str, value: Any) -> tuple[str, ...] | Applied:
+    if isinstance(value, Sequence) and not isinstance(value, str) and value:
+        if all(isinstance(each, str) for each in value):
+            return columns_of(value)
+        if len(value) == 2 and callable(value[0]):
+            function, count = value
+            if isinstance(count, int) and not isinstance(count, bool) and count >= 1:
+                return Applied(function, count)
+    raise invalid(
+        f'the action "{name}" must have a list of fields, or a function and its number of columns',
+        "act",
+    )
+
+
+def columns_of(fields: Iterable[str]) -> tuple[str, ...]:
+    """The field that each column sets: two for ``data[:2]``.
+
+    Raises:
+        GraphError: The length of an array is invalid.
+    """
+    return tuple(each for field in fields for each in expanded(field))
 
 
 def _observation(name: str, value: Any) -> Any:

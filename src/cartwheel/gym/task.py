@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cartwheel.batch import Observations, Vary
+from cartwheel.batch import Actions, Apply, Observations, Vary
 from cartwheel.batch.lane import Values
-from cartwheel.batch.plan import invalid
+from cartwheel.batch.plan import columns_of, invalid
 from cartwheel.geometry import Array
 
 if TYPE_CHECKING:
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from cartwheel.api import Built
 
 Range = tuple[float, float]
+Action = Mapping[str, Range] | tuple[Apply, Sequence[Range]]
+"""The fields of a topic's messages with their limits, or a function with the limits of each column
+that it receives."""
 Reward = Callable[[Values, Array, Values], Any]
 """Receives the observations before a step, the actions, and the observations after it, each with
 the world as the first axis. Returns the reward of each world."""
@@ -34,7 +37,9 @@ class Task:
     Attributes:
         built: What `cartwheel.build` returned.
         act: For each topic, the fields that actions set, each with its smallest and largest value,
-            such as ``{"/cmd_vel": {"linear.x": (0.0, 0.22), "angular.z": (-2.8, 2.8)}}``.
+            such as ``{"/cmd_vel": {"linear.x": (0.0, 0.22), "angular.z": (-2.8, 2.8)}}``. The
+            limits of ``data[:3]`` apply to each of the three elements. Or for any name, a tuple of
+            a function, as for `cartwheel.batch.Batch`, and a list with the limits of each column.
         obs: The observations, as for `cartwheel.batch.Batch`.
         reward: See `Reward`.
         ended: See `Ended`; None if the task only ends after a time.
@@ -46,7 +51,7 @@ class Task:
     """
 
     built: Built
-    act: Mapping[str, Mapping[str, Range]]
+    act: Mapping[str, Action]
     obs: Observations
     reward: Reward
     ended: Ended | None = None
@@ -60,19 +65,40 @@ class Task:
         """Number of steps after which an episode is truncated."""
         return math.inf if self.seconds is None else max(1, round(self.seconds / self.period))
 
-    def fields(self) -> dict[str, list[str]]:
-        """The actions as `Batch` expects them."""
-        for topic, fields in self.act.items():
-            for name, (low, high) in fields.items():
-                if not low < high:
-                    raise invalid(f'"{topic} {name}" must have a lower and a higher limit', "act")
-        return {topic: list(fields) for topic, fields in self.act.items()}
+    def fields(self) -> Actions:
+        """The actions as `Batch` expects them.
+
+        Raises:
+            CartwheelError: Limits are not a lower and a higher number.
+        """
+        made: dict[str, list[str] | tuple[Apply, int]] = {}
+        for name, action in self.act.items():
+            if isinstance(action, Mapping):
+                named = action
+                made[name] = list(action)
+            else:
+                function, limits = action
+                named = {str(index): each for index, each in enumerate(limits)}
+                made[name] = (function, len(limits))
+            for each, limit in named.items():
+                if len(limit) != 2 or not limit[0] < limit[1]:
+                    raise invalid(f'"{name} {each}" must have a lower and a higher limit', "act")
+        return made
+
+    def _limits(self) -> Iterator[Range]:
+        """The limits of each column of the actions."""
+        for action in self.act.values():
+            if isinstance(action, Mapping):
+                for field, limit in action.items():
+                    yield from [limit] * len(columns_of([field]))
+            else:
+                yield from action[1]
 
     def action_space(self) -> spaces.Box:
         """The actions of one world."""
         from gymnasium import spaces
 
-        limits = [limit for fields in self.act.values() for limit in fields.values()]
+        limits = list(self._limits())
         low, high = (np.array([limit[end] for limit in limits], np.float32) for end in (0, 1))
         return spaces.Box(low, high, dtype=np.float32)
 
