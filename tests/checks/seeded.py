@@ -424,8 +424,8 @@ WITHOUT_PLACE: dict[str, Case] = {
     "materials differ": ("material-differs", [('<link name="base_footprint"/>',
         '<material name="blue">\n<color rgba="0 1 0 1"/>\n</material><link name="base_footprint"/>')],
         None, ""),
-    "wind": ("not-simulated", [("<mu1>1.0</mu1>", "<enable_wind>true</enable_wind>")],
-        "enable_wind", ""),
+    "battery": ("not-simulated", [("<mu1>1.0</mu1>", '<battery name="b"/>')],
+        "battery", ""),
 }  # fmt: skip
 """Faults whose advice is a sentence, or a text whose place the user must choose."""
 

@@ -123,7 +123,6 @@ MODEL = """
 <plugin name="x" filename="y"><a>1</a></plugin>
 <link name="a">
   <gravity>false</gravity>
-  <enable_wind>true</enable_wind>
   <self_collide>false</self_collide>
   <kinematic>true</kinematic>
   <must_be_base_link>true</must_be_base_link>

@@ -371,6 +371,8 @@ class Link:
     gravity: bool = True
     self_collide: bool | None = None
     kinematic: bool = False
+    wind: bool = False
+    """Whether wind acts on it, if a plugin of the world simulates wind."""
     linear_damping: float = 0.0
     angular_damping: float = 0.0
     """Fraction of the velocity removed per Gazebo time step, as in SDF's ``<velocity_decay>``."""
@@ -548,6 +550,8 @@ class WorldDescription:
     places: tuple[tuple[str, Pose], ...] = ()
     """The world's own ``<frame>`` elements by name that are not attached to a model."""
     gravity: Vec3 = (0.0, 0.0, -9.8)
+    wind: Vec3 = (0.0, 0.0, 0.0)
+    """Velocity of the wind, m/s, for plugins that simulate it."""
     magnetic_field: Vec3 = (6e-06, 2.3e-05, -4.2e-05)
     """T, east-north-up, Gazebo's default."""
     ambient: Rgba = (0.4, 0.4, 0.4, 1.0)

@@ -9,7 +9,6 @@ _STATE = "it is computed from the restored state"
 _TIME = "time starts at 0"
 _TERRAIN = "terrain is rendered with one colour or one texture, in full detail"
 _REST = "bodies at rest are put to sleep automatically"
-_WIND = "wind is not simulated"
 _STOP = "the stiffness of joint limits is fixed"
 _MEASURED = "it is computed from the geometry because auto is true"
 _SURFACE = "only the colour image of a physically based material is rendered"
@@ -52,7 +51,6 @@ HARMLESS: dict[tuple[str, str], str] = {
     ): "moving meshes collide as convex hulls, static meshes as surfaces",
     ("mimic", "@axis"): "the joint mimics the first axis",
     ("model", "allow_auto_disable"): _REST,
-    ("model", "enable_wind"): _WIND,
     ("model", "static"): "the first one is used",
     ("ode", "bounce"): "joints do not bounce off their limits",
     ("ode", "cfm"): _ENGINE,

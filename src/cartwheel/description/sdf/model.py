@@ -112,6 +112,8 @@ def read_model(node: Node, ctx: Context, included: Included | None = None, depth
     for known in frames.names():
         frames.pose(known, node.origin)  # a cycle is an error even if the pose is not needed
     links = [read_link(each, ctx, frames) for each in link_nodes]
+    if node.boolean_at("enable_wind", False):
+        links = [replace(link, wind=True) for link in links]
     joints: list[Joint] = []
     sensors: list[Sensor] = []
     for each, frame in joint_nodes:

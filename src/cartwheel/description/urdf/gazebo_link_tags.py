@@ -23,7 +23,7 @@ LINK_TAGS = (
     "material", "mu", "mu1", "mu2", "fdir1", "kp", "kd", "maxVel", "minDepth", "maxContacts",
     "laserRetro", "selfCollide", "self_collide", "turnGravityOff", "gravity", "dampingFactor",
     "velocity_decay", "kinematic", "canonicalBody", "visual", "collision", "sensor", "plugin",
-    "light", "projector",
+    "light", "projector", "enable_wind",
 )  # fmt: skip
 
 _IDLE = {
@@ -33,7 +33,6 @@ _IDLE = {
     "audio_sink": "audio is not supported",
     "battery": "batteries of links are not supported",
     "particle_emitter": "particle emitters are not supported",
-    "enable_wind": "wind is not simulated",
     "must_be_base_link": "the base is always the root link",
 }
 _SURFACE = {
@@ -52,6 +51,7 @@ _MOTION = {
     "self_collide": "self_collide",
     "gravity": "gravity",
     "kinematic": "kinematic",
+    "enable_wind": "wind",
 }
 _TOUCHED = (*_SURFACE, "fdir1", "maxContacts", "collision")
 _SEEN = ("material", "visual")

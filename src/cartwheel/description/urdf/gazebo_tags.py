@@ -32,12 +32,11 @@ JOINT_TAGS = (
 _OF_JOINTS = "force_torque"
 """The type of joint sensors."""
 _WITH_PARTS = ("sensor", "plugin", "light", "visual", "collision")
-ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide", *INSERTED)
+ROBOT_TAGS = ("plugin", "static", "self_collide", "selfCollide", "enable_wind", *INSERTED)
 
 _ROBOT_IDLE = {
     "gripper": "grippers are not supported: use libgazebo_grasp_fix.so",
     "allow_auto_disable": "bodies at rest are put to sleep automatically",
-    "enable_wind": "wind is not simulated",
     "pose": "the pose is set when the robot is spawned",
     "model": "models inside a URDF are not supported",
     "verbose": "Gazebo ignores this tag too",
@@ -56,6 +55,7 @@ class GazeboTags:
     """SDF links, joints and frames to add to the model."""
     static: bool = False
     self_collide: bool = False
+    wind: bool = False
 
     @property
     def plugins(self) -> tuple[PluginTag, ...]:
@@ -65,7 +65,8 @@ class GazeboTags:
     def apply_to_link(self, link: Link) -> Link:
         """The link with its tags applied."""
         tags = self.links.get(link.name)
-        return tags.apply(link) if tags is not None else link
+        applied = tags.apply(link) if tags is not None else link
+        return replace(applied, wind=True) if self.wind else applied
 
     def apply_to_joint(self, joint: Joint) -> Joint:
         """The joint with its tags applied."""
@@ -165,6 +166,7 @@ def _read_robot_tags(node: Node, tags: GazeboTags, ctx: UrdfContext) -> None:
     tags.static = node.boolean_at("static", tags.static)
     tags.self_collide = node.boolean_at("self_collide", tags.self_collide)
     tags.self_collide = node.boolean_at("selfCollide", tags.self_collide)
+    tags.wind = node.boolean_at("enable_wind", tags.wind)
     inserted = {id(part) for tag in INSERTED for part in node.all(tag)}
     tags.inserted.extend(child for child in node.children if id(child) in inserted)
     warn_idle(node, _ROBOT_IDLE, ctx)

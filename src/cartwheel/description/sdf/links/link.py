@@ -39,7 +39,7 @@ from cartwheel.errors import DescriptionError
 from cartwheel.geometry import Pose, rotate
 
 _WITHOUT_COUNTERPART = (
-    "must_be_base_link", "enable_wind", "audio_sink", "audio_source", "projector", "battery",
+    "must_be_base_link", "audio_sink", "audio_source", "projector", "battery",
     "particle_emitter",
 )  # fmt: skip
 
@@ -107,6 +107,7 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
         gravity=node.boolean_at("gravity", True),
         self_collide=_optional_boolean(node, "self_collide"),
         kinematic=node.boolean_at("kinematic", False),
+        wind=node.boolean_at("enable_wind", False),
         linear_damping=node.number_at("velocity_decay/linear", 0.0),
         angular_damping=node.number_at("velocity_decay/angular", 0.0),
         origin=node.origin,

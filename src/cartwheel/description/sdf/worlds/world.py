@@ -80,15 +80,16 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
             name_of = each.attributes.get("name", "")
             what = f'<{tag}> "{name_of}"' if name_of else f"<{tag}>"
             ctx.report(not_simulated(f"{what} is not simulated and is ignored", each))
-    for tag in ("wind", "atmosphere"):
-        for each in node.all(tag):
-            each.mark()
-            if each.children and not _still(each):
-                ctx.report(not_simulated(f"<{tag}> is not simulated", each))
+    for each in node.all("atmosphere"):
+        each.mark()
+        if each.children:
+            ctx.report(not_simulated("<atmosphere> is not simulated", each))
     for each in node.all("gui"):
         each.mark()  # only affects Gazebo's window
     physics = _default_physics(node, ctx)
     field = node.child("magnetic_field")
+    wind = node.child("wind")
+    velocity = wind.child("linear_velocity") if wind is not None else None
     scene = node.child("scene")
     coordinates = node.child("spherical_coordinates")
     return WorldDescription(
@@ -98,6 +99,7 @@ def read_world(node: Node, ctx: Context) -> WorldDescription:
         joints=joints,
         places=tuple(_places(node, frames, ctx)),
         gravity=_gravity(node, physics, default.gravity),
+        wind=velocity.vec3() if velocity is not None else default.wind,
         magnetic_field=field.vec3() if field is not None else default.magnetic_field,
         ambient=_scene_colour(scene, "ambient", default.ambient),
         background=_scene_colour(scene, "background", default.background),
@@ -254,8 +256,3 @@ def _scene_colour(
         return default
     found = scene.child(tag)
     return read_rgba(found) if found is not None else default
-
-
-def _still(node: Node) -> bool:
-    """Whether the wind has zero speed, as Gazebo writes in every saved world."""
-    return all(not any(c in "123456789" for c in child.text) for child in node.children)
