@@ -8,7 +8,7 @@ from tests.coded import coded
 from tests.dialects.ros_control.arms import ROS1
 from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, car, four_wheels
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, robot, running
 from cartwheel.description import load
 from cartwheel.dialects.ros_control.suggestion import suggested
 from cartwheel.errors import CartwheelError
@@ -98,6 +98,19 @@ def test_without_the_linkage_the_second_joint_turns_twice_as_far(make, tmp_path)
     assert bot.positions(*HARDWARE["virtual_front_steers"]) == pytest.approx(
         [-ANGLE, -2 * ANGLE], abs=2e-3
     )
+
+
+def test_the_robot_turns_about_as_slowly_as_is_reported(make, tmp_path):
+    bot = SteerBot(make, tmp_path, HARDWARE)
+    (told,) = coded(bot.world, robot.SKID_STEERING)
+    bot.drive(1.0, 1.0, ANGLE)
+    before = bot.model.pose.yaw
+    bot.drive(1.0, 1.0, ANGLE)
+    turned = (bot.model.pose.yaw - before) / (math.tan(ANGLE) / BASE)
+    estimate = BASE**2 / (BASE**2 + TRACK**2)
+    assert told.values["estimate"] == pytest.approx(estimate)
+    # Coulomb's friction is not proportional to the slip.
+    assert turned == pytest.approx(estimate, rel=0.15)
 
 
 def test_joint_states_contain_the_shared_joints(make, tmp_path):

@@ -6,8 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from cartwheel.codes import robot
 from cartwheel.component import Component
+from cartwheel.description.model import RobotDescription
 from cartwheel.devices.joints.actuator import JointActuator, JointActuatorConfig
 from cartwheel.devices.joints.limits import JointLimits, position_range
 from cartwheel.dialects.ros_control.hardware import STRONGEST, Hardware, JointHardware
@@ -108,12 +111,13 @@ class SteerBotHardware(Hardware):
             *(shared(name, [each], ("position",)) for name, each in steers.items()),
         ]
         self._joints = {each.name: each for each in (*own, self._wheel, self._steer)}
+        ratio = _turn_ratio(owner.part.description, given)
         owner.part.report(
             robot.SKID_STEERING.diagnostic(
                 "all four wheels turn at the same speed, as with the original hardware, so they "
-                "slide in curves, and the robot turns less than it is steered",
+                f"slide in curves, and the robot turns at about {ratio:.0%} of the steered rate",
                 origin=origin,
-                values={"hardware": SIM_TYPE},
+                values={"hardware": SIM_TYPE, "estimate": ratio},
             )
         )
 
@@ -147,6 +151,24 @@ class SteerBotHardware(Hardware):
             math.atan2(along * tangent, along + across),
             math.atan2(along * tangent, along - across),
         )
+
+
+def _turn_ratio(description: RobotDescription, given: SteerBotParameters) -> float:
+    """The turn rate of a car whose four wheels turn at one speed, relative to the steered one.
+
+    The rims of wheels at the corners of a rectangle of length b and width t demand a turn of
+    v a / b by their directions, at the speed v and the small steering angle a, and none by their
+    speeds. The slip is least, in the mean of its square, where b (w b - v a) + t w t = 0.
+    """
+    places = {link.name: link.pose.position for link in description.links}
+    children = {joint.name: joint.child for joint in description.joints}
+    front, rear = (
+        np.array([places[children[name]][:2] for name in pair])
+        for pair in (given.front_wheels, given.rear_wheels)
+    )
+    base = float(np.linalg.norm(front.mean(axis=0) - rear.mean(axis=0)))
+    track = float(np.mean([np.linalg.norm(pair[0] - pair[1]) for pair in (front, rear)]))
+    return base**2 / (base**2 + track**2) if base > 0 else 1.0
 
 
 class _SharedJoint(JointHardware):
