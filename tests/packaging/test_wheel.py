@@ -51,7 +51,7 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     programs = folder / "bin"
     # This environment's pip: installing another one takes longer than all the rest.
     pip = [sys.executable, "-m", "pip", "--python", str(programs / "python"), "install"]
-    run([*pip, "--quiet", "--no-deps", "--no-index", str(wheel)], folder)
+    run([*pip, "--quiet", "--no-deps", "--no-index", "--no-compile", str(wheel)], folder)
     (packages,) = folder.glob("lib/python3*/site-packages")
     borrowed = folder / "borrowed"
     borrowed.mkdir()

@@ -42,6 +42,7 @@ from cartwheel.dialects.tags import read
 from cartwheel.dialects.world_plugins import BUILT_IN
 from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 from cartwheel.geometry import Pose
+from cartwheel.graph import Subscription
 
 STANDING = 10.0
 """Simulation time without commands, s."""
@@ -362,11 +363,20 @@ def _listened(world: World) -> tuple[int, tuple[str, ...]]:
     graph = world.graph
     idle = _idle(world)
     rated = {each.topic: each for each in graph.publishers() if each.rate and each.node not in idle}
-    boxes = {topic: world.mailbox(topic, size=1) for topic in rated}
+    subscriptions: dict[str, Subscription] = {}
+    silent = set(rated)
+
+    def hear(topic: str, _message: object) -> None:
+        silent.discard(topic)
+        # One message is enough, and to render more images takes most of a trial's time.
+        if topic in subscriptions:
+            subscriptions.pop(topic).close()
+
+    for topic in rated:
+        subscriptions[topic] = graph.subscribe(topic, partial(hear, topic))
     slowest = min([each.rate or 1.0 for each in rated.values()], default=1.0)
     if rated:
         world.run(min(_LONGEST, max(_LISTENING, 3.0 / slowest)))
-    silent = tuple(sorted(topic for topic, box in boxes.items() if not box.drain()))
-    for box in boxes.values():
-        box.close()
-    return len(rated), silent
+    for subscription in subscriptions.values():
+        subscription.close()
+    return len(rated), tuple(sorted(silent))
