@@ -106,6 +106,7 @@ MAY_IMPORT = {
     },
     "testing": {
         "api",
+        "arrays",
         "description",
         "messages",
         "graph",

@@ -23,12 +23,15 @@ MET = [
     f"{CART}duration: 2\nexpect: [{{publishes: /imu/data, rate: 30}}, {{publishes: /clock}}]",
     f"{POST}expect: [{{touches: [cart, post], timeout: 15}}]",
     f"{CART}{GO}duration: 1\nexpect: [{{no_contact: cart}}]",
+    f"{CART}{GO}duration: 1\nexpect: [{{moves: cart::wheel_left_link}},"
+    " {reaches: cart::wheel_left_link, x: 0.3}, {stays_within: cart::wheel_left_link, y: [0, 1]},"
+    " {expression: \"y('cart::wheel_left_link') > 0.1\"}]",
     f"{CART}duration: 1\nexpect: [{{joint: cart::wheel_left_joint, position: 0}}]",
     f"{CART}{GO}duration: 1\nexpect: [{{expression: \"x('cart') > 0.3 and time <= 1.1\"}}]",
     f"{CART}duration: 1\nexpect: [{{expression: \"count('/imu/data') in range(28, 33)\"}}]",
     f"{CART}duration: 1\nexpect: [{{expression: \"field('/odom', 'header.stamp.sec') < 2\"}}]",
     f"{POST}duration: 1\n"
-    "expect: [{expression: \"clearance('cart', 'post') > 0.5\", when: always}]",
+    "expect: [{expression: \"clearance('cart', 'p*t') > 0.5\", when: always}]",
     f"{POST}duration: 6\n"
     "expect: [{touches: [cart, post]}, {expression: \"20 < peak_force('cart', 'post') < 1e5\"},"
     " {expression: \"peak_force('cart') == peak_force('cart::base_link', 'post')\"}]",

@@ -6,6 +6,7 @@ import math
 import pickle
 import pydoc
 
+import numpy as np
 import pytest
 from tests.coded import raises
 
@@ -15,7 +16,7 @@ from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.codes.world import UNKNOWN_MODEL, VALUE_INVALID
 from cartwheel.errors import GraphError, UnknownNameError
-from cartwheel.msgs.sensor_msgs import Image, LaserScan
+from cartwheel.msgs.sensor_msgs import Image, LaserScan, PointCloud2, PointField
 from cartwheel.testing import (
     UnmetError,
     holds,
@@ -59,11 +60,31 @@ def test_reaches_states_the_closest_approach(cart):
     assert isinstance(raised.value, AssertionError)
 
 
+def test_links_reach_move_and_stay(cart):
+    """The left wheel is beside the frame of the cart, which drives straight."""
+    wheel = cart.link("wheel_left_link")
+    x, y, z = wheel.pose.position
+    assert y > 0.1
+    stays_within(wheel, y=(y - 0.01, y + 0.01), z=(z - 0.02, z + 0.02), seconds=0.1)
+    cart.publish(DRIVE, linear_x=0.5)
+    moves(wheel, distance=0.1)
+    assert reaches(wheel, (x + 0.5, y), within=0.02) == pytest.approx(0.1 + 1.25, abs=0.06)
+    with pytest.raises(UnmetError) as raised:
+        reaches(wheel, (x, y), within=0.02, timeout=0.1)
+    assert raised.value.expected.startswith("cart::wheel_left_link reaches")
+    assert raised.value.values["y"] == pytest.approx(y, abs=0.01)
+
+
 def test_a_robot_keeps_clear_of_a_post(cart):
     """The front of the cart is 0.6 m before its frame, and the post begins at 2.3 m."""
     base = cart.link("base_link")
     cart.publish(DRIVE, linear_x=0.5)
-    keeps_clear(cart, "post", distance=0.8, seconds=1.5)
+    keeps_clear(cart, "post", distance=0.8, seconds=1.3)
+    keeps_clear(cart, "p*t", distance=0.8, seconds=0.1)
+    keeps_clear(cart, "post::*", distance=0.8, seconds=0.1)
+    # A pattern does not mean the model itself, and need not match anything later on.
+    keeps_clear(cart, "c*", distance=0.8, seconds=0.02)
+    keeps_clear(cart, distance=0.8, ignore=["ground*"], seconds=0.02)
     keeps_clear(base, distance=0.5, seconds=0.1)
     with pytest.raises(UnmetError) as raised:
         keeps_clear(base, cart._world.model("post"), distance=0.5, seconds=5)
@@ -72,8 +93,9 @@ def test_a_robot_keeps_clear_of_a_post(cart):
     assert values["closest_time"] == raised.value.time
     # x = 1.2 m: after 1.2 / 0.5 + 0.25 s.
     assert raised.value.time == pytest.approx(2.65, abs=0.05)
-    with raises(UNKNOWN_MODEL, UnknownNameError, name="posd"):
-        keeps_clear(cart, "posd")
+    for wrong in ("posd", "posd*"):
+        with raises(UNKNOWN_MODEL, UnknownNameError, name=wrong):
+            keeps_clear(cart, wrong)
     with raises(VALUE_INVALID):
         keeps_clear(cart._world)
 
@@ -221,6 +243,28 @@ def test_sees_a_range(make):
     with pytest.raises(UnmetError) as raised:
         sees(world, "/scan", range=3.0, timeout=0.2)
     assert raised.value.values["range"] == pytest.approx(2.0, abs=0.01)
+
+
+def test_sees_the_range_of_a_cloud():
+    """The nearest point is at a distance of 5 m; those without a measurement are NaN or at 0."""
+    points = np.array([[3, 0, 4], [0, 0, 0], [np.nan, 0, 0], [-9, 0, 0]], np.float32)
+    fields = [
+        PointField(name=axis, offset=4 * index, datatype=PointField.FLOAT32, count=1)
+        for index, axis in enumerate("xyz")
+    ]
+    message = PointCloud2(
+        height=1, width=4, fields=fields, point_step=12, row_step=48,
+        data=points.view(np.uint8).ravel(),
+    )  # fmt: skip
+    with cw.World("empty") as world:
+        publisher = world.advertise("/points", PointCloud2)
+        world.every(20.0, lambda: publisher.publish(message))
+        sees(world, "/points", range=5.0, within=0.001)
+        with pytest.raises(UnmetError) as raised:
+            sees(world, "/points", range=4.0, timeout=0.2)
+        assert raised.value.values["range"] == 5.0
+        with raises(TOPIC_TYPE_MISMATCH, name="color"):
+            sees(world, "/points", color=(1.0, 0.0, 0.0))
 
 
 RED = """<robot name="red"><link name="red"><inertial><mass value="5"/>
@@ -385,7 +429,7 @@ def test_errors_name_the_parameter(cart):
     for name, refused in (
         ("robot", lambda: touches_nothing(cart._world, "post")),
         ("other", lambda: touches(cart, 3)),
-        ("robot", lambda: reaches(cart.link(cart.links[0]), (1, 0))),
+        ("robot", lambda: joint_reaches(cart.link(cart.links[0]), "wheel_left_joint", 1.0)),
         ("world", lambda: sees("cart", "/scan")),
     ):
         with raises(VALUE_INVALID, name=name):

@@ -19,6 +19,7 @@ from cartwheel.testing.conditions import (
 )
 from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.seeing import Sees
+from cartwheel.testing.subjects import others, pose_of
 from cartwheel.testing.touching import GROUND, Touches
 from cartwheel.testing.watching import Watch, default_when
 
@@ -78,21 +79,23 @@ class Expression(Condition):
         return bool(self._value)
 
     def _names_of(self, world: World) -> dict[str, Any]:
-        def pose_of(model: str) -> Pose:
-            return world.model(str(model)).pose
+        def place(name: str) -> Pose:
+            return pose_of(world, str(name))
 
         def of(name: str, value_of: Callable[[Pose], float]) -> Any:
             def run(model: str) -> float:
-                return self._noted(f"{name}('{model}')", value_of(pose_of(model)))
+                return self._noted(f"{name}('{model}')", value_of(place(model)))
 
             return function(name, run)
 
         def distance(one: str, other: str) -> float:
-            value = math.dist(pose_of(one).position, pose_of(other).position)
+            value = math.dist(place(one).position, place(other).position)
             return self._noted(f"distance('{one}', '{other}')", value)
 
         def clearance(one: str, other: str) -> float:
-            value = world.clearance(str(one), str(other)).distance
+            # NaN if a pattern matches only the model or link itself.
+            found = others(world, str(one), str(other))
+            value = world.clearance(str(one), found).distance if found else math.nan
             return self._noted(f"clearance('{one}', '{other}')", value)
 
         def peak_force(one: str, other: str | None = None) -> float:

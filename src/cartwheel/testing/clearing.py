@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from cartwheel.errors import UnknownNameError
 from cartwheel.testing.conditions import Condition
+from cartwheel.testing.subjects import matching
 
 if TYPE_CHECKING:
     from cartwheel.api import Clearance, World
@@ -17,9 +20,9 @@ class KeepsClear(Condition):
 
     Args:
         model: Name of a model, or scoped name of a link.
-        other: The same; None for all other models.
+        other: The same, or a pattern as for `Touches`; None for all other models.
         distance: Minimum distance, m.
-        ignore: Names of models and links that do not count.
+        ignore: Names and patterns of models and links that do not count, if they exist.
     """
 
     def __init__(
@@ -33,10 +36,27 @@ class KeepsClear(Condition):
 
     def begin(self, world: World) -> None:
         super().begin(world)
+        if self.other is not None:
+            matching(world, self.other)
         self.holds()
 
+    def _existing(self, patterns: Sequence[str]) -> list[str]:
+        """The models and links that match patterns. Models may be spawned and deleted."""
+        found: list[str] = []
+        for each in patterns:
+            with contextlib.suppress(UnknownNameError):
+                found += matching(self.world, each)
+        return found
+
     def holds(self) -> bool:
-        found = self.world.clearance(self.model, self.other, ignore=self.ignore)
+        other: str | list[str] | None = self.other
+        if self.other is not None and self.other != self.model:
+            own = (self.model, self.model.partition("::")[0])
+            other = [each for each in self._existing([self.other]) if each not in own]
+            if not other:
+                return True
+        ignored = self._existing(self.ignore)
+        found = self.world.clearance(self.model, other, ignore=ignored)
         if found.distance < self.closest:
             self.closest, self.closest_time = found.distance, self.world.time
             self._nearest = found

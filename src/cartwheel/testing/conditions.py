@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from cartwheel.api.arguments import refused
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.errors import CartwheelError
+from cartwheel.testing.subjects import pose_of
 
 if TYPE_CHECKING:
     from cartwheel.api import World
@@ -67,10 +68,10 @@ class Condition(ABC):
 
 
 class Reaches(Condition):
-    """A model reaches a position, and a yaw if one is given.
+    """A model or a link reaches a position, and a yaw if one is given.
 
     Args:
-        model: Name of the model.
+        model: Name of the model, or scoped name of the link.
         target: x, y and z in m; None is not compared.
         within: Maximum distance from the target, m.
         yaw: Target of the yaw, rad; None is not compared.
@@ -99,8 +100,12 @@ class Reaches(Condition):
         self._closest_yaw: float | None = None
         self._last: Pose | None = None
 
+    def begin(self, world: World) -> None:
+        super().begin(world)
+        pose_of(world, self.model)
+
     def holds(self) -> bool:
-        pose = self.world.model(self.model).pose
+        pose = pose_of(self.world, self.model)
         self._last = pose
         distance = math.sqrt(
             sum(
@@ -157,10 +162,10 @@ class Reaches(Condition):
 
 
 class StaysWithin(Condition):
-    """A model stays within limits.
+    """A model or a link stays within limits.
 
     Args:
-        model: Name of the model.
+        model: Name of the model, or scoped name of the link.
         limits: Minimum and maximum of ``x``, ``y`` and ``z`` in m, and of ``yaw`` in rad, to which
             full turns can be added.
         tilt: Maximum angle between the model's z axis and the vertical, rad.
@@ -194,10 +199,10 @@ class StaysWithin(Condition):
 
     def begin(self, world: World) -> None:
         super().begin(world)
-        world.model(self.model)
+        pose_of(world, self.model)
 
     def holds(self) -> bool:
-        pose, now = self.world.model(self.model).pose, self.world.time
+        pose, now = pose_of(self.world, self.model), self.world.time
         found = dict(zip(_AXES, pose.position, strict=True))
         bounds: dict[str, Sequence[float]] = dict(self.limits)
         if "yaw" in bounds:
@@ -252,10 +257,10 @@ class StaysWithin(Condition):
 
 
 class Moves(Condition):
-    """A model moves away from its pose at `begin`.
+    """A model or a link moves away from its pose at `begin`.
 
     Args:
-        model: Name of the model.
+        model: Name of the model, or scoped name of the link.
         distance: Minimum distance, m.
     """
 
@@ -267,11 +272,11 @@ class Moves(Condition):
 
     def begin(self, world: World) -> None:
         super().begin(world)
-        self._start = world.model(self.model).pose
+        self._start = pose_of(world, self.model)
 
     def holds(self) -> bool:
         assert self._start is not None
-        now = self.world.model(self.model).pose.position
+        now = pose_of(self.world, self.model).position
         self.moved = max(self.moved, math.dist(now, self._start.position))
         return self.moved >= self.distance
 

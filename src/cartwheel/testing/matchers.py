@@ -21,7 +21,7 @@ from cartwheel.testing.conditions import (
 from cartwheel.testing.holding import Holds
 from cartwheel.testing.publishing import Publishes
 from cartwheel.testing.seeing import Sees
-from cartwheel.testing.subjects import name_of, side_of, topic_of, world_of
+from cartwheel.testing.subjects import frame_of, name_of, side_of, topic_of, world_of
 from cartwheel.testing.touching import Touches
 from cartwheel.testing.watching import Watch, When, run
 
@@ -53,7 +53,7 @@ class UnmetError(Pickled, AssertionError):
 
 
 def reaches(
-    robot: Model,
+    robot: Model | Link,
     target: Pose | Sequence[float | None],
     *,
     within: float = 0.1,
@@ -61,10 +61,10 @@ def reaches(
     yaw: float | None = None,
     yaw_within: float = 0.1,
 ) -> float:
-    """Runs the world until a model reaches a position.
+    """Runs the world until a model or a link reaches a position.
 
     Args:
-        robot: The model.
+        robot: The model, or one of its links, such as the hand of an arm.
         target: x and y, or x, y and z, in m; None for a coordinate that is not compared. Of a pose,
             position and yaw are compared.
         within: Maximum distance from the target, m.
@@ -76,10 +76,10 @@ def reaches(
         The simulation time of the world, s.
 
     Raises:
-        UnmetError: The model did not reach the position. `values` contains the closest approach and
-            its time.
-        CartwheelError: `robot` is not a model, the target is not one of the above, or nothing is
-            compared.
+        UnmetError: It did not reach the position. `values` contains the closest approach and its
+            time.
+        CartwheelError: `robot` is not a model or a link, the target is not one of the above, or
+            nothing is compared.
     """
     from cartwheel.geometry import Pose
 
@@ -87,12 +87,12 @@ def reaches(
         yaw = target.yaw if yaw is None else yaw
         target = target.position
     __tracebackhide__ = True
-    condition = Reaches(name_of(robot), target, within=within, yaw=yaw, yaw_within=yaw_within)
+    condition = Reaches(frame_of(robot), target, within=within, yaw=yaw, yaw_within=yaw_within)
     return _until(world_of(robot), condition, timeout)
 
 
 def stays_within(
-    robot: Model,
+    robot: Model | Link,
     *,
     x: Limits | None = None,
     y: Limits | None = None,
@@ -102,35 +102,35 @@ def stays_within(
     speed: float | None = None,
     seconds: float = 5.0,
 ) -> None:
-    """Runs the world for a time, in which a model must stay within limits.
+    """Runs the world for a time, in which a model or a link must stay within limits.
 
     Args:
-        robot: The model.
+        robot: The model, or one of its links.
         x: Minimum and maximum, m.
         y: Minimum and maximum, m.
         z: Minimum and maximum, m.
         yaw: Minimum and maximum, rad. Full turns are ignored: (3.0, 3.3) contains -3.1.
-        tilt: Maximum angle between the model's z axis and the vertical, rad.
+        tilt: Maximum angle between its z axis and the vertical, rad.
         speed: Maximum speed, m/s.
         seconds: Simulation time, s.
 
     Raises:
-        UnmetError: The model left the limits. `values` contains the coordinate, its value and the
+        UnmetError: It left the limits. `values` contains the coordinate, its value and the
             time.
         CartwheelError: There is no limit, or a minimum is above its maximum.
     """
     __tracebackhide__ = True
     given = {"x": x, "y": y, "z": z, "yaw": yaw}
     limits = {name: each for name, each in given.items() if each is not None}
-    condition = StaysWithin(name_of(robot), limits, tilt=tilt, speed=speed)
+    condition = StaysWithin(frame_of(robot), limits, tilt=tilt, speed=speed)
     _always(world_of(robot), condition, seconds)
 
 
-def moves(robot: Model, *, distance: float = 0.1, timeout: float = 5.0) -> float:
-    """Runs the world until a model has moved.
+def moves(robot: Model | Link, *, distance: float = 0.1, timeout: float = 5.0) -> float:
+    """Runs the world until a model or a link has moved.
 
     Args:
-        robot: The model.
+        robot: The model, or one of its links.
         distance: Minimum distance from its current position, m.
         timeout: Maximum simulation time, s.
 
@@ -138,10 +138,10 @@ def moves(robot: Model, *, distance: float = 0.1, timeout: float = 5.0) -> float
         The simulation time of the world, s.
 
     Raises:
-        UnmetError: The model did not move far enough. `values` contains the distance.
+        UnmetError: It did not move far enough. `values` contains the distance.
     """
     __tracebackhide__ = True
-    return _until(world_of(robot), Moves(name_of(robot), distance), timeout)
+    return _until(world_of(robot), Moves(frame_of(robot), distance), timeout)
 
 
 def publishes(
@@ -191,8 +191,8 @@ def sees(
 
     Args:
         world: The world, or one of its models.
-        topic: A topic with images, depth images, laser scans, ranges or images of logical cameras,
-            for a model in its namespace.
+        topic: A topic with images, depth images, laser scans, ranges, point clouds or images of
+            logical cameras, for a model in its namespace.
         range: Shortest distance that the sensor measures, m.
         within: Tolerance of the range, m; None is 0.05.
         color: Red, green and blue from 0 to 1, for images.
@@ -300,10 +300,10 @@ def keeps_clear(
 
     Args:
         robot: The model, or one of its links.
-        other: The other model or link; None for all other models.
+        other: The other model or link, or a pattern as for `touches`; None for all other models.
         distance: Minimum distance, m.
         seconds: Simulation time, s.
-        ignore: Models and links that do not count, if `other` is None.
+        ignore: Models, links and patterns that do not count, if `other` is None.
 
     Raises:
         UnmetError: They came closer. `values` contains the distance, its time and the other model.
@@ -313,9 +313,7 @@ def keeps_clear(
     __tracebackhide__ = True
     one = side_of(robot, "robot")
     two = None if other is None else side_of(other, "other")
-    known = world_of(robot).models
-    ignored = [name for name in ignore if name.partition("::")[0] in known] if two is None else []
-    condition = KeepsClear(one, two, distance, ignore=ignored)
+    condition = KeepsClear(one, two, distance, ignore=ignore if two is None else ())
     _always(world_of(robot), condition, seconds)
 
 

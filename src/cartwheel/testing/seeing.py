@@ -10,6 +10,7 @@ import numpy as np
 
 from cartwheel.api.arguments import refused
 from cartwheel.api.values import array, invalid
+from cartwheel.arrays import cloud
 from cartwheel.codes.graph import TOPIC_TYPE_MISMATCH
 from cartwheel.errors import GraphError
 from cartwheel.testing.conditions import Condition
@@ -29,6 +30,8 @@ _KINDS: dict[str, tuple[str, ...]] = {
     "sensor_msgs/msg/Image": ("color", "range"),
     "sensor_msgs/msg/LaserScan": ("range",),
     "sensor_msgs/msg/Range": ("range",),
+    "sensor_msgs/msg/PointCloud2": ("range",),
+    "sensor_msgs/msg/PointCloud": ("range",),
     "ros_gz_interfaces/msg/LogicalCameraImage": ("model",),
 }
 """What the messages of each type can be tested for. The encoding of an image decides further."""
@@ -41,7 +44,8 @@ class Sees(Condition):
     """A sensor sees an object.
 
     Args:
-        topic: A topic with images, depth images, laser scans, ranges or images of logical cameras.
+        topic: A topic with images, depth images, laser scans, ranges, point clouds or images of
+            logical cameras.
         range: Shortest measured distance, m; None if any distance is sufficient.
         within: Tolerance of the range, m; None is 0.05.
         color: Red, green and blue from 0 to 1, for images.
@@ -236,6 +240,10 @@ def _nearest(message: Any, kind: str) -> float | None:
     elif kind == "Range":
         good = message.min_range <= message.range < message.max_range
         values = np.array([message.range] if good else [], dtype=float)
+    elif kind in ("PointCloud2", "PointCloud"):
+        # Points are in the frame of the sensor. Those without a measurement are NaN or at 0.
+        values = np.linalg.norm(cloud(message).reshape(-1, 3).astype(float), axis=1)
+        values = values[values > 0]
     elif message.encoding in _DEPTHS:
         dtype, unit = _DEPTHS[message.encoding]
         values = np.frombuffer(np.asarray(message.data).tobytes(), dtype=dtype).astype(float) * unit

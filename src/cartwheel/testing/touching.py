@@ -7,8 +7,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from cartwheel.errors import UnknownNameError
 from cartwheel.testing.conditions import Condition
+from cartwheel.testing.subjects import matching
 
 if TYPE_CHECKING:
     from cartwheel.api import Contact, World
@@ -39,13 +39,7 @@ class Touches(Condition):
     def begin(self, world: World) -> None:
         super().begin(world)
         for name in filter(None, (self.model, self.other)):
-            model, separator, _ = name.partition("::")
-            models = fnmatch.filter(world.models, model)
-            if not models:
-                raise UnknownNameError("model", model, world.models)
-            links = [f"{each}::{link}" for each in models for link in world.model(each).links]
-            if separator and not fnmatch.filter(links, name):
-                raise UnknownNameError("link", name, links)
+            matching(world, name)
 
     def holds(self) -> bool:
         touching = any(self._contacts())
