@@ -2,6 +2,7 @@
 
 import pytest
 from tests.coded import raises
+from tests.devices.drives.carts import cart_sdf
 
 import cartwheel as cw
 from cartwheel.codes.command import OPTION_INVALID
@@ -124,3 +125,26 @@ def test_what_cannot_be_looked_up_is_refused(world, cart):
     world.close()
     with raises(SIMULATION_CLOSED, SimulationError):
         world.transform("base_link", "camera")
+
+
+GZ = """<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">
+<left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>
+<wheel_separation>0.4</wheel_separation><wheel_radius>0.1</wheel_radius>{tags}</plugin>"""
+
+
+@pytest.mark.parametrize("on_tf", [True, False])
+def test_a_drive_of_gz_sim_has_a_topic_of_its_own(world, on_tf):
+    tags = "<tf_topic>/tf</tf_topic><frame_id>odom</frame_id>"
+    tags += "<child_frame_id>base_link</child_frame_id>"
+    sdf = cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, GZ.format(tags=tags if on_tf else ""))
+    world.spawn(f'<sdf version="1.9">{sdf}</sdf>')
+    world.keep_transforms()
+    world.run(1.0)
+    if on_tf:
+        wheel = world.transform("base_link", "left_wheel")
+        assert close(world.transform("odom", "left_wheel"), wheel, 1e-3)
+        return
+    for _ in range(2):
+        with raises(FRAME_UNKNOWN, UnknownNameError, elsewhere=("/model/cart/tf",)):
+            world.transform("cart/odom", "left_wheel")
+        world.reset()

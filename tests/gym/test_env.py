@@ -288,3 +288,14 @@ def test_a_function_and_elements_of_arrays_act(job):
     assert group.action_space().low.tolist() == [-0.5] * 3
     with raises(BATCH_INVALID):
         Env(dataclasses.replace(job, act={"drive": (drive, [(1.0, 1.0)])}))
+
+
+@pytest.mark.wording
+def test_an_action_of_another_shape_is_refused(job):
+    env = Env(job)
+    env.reset(seed=1)
+    for shape in ((7,), (), (1, *env.action_space.shape)):
+        with raises(BATCH_INVALID) as caught:
+            env.step(np.zeros(shape))
+        assert str(env.action_space.shape) in caught.value.message
+    env.close()

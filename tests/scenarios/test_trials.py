@@ -79,6 +79,15 @@ def test_a_condition_that_is_not_met_states_the_value(run, text, name, value, wi
         assert finding.values[name] == value
 
 
+@pytest.mark.wording
+def test_a_field_that_does_not_exist_has_a_suggestion(run):
+    text = "expect: [{expression: \"field('/odom', 'pose.poes.position.x') < 2\"}]"
+    outcome = run(f"{CART}duration: 0.1\n{text}")
+    assert outcome.status == "error"
+    assert 'no field "poes"' in outcome.findings[0].text and '"pose"' in outcome.findings[0].text
+    assert "ExpressionFault" not in outcome.findings[0].text
+
+
 def test_a_case_ends_when_a_condition_has_failed(run):
     outcome = run(f"{CART}{GO}duration: 50\nexpect: [{{stays_within: cart, x: [-1, 0.5]}}]")
     assert outcome.status == "failed" and outcome.time < 2

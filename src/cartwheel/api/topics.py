@@ -254,7 +254,7 @@ class Topic(Generic[M]):
         else:
             known = "nothing publishes it"
             others = sorted(names - {self.name})
-            hint = suggestion(self.name, others) if others else f"Nothing publishes {self.type}."
+            hint = suggestion(self.name, others) if others else None
         last = (
             f"the last message was published at {self.latest_time:.9g} s" if self._messages else ""
         )

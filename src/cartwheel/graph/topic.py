@@ -280,7 +280,8 @@ def checked_message(topic: str, kind: str, message: Any) -> Any:
             f'topic "{topic}" requires a message of type {kind}, not {given}',
             code=FIELD_VALUE_INVALID,
             values={"topic": topic, "type": kind, "given": given},
-            hint="Pass a message, or use World.publish with the values of its fields.",
+            hint="Pass a message, or use World.publish with the values of its fields. The classes "
+            "of messages are in cartwheel.msgs.",
         )
     return checked(message)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from cartwheel.batch import Batch
 from cartwheel.batch.lane import Values
+from cartwheel.batch.plan import invalid
 from cartwheel.gym.task import Task
 
 _SEEDS = 2**31
@@ -54,6 +55,12 @@ class Env(gymnasium.Env[dict[str, Any], Any]):
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Runs the world for a period."""
         actions = np.asarray(action, dtype=float)[None]
+        if actions.shape[1:] != self.action_space.shape:
+            raise invalid(
+                f"an action must have the shape {self.action_space.shape} "
+                f"(got {actions.shape[1:]})",
+                "actions",
+            )
         before = self._values
         self._values = self.task.limited(self._batch.step(actions))
         rewards, ended = self.task.judge(before, actions, self._values)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from cartwheel.codes.command import SCENARIO_EXPRESSION, SCENARIO_INVALID
 from cartwheel.errors import CartwheelError
 from cartwheel.scenarios.expressions import NAME_HINT, ExpressionFaultError, evaluate, function
+from cartwheel.similar_names import suggestion
 from cartwheel.testing.conditions import (
     Condition,
     JointAt,
@@ -257,7 +258,10 @@ def _field(message: Any, path: str) -> Any:
     for part in path.split("."):
         name, _, index = part.partition("[")
         if name.startswith("_") or not hasattr(value, name):
-            raise ExpressionFaultError(f'the message has no field "{path}"')
+            fields = getattr(type(value), "__dataclass_fields__", ())
+            raise ExpressionFaultError(
+                f'the message has no field "{name}"', suggestion(name, list(fields))
+            )
         value = getattr(value, name)
         if index:
             value = value[int(index.rstrip("]"))]

@@ -67,7 +67,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionFaultError(f'"{name}" is not defined', suggestion(name, names)) from None
     except SyntaxError as error:
         raise ExpressionFaultError(f"{error.msg}") from None
-    except CartwheelError:
+    except (CartwheelError, ExpressionFaultError):
         raise
     except Exception as error:  # noqa: BLE001 - whatever the operation of a stranger raises
         raise ExpressionFaultError(f"{type(error).__name__}: {error}") from None

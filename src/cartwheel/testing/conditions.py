@@ -326,7 +326,7 @@ class JointAt(Condition):
     @property
     def actual(self) -> str:
         return (
-            f"it is at {self.last:.4g}; the closest approach was {self.closest:.3g} "
+            f"it is at {self.last:.4g}; its smallest distance from it was {self.closest:.3g} "
             f"at {self.closest_time:.3f} s"
         )
 

@@ -92,7 +92,7 @@ class Sees(Condition):
         kind = world.graph.topic(self.topic).type
         if kind not in _KINDS:
             raise GraphError(
-                f'the topic "{self.topic}" has the type {kind}, which contains no view',
+                f'the topic "{self.topic}" has the type {kind}, in which nothing can be seen',
                 code=TOPIC_TYPE_MISMATCH,
                 hint=f"Use a topic of one of these types: {', '.join(_KINDS)}.",
                 values={"topic": self.topic, "type": kind},

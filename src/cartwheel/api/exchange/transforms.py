@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from cartwheel.api.arguments import refused
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.values import Moment, moment_ns, scalar
+from cartwheel.errors import UnknownNameError
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.graph import resolve_frame
 from cartwheel.graph.transform_buffer import KEPT_NS, SECOND, TransformBuffer
@@ -53,7 +54,17 @@ class FramedWorld(MessagingWorld):
         moment = None if time is None else moment_ns(time)
         with self.used():
             frames = self._frame(target, "target"), self._frame(source, "source")
-            return self._stored().buffer.lookup(*frames, moment)
+            stored = self._stored()
+            try:
+                return stored.buffer.lookup(*frames, moment)
+            except UnknownNameError as error:
+                if elsewhere := self._unread_topics():
+                    error.hint = (
+                        f"Transforms on {', '.join(elsewhere)} are not read. Systems of gz-sim "
+                        "publish on /tf with <tf_topic>/tf</tf_topic>."
+                    )
+                    error.values = {**error.values, "elsewhere": elsewhere}
+                raise
 
     @property
     def frames(self) -> tuple[str, ...]:
@@ -87,6 +98,14 @@ class FramedWorld(MessagingWorld):
         if not isinstance(frame, str):
             raise refused(name, "the name of a frame or a Link", frame)
         return frame
+
+    def _unread_topics(self) -> tuple[str, ...]:
+        """Names of other topics with transforms than those that are read."""
+        return tuple(
+            each.name
+            for each in self.graph.topics()
+            if each.type == _TYPE and each.name not in ("/tf", "/tf_static")
+        )
 
     def _stored(self) -> _Stored:
         if self._transforms is None:
