@@ -119,6 +119,16 @@ MESSAGES = {
     "print(cw.seconds(stamp), world.transform('odom', 'base', time=stamp))": False,
     "print(cw.seconds(2.0))": True,
     "print(Float64MultiArray(data=[0.04, 0.04]), Float64MultiArray(data=world.time))": False,
+    "robot, fault = world.model('cart'), world.fault('/odom', drop=0.5)": False,
+    "robot.pose, robot.link('a').mass, world.gravity = cw.Pose(), 2.0, (0, 0, -1)": False,
+    "robot.joints['a'].effort_limit, world.pace, world.light('sun').on = 3.0, 1.0, True": False,
+    "robot.poze = cw.Pose()": True,
+    "robot.link('a').masss = 2.0": True,
+    "robot.joints['a'].effort_limt = 3.0": True,
+    "robot.joints.dampin = 3.0": True,
+    "world.gravityy = (0, 0, -1)": True,
+    "world.light('sun').intensty = 2.0": True,
+    "fault.dropp = 1.0": True,
 }
 """Lines of a program, and whether each is an error."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from types import MemberDescriptorType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cartwheel.similar_names import suggestion
 
@@ -18,13 +18,15 @@ class Sealed:
 
     __slots__ = ("__weakref__",)
 
-    def __setattr__(self, name: str, value: object) -> None:
-        try:
-            super().__setattr__(name, value)
-        except AttributeError:
-            if hasattr(type(self), name):
-                raise  # It cannot be set.
-            raise unknown_attribute(self, name) from None
+    if not TYPE_CHECKING:  # a type checker would accept any name
+
+        def __setattr__(self, name: str, value: object) -> None:
+            try:
+                super().__setattr__(name, value)
+            except AttributeError:
+                if hasattr(type(self), name):
+                    raise  # It cannot be set.
+                raise unknown_attribute(self, name) from None
 
 
 class Handle(Sealed, ABC):
@@ -35,12 +37,16 @@ class Handle(Sealed, ABC):
 
     __slots__ = ()
 
-    def __setattr__(self, name: str, value: object) -> None:
-        # Otherwise, the handle would silently become that of something else.
-        slot = isinstance(getattr(type(self), name, None), MemberDescriptorType)
-        if slot and hasattr(self, name):
-            raise AttributeError(f"{type(self).__name__}.{name} cannot be set", name=name, obj=self)
-        super().__setattr__(name, value)
+    if not TYPE_CHECKING:  # a type checker would accept any name
+
+        def __setattr__(self, name: str, value: object) -> None:
+            # Otherwise, the handle would silently become that of something else.
+            slot = isinstance(getattr(type(self), name, None), MemberDescriptorType)
+            if slot and hasattr(self, name):
+                raise AttributeError(
+                    f"{type(self).__name__}.{name} cannot be set", name=name, obj=self
+                )
+            super().__setattr__(name, value)
 
     @property
     @abstractmethod

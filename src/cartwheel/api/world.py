@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, Never, SupportsFloat
+from typing import TYPE_CHECKING, Literal, Never, SupportsFloat
 
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import (
@@ -188,17 +188,19 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         state = "closed" if simulation.closed else f"at {simulation.time_ns / 1e9:g} s"
         return f"<World {simulation.world.name!r} {state}>"
 
-    def __setattr__(self, name: str, value: object) -> None:
-        # Subclasses of programs may have attributes of their own.
-        if (
-            self._made
-            and type(self) is World
-            and not name.startswith("_")
-            and name not in self.__dict__
-            and not hasattr(World, name)
-        ):
-            raise unknown_attribute(self, name, also=("pace",))
-        super().__setattr__(name, value)
+    if not TYPE_CHECKING:  # a type checker would accept any name
+
+        def __setattr__(self, name: str, value: object) -> None:
+            # Subclasses of programs may have attributes of their own.
+            if (
+                self._made
+                and type(self) is World
+                and not name.startswith("_")
+                and name not in self.__dict__
+                and not hasattr(World, name)
+            ):
+                raise unknown_attribute(self, name, also=("pace",))
+            super().__setattr__(name, value)
 
     def __reduce__(self) -> Never:
         raise CartwheelError(
