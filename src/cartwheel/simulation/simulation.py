@@ -56,9 +56,8 @@ class Simulation(Advancing):
         """The exact state of the models."""
         self.on_restart: list[Callable[[], None]] = []
         """Called when all models have been reset, but not when a saved state was restored."""
-        self._population.start(attach_world)
         try:
-            self._population.add_all(world.models)
+            self._population.start(attach_world, world.models)
         except BaseException:
             self.close()
             raise

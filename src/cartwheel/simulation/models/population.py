@@ -68,20 +68,24 @@ class Population:
         """What was added to the descriptions of the compiled models."""
         self._in_place = InPlace(engine)
 
-    def start(self, attach_world: Attach) -> None:
-        """Creates the world's plugins and compiles the world without models.
+    def start(self, attach_world: Attach, descriptions: Sequence[RobotDescription]) -> None:
+        """Creates the world's plugins and spawns its models, with one compilation.
 
         Raises:
             PluginError: A plugin's parameters are invalid.
-            WorldError: The world cannot be built.
+            WorldError: Two models have the same name, or the world cannot be built.
         """
         self._engine.on_tasks.append(self.gather_tasks)
         self._engine.on_entries.append(self.compile)
         self.house.attach(attach_world)
+        for description in descriptions:
+            self.residents[description.name] = self.admit(description, description.name)
         self.compile()
+        self.take_positions(self.residents.values())
         self.house.part.spawned = True
         for diagnostic in self.house.part.diagnostics:
             self._engine.report(diagnostic)
+        self._welcome_all([description.name for description in descriptions])
 
     def everyone(self) -> tuple[Resident, ...]:
         """The world's own resident, followed by the models in spawn order."""
@@ -100,19 +104,6 @@ class Population:
     def owner_of(self, plugin: object) -> Resident | None:
         """The model or world that a plugin belongs to; None if the plugin is disabled."""
         return next((each for each in self.everyone() if plugin in each.behaviours), None)
-
-    def add_all(self, descriptions: Sequence[RobotDescription]) -> None:
-        """Spawns the world's models together: compiling one takes as long as compiling all.
-
-        Raises:
-            WorldError: Two models have the same name, or a model cannot be built.
-            PluginError: A plugin's parameters are invalid.
-        """
-        for description in descriptions:
-            self.residents[description.name] = self.admit(description, description.name)
-        self.compile()
-        self.take_positions(self.residents.values())
-        self._welcome_all([description.name for description in descriptions])
 
     @contextlib.contextmanager
     def entering(self) -> Iterator[None]:
