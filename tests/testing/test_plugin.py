@@ -388,9 +388,14 @@ def test_a_condition_that_is_not_met_shows_the_test_and_not_cartwheel(pytester_r
 
         def test_topic(world):
             world.topic("/nothing", "std_msgs/msg/Empty").wait(timeout=0.1)
+
+        def test_misuse(world):
+            world.on(0.05, lambda: world.publish("/clock", clok=3))  # my mistake
+            world.run(0.1)
         """
     )
-    assert done.returncode == 1 and "2 failed" in done.stdout
+    assert done.returncode == 1 and "3 failed" in done.stdout
+    assert "# my mistake" in done.stdout and "src/cartwheel" not in done.stdout
     assert "within 0.1 s" in done.stdout
     for part in ("timing.py", "topics.py", "def run_until", "def wait"):
         assert part not in done.stdout, done.stdout

@@ -7,10 +7,13 @@ simulation.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from pathlib import Path
+from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from cartwheel.errors import CartwheelError
 from cartwheel.watchers import watch
 
 if TYPE_CHECKING:
@@ -27,6 +30,7 @@ _MARKS = (
     "cartwheel(world=, robot=, seed=, record=, **options): world, robots and seed in one mark. "
     "`record` selects topics, such as `record='/odom'`.",
 )
+_SOURCE = Path(__file__).parents[1]
 _BENCH: pytest.StashKey[Bench] = pytest.StashKey()
 _ITEM: pytest.StashKey[pytest.Item | None] = pytest.StashKey()
 """The current test."""
@@ -104,7 +108,6 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, None]:
 @pytest.fixture
 def world(request: pytest.FixtureRequest) -> Iterator[World]:
     """A world for the test, made from files that were read once. It is closed after the test."""
-    from cartwheel.errors import CartwheelError
     from cartwheel.testing.bench import Bench
 
     bench: Bench | None = None
@@ -138,10 +141,41 @@ def robot(request: pytest.FixtureRequest, world: World) -> Model:  # noqa: ARG00
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[Any]
 ) -> Generator[None, Any, None]:
-    """Adds what is known about the worlds of a failed test to its report."""
-    outcome = yield
+    """Adds what is known about the worlds of a failed test to its report.
+
+    An error of Cartwheel shows the lines of the test, but not those of Cartwheel.
+    """
+    excinfo = call.excinfo
+    if (
+        excinfo is None
+        or not isinstance(excinfo.value, CartwheelError)
+        or item.config.getoption("fulltrace")
+    ):
+        outcome = yield
+    else:
+        error, whole = excinfo.value, excinfo.value.__traceback__
+        trace = _own(whole)
+        if trace is not None:
+            error = error.with_traceback(trace)
+            call.excinfo = pytest.ExceptionInfo.from_exc_info((type(error), error, trace))
+        outcome = yield
+        call.excinfo, error.__traceback__ = excinfo, whole
     witnesses = item.config.stash.get(_WITNESSES, None)
     if witnesses is not None and call.excinfo is not None and call.when != "teardown":
         report = outcome.get_result()
         if report.failed:
             witnesses.complete(report, item)
+
+
+def _own(trace: TracebackType | None) -> TracebackType | None:
+    """A traceback without the frames of Cartwheel; the same one if it has no others."""
+    entries = []
+    entry = trace
+    while entry is not None:
+        if _SOURCE not in Path(entry.tb_frame.f_code.co_filename).parents:
+            entries.append(entry)
+        entry = entry.tb_next
+    made: TracebackType | None = None
+    for each in reversed(entries):
+        made = TracebackType(made, each.tb_frame, each.tb_lasti, each.tb_lineno)
+    return made or trace
