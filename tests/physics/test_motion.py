@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from cartwheel import Twist
 from cartwheel.description import load_text
 from cartwheel.geometry import Pose, quat_from_rpy
 from cartwheel.world.build import DEFAULT_STEP
@@ -76,6 +77,30 @@ def test_free_fall(make, step):
     assert fallen == pytest.approx(G * h * h * n * (n + 1) / 2, rel=1e-9)
     assert fallen - G / 2 == pytest.approx(G * h / 2, rel=1e-6)
     assert body_velocity(world, "stone")[2] == pytest.approx(-G, rel=1e-9)
+
+
+@pytest.mark.parametrize(("step", "lost"), [(None, 0.03), (0.001, 0.006)])
+def test_a_body_that_tumbles_loses_some_angular_momentum(make, step, lost):
+    """As docs/physics.md states; the one that spins about a principal axis loses none."""
+    sides = (0.1, 0.2, 0.4)
+    world = make.world(
+        make.box("tumbling", sides, pose=Pose((0, 0, 5))),
+        make.box("spinning", sides, pose=Pose((9, 0, 5))),
+        step=step, ground=None, gravity=0.0,
+    )  # fmt: skip
+    tumbling, spinning = world.model("tumbling"), world.model("spinning")
+
+    def momentum():
+        turn = np.transpose(Pose((0, 0, 0), tumbling.pose.orientation).apply(np.eye(3)))
+        inertia = turn @ tumbling.link("link").inertia @ turn.T
+        return np.linalg.norm(inertia @ tumbling.velocity.angular)
+
+    tumbling.velocity = Twist((0.0, 0.0, 0.0), (0.01, 5.0, 0.01))
+    spinning.velocity = Twist((0.0, 0.0, 0.0), (0.0, 0.0, 5.0))
+    before = momentum()
+    world.run(20.0)
+    assert 1 - momentum() / before == pytest.approx(lost, rel=0.2)
+    assert spinning.velocity.angular == pytest.approx((0.0, 0.0, 5.0), abs=1e-9)
 
 
 def test_a_thrown_body_spins_on_and_drifts_on(make):
