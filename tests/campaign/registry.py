@@ -16,6 +16,7 @@ MODULES: dict[str, tuple[str, ...]] = {
     "fuzz_recordings": ("bag", "mcap", "db3", "db3-tables", "bag2-folder", "definitions"),
     "fuzz_messages": ("msg-files", "srv-files", "action-files"),
     "fuzz_yaml": ("controllers", "gz-bridge"),
+    "fuzz_launches": ("python-launch", "xml-launch"),
     "fuzz_live": ("live",),
     "fuzz_processes": ("kills", "worlds-in-use"),
     "fuzz_autopilots": ("ardupilot", "px4"),

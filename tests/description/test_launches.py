@@ -253,6 +253,7 @@ def test_loops_are_evaluated_for_each_of_their_values(package):
         "    name = ['a']\n    for _ in range(900):\n        name.append(name)\n",
         "    name = ['a']\n    for _ in range(900):\n        name = name + name\n",
         "    name = 3\n    for _ in range(900):\n        name = name * name\n",
+        f"    name = 0x{'f' * 6000}\n",
         "    name = ''\n" + "".join(
             f"{'    ' * (2 * depth + 1)}for x in range(99):\n"
             f"{'    ' * (2 * depth + 2)}for y in range(99):\n" for depth in range(4)

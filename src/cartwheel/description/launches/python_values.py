@@ -31,7 +31,7 @@ def text(value: Any) -> str:
     """A value as text; `UNKNOWN` for an unknown one."""
     if isinstance(value, str):
         return value
-    if isinstance(value, bool | int | float):
+    if isinstance(value, bool) or _is_number(value):
         return str(value)
     if isinstance(value, list):
         return joined(value)
