@@ -214,6 +214,12 @@ def test_mistakes_are_errors(built, options, code, workers):
         made.step(np.zeros((2, len(made.action_names))))
 
 
+def test_a_field_that_does_not_exist_is_an_error_at_once(built):
+    for field in ("pose.pose.position.w", ["twist.twist.linear.x", "speed"], "pose.covariance[x]"):
+        with raises(FIELD_UNKNOWN):
+            batch(built, obs={"/odom": field})
+
+
 def test_a_world_is_not_what_a_batch_is_made_of():
     with cw.World() as world, raises(BATCH_INVALID, argument="built"):
         Batch(world, 2, act={}, obs={"time": duties.words})

@@ -34,6 +34,7 @@ class Lane:
 
     Raises:
         UnknownNameError: A topic does not exist.
+        GraphError: A message does not have a field.
         CartwheelError: The world cannot be made.
     """
 
@@ -56,6 +57,10 @@ class Lane:
                 if isinstance(each, TopicFields):
                     kind = self.world.graph.topic(each.topic).type
                     readers = [_reader(kind, field) for field in each.fields]
+                    empty = self.world.message_class(kind)()
+                    for read in readers:
+                        if read is not _picture:
+                            read(empty)  # a field that does not exist is an error now
                     if each.topic not in self._newest:
                         self._newest[each.topic] = None
                         self.world.subscribe(each.topic, self._keeper(each.topic))
