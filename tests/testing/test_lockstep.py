@@ -63,7 +63,7 @@ def test_a_program_that_fails_ends_the_run():
 
 
 def fail(world):
-    code = "print('one'); import sys; sys.exit('no map')"
+    code = "print('one', flush=True); import sys; sys.exit('no map')"
     with (
         launch([sys.executable, "-S", "-c", code]) as program,
         world.lockstep(DRIVE, check=program.check),

@@ -47,6 +47,7 @@ class Stepping:
             time_ns=lambda: self._simulation.time_ns,
             on_goal=self._simulate_steps,
             on_cancel=lambda goal: goal.cancel(_ended(FAILED, "the goal was canceled")),
+            dropped=partial(_ended, FAILED, _INTERRUPTED),
         )
 
     def close(self) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, Protocol
 
 from cartwheel.graph.names import resolve_name
@@ -133,6 +134,7 @@ class Action:
         time_ns: Returns the simulation time.
         on_goal: Accepts, rejects or ends a new goal.
         on_cancel: Ends a goal whose cancellation was requested.
+        dropped: Returns the result of a goal that `drop` aborts; by default, it is empty.
 
     Raises:
         GraphError: The name is invalid or already in use.
@@ -150,6 +152,7 @@ class Action:
         time_ns: Callable[[], int],
         on_goal: Callable[[Goal], None],
         on_cancel: Callable[[Goal], None],
+        dropped: Callable[[], Any] | None = None,
     ) -> None:
         self._graph = graph
         self.name = resolve_name(name)
@@ -157,6 +160,7 @@ class Action:
         self.node = node
         self.time_ns = time_ns
         self._on_goal, self._on_cancel = on_goal, on_cancel
+        self._dropped = dropped or partial(zero, f"{type_name}_Result")
         self._goals: dict[str, Goal] = {}
         self._generated = 0
         """Number of generated identifiers."""
@@ -243,14 +247,14 @@ class Action:
         return meant
 
     def abort(self, text: str) -> None:
-        """Aborts all goals that have not ended, with an empty result; `text` is the reason."""
+        """Aborts all goals that have not ended; `text` is the reason."""
         for goal in tuple(self._goals.values()):
             self.drop(goal, text)
 
     def drop(self, goal: Goal, text: str) -> None:
-        """Aborts a goal with an empty result, unless it has ended; `text` is the reason."""
+        """Aborts a goal, unless it has ended; `text` is the reason."""
         if not goal.done:
-            goal.abort(zero(f"{self.type}_Result"), text)
+            goal.abort(self._dropped(), text)
 
     def restart(self) -> None:
         """Forgets completed goals, because simulation time restarts."""
