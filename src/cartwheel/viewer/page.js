@@ -55,9 +55,26 @@
   );
   root.addEventListener("keyup", (event) => ours(event) && event.preventDefault(), true);
 
+  // Each command draws the buttons anew. A click between whose beginning and end that happens is
+  // none for the browser, which sees two buttons; here both are the same key.
+  let held = null;
+  const keyOf = (element) => element?.closest?.("[data-key]")?.dataset.key ?? null;
+  const pointer = (kind, handle) => document.addEventListener(kind, handle, true);
+  pointer("pointerdown", (event) => {
+    held = event.isPrimary && event.button === 0 ? keyOf(event.target) : null;
+  });
+  pointer("pointerup", (event) => {
+    const key = keyOf(document.elementFromPoint(event.clientX, event.clientY));
+    if (held !== null && key === held) press(key);
+    held = null;
+  });
+  pointer("pointercancel", () => {
+    held = null;
+  });
+
   document.addEventListener("click", (event) => {
-    const cap = event.target.closest("[data-key]");
-    if (cap) press(cap.dataset.key);
+    // Without a pointer: by the keyboard, or a program such as a screen reader.
+    if (event.detail === 0 && keyOf(event.target)) press(keyOf(event.target));
     // A list keeps the focus after the choice, and Ctrl+K would not be heard in it.
     if (event.target.closest("[role=option]")) {
       setTimeout(() => document.activeElement && document.activeElement.blur(), 50);
