@@ -94,7 +94,7 @@ def test_a_button_that_is_left_or_clicked_by_a_program(page, arena):
     page.locator("[data-key='o']").hover()
     page.mouse.up()
     page.locator("[data-key='l']").evaluate("button => button.click()")
-    eventually(lambda: arena.twists[-1] == (0.0, -1.0), what="the button's Twist")
+    eventually(lambda: arena.twists and arena.twists[-1] == (0.0, -1.0), what="the button's Twist")
     assert (0.5, 1.0) not in arena.twists and (0.5, -1.0) not in arena.twists
 
 
