@@ -144,3 +144,22 @@ def test_text_format(text, fields):
 def test_a_text_that_is_not_a_message(text):
     with pytest.raises(TextFormatError):
         parse_text_format(text)
+
+
+def test_a_message_that_triggers_itself_is_published_once_in_each_step(triggered):
+    """Of a stranger's file; otherwise, the simulation would stand still for ever."""
+    loop = '<input type="gz.msgs.Empty" topic="/a"/><output type="gz.msgs.Empty" topic="/a"/>'
+    world, got = triggered(KEYS[: KEYS.index("<input")] + loop + "</plugin>", "/a")
+    world.publish("/a")
+    world.step(20)
+    times = [time for time, _ in got]
+    assert 20 <= len(times) <= 22
+    assert len(set(times[1:])) == len(times) - 1
+
+
+def test_integers_have_at_most_64_bits():
+    assert parse_text_format("a: 0xFFFFFFFFFFFFFFFF b: -5") == {"a": 2**64 - 1, "b": -5}
+    assert parse_text_format(f"a: {2**64}") == {"a": 2.0**64}
+    assert parse_text_format(f"a: {'9' * 4000}") == {"a": float("inf")}
+    with pytest.raises(TextFormatError):
+        parse_text_format(f"a: 0x{'f' * 6000}")

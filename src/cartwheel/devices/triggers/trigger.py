@@ -74,7 +74,10 @@ class Trigger(Component):
             self._due.append(self.part.time_ns + self._delay_ns)
 
     def _publish(self) -> None:
-        while self._due and self._due[0] <= self.part.time_ns:
+        # Those that its own outputs trigger are due at the next step. Otherwise, a loop never ends.
+        for _ in range(len(self._due)):
+            if self._due[0] > self.part.time_ns:
+                break
             self._due.popleft()
             for publisher, message in self._outputs:
                 publisher.publish(message)

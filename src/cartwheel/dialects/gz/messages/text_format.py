@@ -17,6 +17,8 @@ _TOKEN = re.compile(
 )
 _CLOSING = {"{": "}", "<": ">"}
 _DEEPEST = 32
+_LARGEST = 2**64 - 1
+"""Of integers."""
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 
 
@@ -124,9 +126,13 @@ def _unescaped(text: str) -> str:
 
 def _number(text: str) -> float | int:
     if text.lower().lstrip("+-").startswith("0x"):
-        return int(text, 16)
+        value = int(text, 16)
+        if abs(value) > _LARGEST:
+            raise TextFormatError(f'"{text[:20]}" has more than 64 bits')
+        return value
     text = text.rstrip("f") if not text.endswith("inf") else text
     try:
-        return int(text)
+        value = int(text)
     except ValueError:
         return float(text)
+    return value if abs(value) <= _LARGEST else float(text)
