@@ -114,9 +114,13 @@ def rotate(q: Sequence[float], v: Sequence[float]) -> Vec3:
 
 def cross(a: Iterable[float], b: Iterable[float]) -> Array:
     """Cross product of two vectors, shape (3,). `numpy.cross` has the same bits."""
-    ax, ay, az = map(float, a)
-    bx, by, bz = map(float, b)
-    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
+    return np.array(cross_product((*map(float, a),), (*map(float, b),)))
+
+
+def cross_product(a: Sequence[float], b: Sequence[float]) -> Vec3:
+    """Cross product of two vectors without numpy, which takes ten times as long."""
+    (ax, ay, az), (bx, by, bz) = a, b
+    return (ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
 
 
 def quat_from_axis_angle(axis: Sequence[float], angle: float) -> Quat:

@@ -93,6 +93,25 @@ class Plugin(Component, Generic[C]):
         """
         return iter(())
 
+    @staticmethod
+    def _scope_on(part: Part, shared: Shared, tag: PluginTag, node: str, what: str) -> Scope:
+        """The scope of a component that `added_to` creates.
+
+        Args:
+            part: The model's part of the simulation.
+            shared: Objects that all components of the simulation share.
+            tag: The plugin's tag in the world.
+            node: The name of its node, after that of the model.
+            what: What it is, before the name of the model, for messages.
+        """
+        return Scope(
+            part=part,
+            shared=shared,
+            node=f"{part.name}/{node}",
+            title=f'{what} model "{part.name}"',
+            origin=tag.origin,
+        )
+
     def _scope(self, part: Part, shared: Shared, tag: PluginTag) -> TagScope:
         ros = tag.element.find("ros/namespace")
         plain = tag.element.find("robotNamespace")

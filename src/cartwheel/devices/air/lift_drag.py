@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from cartwheel.component import Component, Scope
-from cartwheel.geometry import Vec3, rotate
+from cartwheel.geometry import Vec3, cross_product, rotate
 
 _STILL = 0.01
 """Airspeed below which there is no lift and no drag, m/s, as in gz-sim."""
@@ -93,7 +93,7 @@ class LiftDrag(Component):
             upward=rotate(orientation, config.upward),
             more_lift=config.control_slope * deflection,
         )
-        self._wrench.apply(force, _cross(rotate(orientation, self._arm), force))
+        self._wrench.apply(force, cross_product(rotate(orientation, self._arm), force))
 
 
 def aerodynamic_force(
@@ -120,8 +120,8 @@ def aerodynamic_force(
         return _ZERO
     if airfoil.radial:
         # The component of the airflow across the axis selects the upward direction.
-        upward = _unit(_cross(forward, _cross(forward, velocity)))
-    span = _unit(_cross(forward, upward))
+        upward = _unit(cross_product(forward, cross_product(forward, velocity)))
+    span = _unit(cross_product(forward, upward))
     along_span = _dot(velocity, span)
     vx, vy, vz = velocity
     sx, sy, sz = span
@@ -131,7 +131,7 @@ def aerodynamic_force(
         return _ZERO
     # gz-sim uses the square of the cosine of the sweep.
     sweep = 1.0 - min(1.0, (along_span / speed) ** 2)
-    lift_axis = _unit(_cross(span, flow))
+    lift_axis = _unit(cross_product(span, flow))
     alpha = math.acos(min(1.0, max(-1.0, _dot(lift_axis, upward))))
     if _dot(lift_axis, forward) < 0.0:
         alpha = -alpha
@@ -162,11 +162,6 @@ def coefficients(airfoil: AirfoilConfig, alpha: float) -> tuple[float, float]:
 
 def _dot(a: Vec3, b: Vec3) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Vec3, b: Vec3) -> Vec3:
-    (ax, ay, az), (bx, by, bz) = a, b
-    return (ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
 
 
 def _unit(vector: Vec3) -> Vec3:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cartwheel.component import Component, Scope
-from cartwheel.geometry import Vec3, rotate
+from cartwheel.geometry import Vec3, cross, rotate
 from cartwheel.messages import header, message_class
 
 _WRENCH = "geometry_msgs/msg/WrenchStamped"
@@ -64,7 +64,7 @@ class WindForce(Component):
             force = force + np.array(config.gust)
         self.part.locate()
         _, orientation = self._link.place()
-        torque = np.cross(rotate(orientation, config.place), force)
+        torque = cross(rotate(orientation, config.place), force)
         self._wrench.apply(force.tolist(), torque.tolist())
         if self._publisher is not None and self._publisher.wanted:
             vector = message_class("geometry_msgs/msg/Vector3")

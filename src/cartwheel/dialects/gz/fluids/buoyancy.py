@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from cartwheel.component import Scope, Shared
+from cartwheel.component import Shared
 from cartwheel.description.meshes import MeshError
 from cartwheel.description.model import Collision, Element, Link, Mesh, PluginTag
 from cartwheel.description.sdf.links.inertia import volume_of
@@ -93,13 +93,7 @@ class BuoyancySystem(Plugin[BuoyancyParameters]):
             and (shapes := tuple(_shapes(link, cut=bool(fluid.layers))))
         )
         if links:
-            scope = Scope(
-                part=part,
-                shared=shared,
-                node=f"{part.name}/buoyancy",
-                title=f'buoyancy of model "{part.name}"',
-                origin=tag.origin,
-            )
+            scope = cls._scope_on(part, shared, tag, "buoyancy", "buoyancy of")
             config = BuoyancyConfig(links=links, fluid=fluid)
             yield part.made(lambda: Buoyancy(scope, config))
 

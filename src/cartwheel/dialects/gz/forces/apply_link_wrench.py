@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar, cast
 
-from cartwheel.component import Scope, Shared
+from cartwheel.component import Shared
 from cartwheel.description.model import Element, PluginTag
 from cartwheel.devices.contact.entity_wrench import (
     EntityWrench,
@@ -63,13 +63,7 @@ class ApplyLinkWrench(Plugin[ApplyLinkWrenchParameters]):
         except PluginError:
             # The world reports it.
             return
-        scope = Scope(
-            part=part,
-            shared=shared,
-            node=f"{part.name}/apply_link_wrench",
-            title=f'wrenches on model "{part.name}"',
-            origin=tag.origin,
-        )
+        scope = cls._scope_on(part, shared, tag, "apply_link_wrench", "wrenches on")
         config = EntityWrenchConfig(
             links=links,
             topic=gz_topic(f"/world/{part.world.name}/wrench"),

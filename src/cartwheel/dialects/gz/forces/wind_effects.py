@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import devices
-from cartwheel.component import Scope, Shared
+from cartwheel.component import Shared
 from cartwheel.description.model import PluginTag
 from cartwheel.devices.air.wind_drag import Fluctuation, WindDrag, WindDragConfig
 from cartwheel.dialects.plugin import Plugin
@@ -116,13 +116,7 @@ class WindEffects(Plugin[WindEffectsParameters]):
         except PluginError:
             # The world reports it.
             return
-        scope = Scope(
-            part=part,
-            shared=shared,
-            node=f"{part.name}/wind",
-            title=f'wind on model "{part.name}"',
-            origin=tag.origin,
-        )
+        scope = cls._scope_on(part, shared, tag, "wind", "wind on")
         wind = WindDragConfig(
             links=links,
             wind=part.world.wind,
