@@ -88,6 +88,17 @@ def test_a_button_that_is_drawn_anew_while_it_is_held_is_its_key(page, arena):
     eventually(lambda: arena.twists[-1] == (0.5, 1.0), what="the button's Twist")
 
 
+def test_a_button_that_is_left_or_clicked_by_a_program(page, arena):
+    page.locator("[data-key='u']").hover()
+    page.mouse.down()
+    page.locator("[data-key='o']").hover()
+    page.mouse.up()
+    # Found and clicked at once: between the two, another one could take its place.
+    page.evaluate("""document.querySelector("[data-key='l']").click()""")
+    eventually(lambda: arena.twists and arena.twists[-1] == (0.0, -1.0), what="the button's Twist")
+    assert (0.5, 1.0) not in arena.twists and (0.5, -1.0) not in arena.twists
+
+
 def test_a_focused_control_does_not_take_the_keys(page, arena):
     page.get_by_role("button", name="Step").focus()
     assert press(page, arena, "l") == (0.0, -1.0)
