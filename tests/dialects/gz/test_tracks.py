@@ -245,14 +245,18 @@ def test_a_saved_state_continues_bit_for_bit(make):
 BELT = link("belt", 100, (4.0, 0.5, 0.2))
 
 
-def conveyor(make, *, static=True, tags=""):
+def conveyor(make, *, static=True, tags="", friction=1.0):
     world = make.world()
     fixed = f"<static>{str(static).lower()}</static>"
     text = (
         f'<model name="conveyor">{fixed}{BELT}{CONTROLLER.format(link="belt", tags=tags)}</model>'
     )
     world.spawn(load_text(f'<sdf version="1.9">{text}</sdf>', file="b.sdf"), z=0.1)
-    box = link("box", 1, (0.2, 0.2, 0.2))
+    surface = (
+        f"<surface><friction><ode><mu>{friction}</mu><mu2>{friction}</mu2></ode></friction>"
+        "</surface></collision>"
+    )
+    box = link("box", 1, (0.2, 0.2, 0.2)).replace("</collision>", surface)
     model = world.spawn(
         load_text(f'<sdf version="1.9"><model name="box">{box}</model></sdf>', file="b.sdf"), z=0.3
     )
@@ -282,6 +286,23 @@ def test_a_belt_carries_what_lies_on_it(make, tags, direction):
     before = box.pose
     world.run(1.0)
     assert box.pose.x - before.x == pytest.approx(0.0, abs=0.002)
+
+
+@pytest.mark.parametrize("speed", [0.8, -0.8])
+@pytest.mark.parametrize("friction", [0.2, 1.0])
+def test_a_belt_that_starts_at_once_accelerates_a_box_by_friction(make, friction, speed):
+    """The box slides at first, and hops: when it lands, the belt still moves in its direction."""
+    world, box = conveyor(make, friction=friction)
+    rate = 9.8 * friction
+    slides = abs(speed) / rate
+    begin = box.pose.x
+    world.publish("/model/conveyor/link/belt/track_cmd_vel", data=speed)
+    world.run(slides / 2)
+    assert box.velocity.linear[0] == pytest.approx(speed / 2, rel=0.15)
+    world.run(1.0 - slides / 2)
+    assert box.velocity.linear[0] == pytest.approx(speed, rel=0.01)
+    way = math.copysign(abs(speed) - speed**2 / (2 * rate), speed)
+    assert box.pose.x - begin == pytest.approx(way, rel=0.05)
 
 
 def test_old_names_are_understood(make):

@@ -19,6 +19,8 @@ _SIDEWAYS = 1e-6
 """Length below which a projected direction does not exist."""
 _PARALLEL = 0.99
 """Cosine of the angle between two axes from which on they count as parallel."""
+_ONE_SIDE = 0.25
+"""Square of the length of a mean normal above which contacts are on one side of a collision."""
 Field = tuple[Array, Array]
 """Velocity of a surface at the origin of its collision, m/s, and angular velocity, rad/s, in the
 world; each shape (3,)."""
@@ -90,6 +92,9 @@ class Track(Component):
         self._limiter.reset()
         self._motions: list[list[float]] = []
         """The next motion of each collision's surface; see `SurfaceHandle.move`."""
+        self._sides: dict[int, Array] = {}
+        """For each collision that has touched a body, the side on which it did last: the mean normal
+        into the collision, in the axes of the track."""
         self.distance = 0.0
         """Distance that the track moved, m."""
 
@@ -120,12 +125,26 @@ class Track(Component):
         axes = matrix_from_quat(turned) @ self._axes
         contacts = self._surface.contacts()
         moves = travel(velocity, contacts, axes[:, 1], self._centre)
-        self._motions = [
-            self._surface.local(
-                number, *surface_field(each, -move, likely_field(velocity, each, axes))
-            )
-            for number, (each, move) in enumerate(zip(contacts, moves, strict=True))
-        ]
+        self._motions = []
+        for number, (each, move) in enumerate(zip(contacts, moves, strict=True)):
+            if len(each.normals):
+                normal = each.normals.mean(axis=0)
+                if normal @ normal > _ONE_SIDE:
+                    self._sides[number] = axes.T @ normal
+            likely = likely_field(velocity, each, axes, axes @ self._side(number))
+            field = surface_field(each, -move, likely)
+            self._motions.append(self._surface.local(number, *field))
+
+    def _side(self, number: int) -> Array:
+        """Normal into a collision where it probably touches a body next, in the track's axes.
+
+        It is where it did last: a body that slides loses the contact for single steps. At first, it
+        is the upper side of a belt that is fixed to the world, and the lower side of a vehicle.
+        """
+        known = self._sides.get(number)
+        if known is not None:
+            return known
+        return np.array([0.0, 0.0, -1.0 if self._surface.fixed else 1.0])
 
     def _publish(self) -> None:
         message = zero(_ODOMETRY)
@@ -174,22 +193,24 @@ def travel(
     return np.split(moves, ends[:-1])
 
 
-def likely_field(velocity: float, contacts: SurfaceContacts, axes: Array) -> Field:
+def likely_field(velocity: float, contacts: SurfaceContacts, axes: Array, normal: Array) -> Field:
     """Returns the motion of the surface of a track's collision, wherever it will touch a body.
 
     Args:
         velocity: Velocity of the track, m/s.
         contacts: The collision.
         axes: Axes of the track in the world, shape (3, 3).
+        normal: Normal into the collision on the side that probably touches a body, in the world,
+            shape (3,).
 
     Returns:
-        A rotation if the collision is round about the track's axle; otherwise, the motion of its
-        lower side.
+        A rotation if the collision is round about the track's axle; otherwise, the motion of this
+        side.
     """
     axle, axis = axes[:, 1], contacts.axis
     if contacts.radius > 0 and (not axis.any() or abs(float(axis @ axle)) > _PARALLEL):
         return np.zeros(3), velocity / contacts.radius * axle
-    return -velocity * axes[:, 0], np.zeros(3)
+    return -velocity * _unit(np.cross(axle, normal)[None])[0], np.zeros(3)
 
 
 def surface_field(contacts: SurfaceContacts, wanted: Array, likely: Field) -> Field:

@@ -62,6 +62,8 @@ class SurfaceHandle:
         ).tolist()
         kinds = {geom: int(model.geom_type[geom]) for geom in self._geoms}
         self._round = {geom: _AXES[kind] for geom, kind in kinds.items() if kind in _AXES}
+        self.fixed = int(model.body_weldid[body]) == 0
+        """Whether the link cannot move, as that of a conveyor belt."""
         # The compiler clears it if no surface moves.
         model.flg_surfacevel = True
 
