@@ -162,10 +162,29 @@ class LinkHandle:
         self._find_accelerations()
         # MuJoCo stores the parent's action on the link, about the tree's centre of mass.
         torque, force = self._data.cfrc_int[self.id, :3], self._data.cfrc_int[self.id, 3:]
+        if self._model.flg_gravcomp:
+            lift, about_centre = self._compensation()
+            force, torque = force - lift, torque - about_centre
         turn: Array = self._data.xmat[self.id].reshape(3, 3)
         about = self._position + turn @ np.asarray(point, dtype=float)
         torque = torque - cross(about - self._centre, force)
         return -turn.T @ force, -turn.T @ torque
+
+    def _compensation(self) -> tuple[Array, Array]:
+        """Forces that cancel gravity on the link and on what it carries: N and N m.
+
+        In world axes, about the tree's centre of mass. MuJoCo's forces between bodies lack them.
+        """
+        model, parents = self._model, self._model.body_parentid
+        end = self.id + 1
+        # The bodies that a body carries follow it.
+        while end < model.nbody and parents[end] >= self.id:
+            end += 1
+        carried = slice(self.id, end)
+        masses = model.body_gravcomp[carried] * model.body_mass[carried]
+        lifts = -masses[:, None] * model.opt.gravity
+        arms = self._data.xipos[carried] - self._centre
+        return lifts.sum(axis=0), np.cross(arms, lifts).sum(axis=0)
 
     def load(self) -> tuple[Array, Array]:
         """Force in N and torque in N m on the link from contacts, pushes and attachments.

@@ -33,6 +33,21 @@ def test_a_joint_bears_weight_times_arm(make, read, joint, mass, reach):
     assert messages[0].header.frame_id == ("hand" if joint == "wrist" else "beam")
 
 
+@pytest.mark.parametrize(
+    ("without", "force", "moment"), [("hand", 3 * G, 1.5 * G), ("beam", 2 * G, 2 * G)]
+)
+def test_a_joint_does_not_bear_the_weight_of_a_link_without_gravity(
+    make, read, without, force, moment
+):
+    """Neither of the joint's own link, nor of one that it carries."""
+    text = arm(ft("<jointName>turn</jointName>"))
+    text = text.replace(f'<link name="{without}">', f'<link name="{without}"><gravity>0</gravity>')
+    world = make.world(make.sdf(text), ground=None)
+    wrench = read(world, "/ft", 0.5)[-1].wrench
+    assert vector(wrench.force) == pytest.approx([0, 0, -force], abs=1e-6)
+    assert vector(wrench.torque) == pytest.approx([0, moment, 0], abs=1e-6)
+
+
 def test_ft_sensor_feels_what_pushes_the_hand(make, read):
     plugin = (
         ft("<jointName>wrist</jointName>")

@@ -93,7 +93,7 @@ class Track(Component):
         self._motions: list[list[float]] = []
         """The next motion of each collision's surface; see `SurfaceHandle.move`."""
         self._sides: dict[int, Array] = {}
-        """For each collision that has touched a body, the side on which it did last: the mean normal
+        """For each collision that has touched a body, the side of the last touch: the mean normal
         into the collision, in the axes of the track."""
         self.distance = 0.0
         """Distance that the track moved, m."""
