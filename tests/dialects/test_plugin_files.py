@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.coded import coded, raises
 
 import cartwheel as cw
-from cartwheel.codes import devices, running
-from cartwheel.errors import PluginError
+from cartwheel.codes import devices, graph, running
+from cartwheel.errors import Code, PluginError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
 GREETER = """
@@ -309,3 +310,56 @@ def test_contacts_of_collisions_by_their_names_in_a_urdf(tmp_path: Path) -> None
         world.run(0.1)
         (found,) = coded(world, running.PLUGIN_FAILED)
         assert found.values["cause"] == devices.CONTACT_COLLISION_UNKNOWN.number
+
+
+SERVER = """
+from dataclasses import dataclass
+from cartwheel.plugin import Plugin
+
+@dataclass(frozen=True)
+class Parameters:
+    pass
+
+class Server(Plugin[Parameters]):
+    filenames = ("libserver.so",)
+
+    def configure(self):
+        self.serve("read", "rcl_interfaces/GetParameters", lambda request: {response})
+"""
+RESPONSE = 'self.message_class("rcl_interfaces/srv/GetParameters_Response")'
+VALUES = "[{'integer_array_value': [1, 2]}]"
+
+
+def server(folder: Path, response: str) -> cw.World:
+    """A world with a plugin that offers ``/read``."""
+    file = folder / "server.py"
+    file.write_text(SERVER.format(response=response))
+    world = cw.World("empty", plugins=file)
+    world.spawn(ROBOT.replace("libgreeter.so", "libserver.so"))
+    return world
+
+
+@pytest.mark.parametrize("response", [f"{{'values': {VALUES}}}", f"{RESPONSE}(values={VALUES})"])
+def test_responses_of_a_plugin_have_the_types_of_their_fields(
+    tmp_path: Path, response: str
+) -> None:
+    """As messages that it publishes: mappings become messages, and lists arrays."""
+    with server(tmp_path, response) as world:
+        (value,) = world.call("/read").values
+        assert value.integer_array_value.dtype == np.int64
+        assert value.integer_array_value.tolist() == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("response", "code"),
+    [
+        (f"{RESPONSE}(values='many')", graph.FIELD_VALUE_INVALID),
+        ("{'value': 1}", graph.FIELD_UNKNOWN),
+        ("None", graph.SERVICE_TIMED_OUT),
+    ],
+)
+def test_a_wrong_response_of_a_plugin_is_an_error(
+    tmp_path: Path, response: str, code: Code
+) -> None:
+    with server(tmp_path, response) as world, raises(code):
+        world.call("/read")

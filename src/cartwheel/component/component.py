@@ -16,9 +16,11 @@ from cartwheel.graph import (
     Qos,
     ReconfigureParameter,
     ReconfigureServer,
+    checked_handler,
 )
 from cartwheel.graph.reconfigure import OnChange
 from cartwheel.graph.reconfigure import Value as Parameter
+from cartwheel.messages import service_classes
 from cartwheel.messages.limits import unfit
 from cartwheel.messages.typed import Kind, name_of
 from cartwheel.simulation import LinkHandle
@@ -209,6 +211,8 @@ class Component:
             Whether the service is offered.
         """
         self._named(type_name)
+        if self._foreign:
+            handler = checked_handler(name, service_classes(type_name)[1], handler)
         try:
             service = self.graph.serve(
                 self.resolve(name), type_name, handler, node=self.node, threaded=threaded

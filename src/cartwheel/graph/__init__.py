@@ -9,6 +9,7 @@ from cartwheel.graph.names import check_prefix, resolve_frame, resolve_name
 from cartwheel.graph.parameters import Parameters, ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
 from cartwheel.graph.renaming import TopicRenaming
+from cartwheel.graph.responses import checked_handler, made_response
 from cartwheel.graph.topic import (
     TWIST,
     TWIST_STAMPED,
@@ -51,8 +52,10 @@ __all__ = [
     "TopicInfo",
     "TopicRenaming",
     "check_prefix",
+    "checked_handler",
     "choices",
     "made_message",
+    "made_response",
     "resolve_frame",
     "resolve_name",
 ]

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.codes.graph import SERVICE_FAILED, SERVICE_TIMED_OUT
+from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.errors import GraphError
-from cartwheel.graph import Graph, Service, made_message
+from cartwheel.graph import Graph, Service, made_response
 from cartwheel.messages import service_classes
-from cartwheel.messages.classes import FILLER
 from cartwheel.messages.library.library import TypeLibrary
 from cartwheel.messages.store import finding_with
 
@@ -61,15 +60,7 @@ class ProgramHandler:
             GraphError: The function returns no response, or one of a different type.
         """
         with finding_with(self._types):
-            given = self._function(request)
-            if given is None and set(self._response.__dataclass_fields__) != {FILLER}:
-                raise GraphError(
-                    f'the handler of service "{self._name}" returned no response',
-                    code=SERVICE_TIMED_OUT,
-                    hint=f"Return a {self._response.__msgtype__}, or a mapping of its fields.",
-                    values={"service": self._name},
-                )
-            return made_message(self._name, self._response.__msgtype__, given, {})
+            return made_response(self._name, self._response, self._function(request))
 
 
 class ServiceServer:
