@@ -11,6 +11,8 @@ from cartwheel.simulation.dynamics.moving_surface import SurfaceContacts
 
 LEFT = np.array([0.0, 1.0, 0.0])
 AXES = np.eye(3)
+BELOW = np.array([0.0, 0.0, 1.0])
+"""Normal into a track of what is below it."""
 
 
 def contacts(positions, normals=(0.0, 0.0, 1.0), *, centre=(0.0, 0.0, 0.1), radius=0.0, axis=LEFT):
@@ -87,9 +89,11 @@ def test_contacts_in_front_and_below_fit_together():
 
 
 def test_without_contacts_the_likely_motion_stays():
-    likely = likely_field(0.5, contacts([]), AXES)
+    likely = likely_field(0.5, contacts([]), AXES, BELOW)
     assert surface_field(contacts([]), np.zeros((0, 3)), likely) is likely
     assert likely[0] == pytest.approx((-0.5, 0, 0))
+    above = likely_field(0.5, contacts([]), AXES, -BELOW)
+    assert above[0] == pytest.approx((0.5, 0, 0))
 
 
 def test_a_round_end_rotates_about_the_axle():
@@ -97,10 +101,10 @@ def test_a_round_end_rotates_about_the_axle():
     for axis in (LEFT, -LEFT, np.zeros(3)):
         touched = contacts([(0, 0, 0), (0.1, 0, 0.1)], radius=0.1, axis=axis)
         touched = touched._replace(normals=np.array([(0, 0, 1.0), (-1.0, 0, 0)]))
-        found = field_at(likely_field(0.5, touched, AXES), touched)
+        found = field_at(likely_field(0.5, touched, AXES, BELOW), touched)
         assert found == pytest.approx(np.array([(-0.5, 0, 0), (0, 0, -0.5)]))
     across = contacts([], radius=0.1, axis=(1, 0, 0))
-    assert likely_field(0.5, across, AXES)[0] == pytest.approx((-0.5, 0, 0))
+    assert likely_field(0.5, across, AXES, BELOW)[0] == pytest.approx((-0.5, 0, 0))
 
 
 def test_the_tracks_of_a_turn():

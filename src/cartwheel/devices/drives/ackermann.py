@@ -135,9 +135,22 @@ class AckermannDrive(Drive):
         return forward, forward * tan(angle) / config.wheel_base
 
     def update(self, seconds: float) -> None:
+        self._actuate(seconds or _FIRST_PERIOD)
+        if self._config.encoded:
+            self._reckoning.read(seconds)
+        if self._distance is not None:
+            self._travel()
+
+    def respond(self) -> None:
         config = self._config
-        speed = self._speed.step(self._command[0], seconds or _FIRST_PERIOD)
-        turn = self._turn.step(self._command[1], seconds or _FIRST_PERIOD)
+        if config.speed_limits.is_instant and config.turn_limits.is_instant:
+            self._actuate(_FIRST_PERIOD)
+
+    def _actuate(self, seconds: float) -> None:
+        """Commands the wheels and the steering, `seconds` after the last call."""
+        config = self._config
+        speed = self._speed.step(self._command[0], seconds)
+        turn = self._turn.step(self._command[1], seconds)
         if config.turn == "yaw rate":
             middle = angle_of_turn(speed, turn, config.wheel_base)
         else:
@@ -154,10 +167,6 @@ class AckermannDrive(Drive):
             self._steering_wheel.command_position(
                 middle * config.max_steering_wheel / config.max_steering
             )
-        if config.encoded:
-            self._reckoning.read(seconds)
-        if self._distance is not None:
-            self._travel()
 
     def motion(self) -> Motion:
         return self._reckoning.motion() if self._config.encoded else super().motion()

@@ -114,6 +114,7 @@ class DifferentialDrive(Drive):
         self._is_limited = config.drive is None or not (
             config.linear == config.angular == NO_LIMITS
         )
+        self._is_instant = config.linear.is_instant and config.angular.is_instant
         self._is_true = config.odometry == "ground truth"
         """Whether the odometry contains the pose in the world."""
         self._can_idle = self._is_true and not self._is_limited
@@ -157,7 +158,8 @@ class DifferentialDrive(Drive):
         return True
 
     def respond(self) -> None:
-        if not self._is_limited:
+        # A wheel's ramp continues at the next update.
+        if self._is_instant and not (self._is_limited and self._config.limit_period is None):
             self.actuate(0.0)
 
     def actuate(self, seconds: float) -> None:

@@ -26,6 +26,12 @@ class Limits:
     jerk: Bounds | None = None
     """m/s³ or rad/s³."""
 
+    @property
+    def is_instant(self) -> bool:
+        """Whether a command takes effect at once, without a ramp."""
+        bounds = (self.acceleration, self.deceleration, self.jerk)
+        return all(each in {None, UNBOUNDED} for each in bounds)
+
 
 NO_LIMITS = Limits()
 

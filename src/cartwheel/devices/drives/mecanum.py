@@ -235,6 +235,7 @@ class MecanumDrive(Drive):
         dimensions = replace(config.wheels, heading=heading)
         self._wheels = MecanumWheels(dimensions, wheels, servo, self._reckoning)
         self._period = 1 / config.drive.control_rate
+        self._is_instant = all(each.is_instant for each in config.wheels.limits)
         self.run(config.drive, reads_state=True)
 
     def reset(self) -> None:
@@ -249,6 +250,10 @@ class MecanumDrive(Drive):
     def update(self, seconds: float) -> None:
         self._wheels.command(self._command, self._period)
         self._wheels.measure(seconds)
+
+    def respond(self) -> None:
+        if self._is_instant:
+            self._wheels.command(self._command, self._period)
 
     def motion(self) -> Motion:
         return self._reckoning.motion()
