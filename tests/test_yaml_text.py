@@ -1,5 +1,6 @@
 """YAML of strangers: bounds on files, depth and what aliases stand for, wherever it is read."""
 
+import math
 import os
 
 import pytest
@@ -15,6 +16,7 @@ from cartwheel.codes.devices import BRIDGE_FILE_INVALID, CONTROLLERS_FILE_UNREAD
 from cartwheel.codes.recording import RECORDING_DAMAGED
 from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.ros_control.files import read_yaml
+from cartwheel.errors import PluginError
 
 BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(
     f"{name}: &{name} [{','.join(['*' + chr(ord(name) - 1)] * 9)}]\n" for name in "bcdefghij"
@@ -95,3 +97,47 @@ def test_only_regular_files_of_some_size_are_read(name, tmp_path):
     with pytest.raises(OSError) as error:
         yaml_text.read(tmp_path / name)
     assert type(error.value) is OSError  # Neither missing nor forbidden.
+
+
+@pytest.mark.parametrize(
+    ("text", "angle"),
+    [
+        ("!degrees 120.0", 2 * math.pi / 3),
+        ("!degrees 1e1", math.pi / 18),
+        ("!radians 3*pi/4", 3 * math.pi / 4),
+        ("deg(-90)", -math.pi / 2),
+        ("rad(pi - 1)", math.pi - 1),
+    ],
+)
+def test_angles_of_rosparam_are_in_radians(tmp_path, text, angle):
+    file = tmp_path / "c.yaml"
+    file.write_text(f"angle: {text}\nname: degenerate\nother: rad\n")
+    content = read_yaml(file)
+    assert content == {"angle": pytest.approx(angle), "name": "degenerate", "other": "rad"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "!degrees [1]",
+        "!degrees north",
+        "rad(pi/0)",
+        "rad(9**9**9)",
+        "!radians __import__",
+        "!radians '" + "-" * 200 + "1'",
+        "!radians '" + "1+" * 1000 + "1'",
+        "rad(1e999 * 0 j)",
+    ],
+)
+def test_invalid_angles_of_rosparam_are_reported_with_their_line(tmp_path, text):
+    file = tmp_path / "c.yaml"
+    file.write_text(f"name: x\nangle: {text}\n")
+    with raises(CONTROLLERS_FILE_UNREADABLE, PluginError) as error:
+        read_yaml(file)
+    assert error.value.origin.line == 2
+
+
+def test_ros2_has_no_angles_in_degrees(tmp_path):
+    file = tmp_path / "c.yaml"
+    file.write_text("arm: {ros__parameters: {name: deg(90)}}\n")
+    assert read_yaml(file) == {"arm": {"ros__parameters": {"name": "deg(90)"}}}

@@ -6,6 +6,11 @@ memory when something iterates over them.
 
 from __future__ import annotations
 
+import ast
+import math
+import operator
+import re
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +23,16 @@ MAX_BYTES = 2_000_000
 MAX_DEPTH = 50
 MAX_VALUES = 200_000
 """Maximum number of values in a document, including values repeated by aliases."""
+_ANGLES = {"deg": math.pi / 180.0, "rad": 1.0}
+"""Factors to radians by the function's name in a file of rosparam."""
+_LONGEST_ANGLE = 100
+"""Maximum length of the text of an angle."""
+_OPERATIONS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 
 
 def read(path: Path, limit: int = MAX_BYTES) -> str:
@@ -114,3 +129,59 @@ def loader() -> type[yaml.SafeLoader]:
             raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark)
 
     return Loader
+
+
+@lru_cache(maxsize=1)
+def rosparam_loader() -> type[yaml.SafeLoader]:
+    """As `loader`, for the files that ROS 1 reads with rosparam.
+
+    They may contain angles such as ``!degrees 90``, ``!radians pi/2``, ``deg(90)`` and
+    ``rad(pi/2)``, which are loaded as numbers in rad.
+    """
+
+    class Loader(loader()):  # type: ignore[misc]
+        pass
+
+    for tag, name in (("!degrees", "deg"), ("!radians", "rad")):
+        Loader.add_constructor(tag, _angle_constructor(_ANGLES[name]))
+        pattern = re.compile(rf"^{name}\([^)]*\)$")
+        Loader.add_implicit_resolver(tag, pattern, [name[0]])
+    return Loader
+
+
+def _angle_constructor(factor: float) -> Callable[[Any, Any], float]:
+    def construct(loader: Any, node: Any) -> float:
+        import yaml
+
+        text: str = loader.construct_scalar(node)
+        try:
+            return _arithmetic(re.sub(r"^(?:deg|rad)\((.*)\)$", r"\1", text.strip())) * factor
+        except (SyntaxError, ValueError, ArithmeticError, RecursionError):
+            problem = f'expected an angle (got "{text[:_LONGEST_ANGLE]}")'
+        raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark)
+
+    return construct
+
+
+def _arithmetic(text: str) -> float:
+    """The value of a sum or product of numbers and ``pi``.
+
+    Raises:
+        SyntaxError, ValueError: It contains anything else, or is too long.
+        ArithmeticError: It has no value.
+    """
+    if len(text) > _LONGEST_ANGLE:
+        raise ValueError
+
+    def value(node: ast.expr) -> float:
+        if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+            return float(node.value)
+        if isinstance(node, ast.Name) and node.id == "pi":
+            return math.pi
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
+            return value(node.operand) * (-1.0 if isinstance(node.op, ast.USub) else 1.0)
+        if isinstance(node, ast.BinOp) and type(node.op) in _OPERATIONS:
+            return _OPERATIONS[type(node.op)](value(node.left), value(node.right))
+        raise ValueError
+
+    return value(ast.parse(text.strip(), mode="eval").body)

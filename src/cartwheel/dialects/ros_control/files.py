@@ -139,9 +139,10 @@ def read_yaml(path: Path) -> dict[str, Any]:
     origin = Origin(file=str(path))
     try:
         text = yaml_text.read(path)
-        loader = yaml_text.loader()(text)
+        ros2 = "ros__parameters" in text
+        loader = (yaml_text.loader() if ros2 else yaml_text.rosparam_loader())(text)
         node = loader.get_single_node()
-        if node is not None and "ros__parameters" in text:
+        if node is not None and ros2:
             _as_ros2(node, set())
         content = loader.construct_document(node) if node is not None else None
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
