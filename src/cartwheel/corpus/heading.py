@@ -7,7 +7,8 @@ import math
 from collections.abc import Mapping
 
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import wheel_axis, wheel_place
+from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_place
+from cartwheel.description.model import Joint
 
 FORWARD = (1.0, 0.0)
 _ROLLS = 0.2
@@ -16,6 +17,9 @@ _HORIZONTAL = 0.5
 """Maximum cosine between a wheel's axis and the vertical."""
 _PARALLEL = 0.9
 """Minimum length of the mean of the unit axes, as lines, of wheels with a common direction."""
+_NEAR = 0.1
+"""Maximum height of a wheel above the robot's lowest point, relative to the robot's size: a
+spinning lidar is no wheel."""
 
 
 def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
@@ -23,21 +27,25 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
 
     It points toward +x, or, for wheels with an axis along x, away from the side on which the left
     wheel would be on the right, or, if that is unknown, in the direction in which the wheels roll.
-    Without parallel wheels it is x, as in REP 103.
+    Without parallel wheels on the ground it is x, as in REP 103.
 
     Args:
         robot: The robot.
         speeds: Speeds of the joints while the robot drove forward, rad/s, by name.
     """
-    # Doubled angles, because an axis and its negative are the same line.
-    lines = [
-        cmath.exp(2j * math.atan2(axis[1], axis[0]))
+    turning = [
+        robot.joints[name]
         for name, speed in speeds.items()
         if abs(speed) >= _ROLLS
-        and (joint := robot.joints.get(name)) is not None
-        and joint.type in ("continuous", "revolute")
-        and joint.child in robot.placed
-        and abs((axis := wheel_axis(robot, robot.joints[name]))[2]) <= _HORIZONTAL
+        and name in robot.joints
+        and robot.joints[name].type in ("continuous", "revolute")
+        and robot.joints[name].child in robot.placed
+    ]
+    ground = lowest(robot, *robot.links) if turning else None
+    axes = [wheel_axis(robot, joint) for joint in turning if _is_low(robot, joint, ground)]
+    # Doubled angles, because an axis and its negative are the same line.
+    lines = [
+        cmath.exp(2j * math.atan2(axis[1], axis[0])) for axis in axes if abs(axis[2]) <= _HORIZONTAL
     ]
     if not lines:
         return FORWARD
@@ -51,6 +59,12 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     else:
         sign = _side(robot, forward) or _rolling(robot, speeds, forward)
     return sign * forward[0], sign * forward[1]
+
+
+def _is_low(robot: Robot, joint: Joint, ground: float | None) -> bool:
+    """Whether a joint's link is near the ground, as a wheel is."""
+    bottom = lowest(robot, *wheel_links(robot, joint))
+    return bottom is not None and ground is not None and bottom - ground <= _NEAR * robot.size
 
 
 def _side(robot: Robot, forward: tuple[float, float]) -> float:

@@ -1,0 +1,40 @@
+"""The direction in which a base drives, by its wheels."""
+
+import pytest
+
+from cartwheel.checks.robot import Robot
+from cartwheel.corpus.heading import FORWARD, heading
+from cartwheel.description import load_text
+
+LINK = (
+    '<link name="{name}"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/>'
+    "</inertial><collision><geometry>{shape}</geometry></collision></link>"
+)
+JOINT = (
+    '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'
+    '<origin xyz="{at}"/><axis xyz="{axis}"/></joint>'
+)
+
+
+def robot(*turning):
+    """A box with links that turn: name, place of the joint, and axis."""
+    text = LINK.format(name="base", shape='<box size="0.4 0.4 0.1"/>')
+    for name, at, axis in turning:
+        text += LINK.format(name=name, shape='<sphere radius="0.05"/>')
+        text += JOINT.format(name=name, at=at, axis=axis)
+    return Robot(load_text(f'<robot name="robot">{text}</robot>'), None)
+
+
+LIDAR = ("lidar", "0 0 0.3", "1 0 0")
+
+
+@pytest.mark.parametrize("wheels", [(), (("left", "0 0.2 -0.05", "0 1 0"),)])
+def test_what_turns_above_the_ground_is_no_wheel(wheels):
+    speeds = {"lidar_joint": 5.0, "left_joint": 2.0}
+    assert heading(robot(LIDAR, *wheels), speeds) == pytest.approx(FORWARD)
+
+
+def test_a_base_drives_along_its_wheels_also_if_they_roll_along_y():
+    left, right = (("left", "0.2 0 -0.05", "1 0 0"), ("right", "-0.2 0 -0.05", "1 0 0"))
+    x, y = heading(robot(left, right), {"left_joint": 2.0, "right_joint": 2.0})
+    assert (x, abs(y)) == pytest.approx((0.0, 1.0))
