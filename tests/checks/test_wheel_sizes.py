@@ -318,6 +318,13 @@ ROS1_STEERED = f"""car:
   wheel_separation_h: {BASE}
   wheel_radius: {RADIUS}
 """
+ROS1_DIFF = f"""car:
+  type: diff_drive_controller/DiffDriveController
+  left_wheel: [rear_left_joint]
+  right_wheel: [rear_right_joint]
+  wheel_separation: {TRACK}
+  wheel_radius: {RADIUS}
+"""
 ROS1_MECANUM = f"""car:
   type: mecanum_drive_controller/MecanumDriveController
   front_left_wheel_joint: front_left_joint
@@ -399,6 +406,19 @@ def test_controllers_sizes_are_those_of_the_car(told, take, tmp_path, case):
         assert finding.origin.line == text.splitlines().index(line) + 1
         path.write_text(take(wrong, finding))
         assert told(car(), controller_files=[path]) == []
+
+
+@pytest.mark.parametrize("text", [ROS1_DIFF, ROS2_DIFF])
+def test_swapped_wheels_of_a_controller_are_found(bench, tmp_path, text):
+    path = tmp_path / "car.yaml"
+    path.write_text(text)
+    assert not bench.find(car(), "wheels-swapped", controller_files=[path])
+    left, right = "rear_left_joint", "rear_right_joint"
+    path.write_text(text.replace(left, "x").replace(right, left).replace("x]", f"{right}]"))
+    (finding,) = bench.find(car(), "wheels-swapped", controller_files=[path])
+    assert finding.values == {"left": right, "right": left}
+    line = next(n for n, line in enumerate(path.read_text().splitlines(), 1) if right in line)
+    assert (finding.origin.file, finding.origin.line) == (str(path), line)
 
 
 def test_the_sizes_of_wheels_that_other_hardware_moves_are_not_compared(told, tmp_path):

@@ -94,6 +94,21 @@ def claims(controller: Controller) -> list[Claim]:
     ]
 
 
+def wheel_sides(controller: Controller) -> list[list[Value]]:
+    """The joints of the left and right wheels of a drive that turns by their speeds.
+
+    Empty for other controllers, also for those that steer.
+    """
+    if table(controller, "wheel_base", "wheel_reach"):
+        return []
+    joints = {row.field: values(controller, row) for row in table(controller, "joint")}
+    for row in table(controller, "wheel_separation"):
+        groups = [joints[field] for field in row.wheels]
+        if len(groups) == 2 and all(groups) and groups[0] is not groups[1]:
+            return groups
+    return []
+
+
 def _interfaces(controller: Controller, row: Row) -> list[str]:
     """The interfaces by which a controller commands the joints of a parameter."""
     if row.interface != OWN:

@@ -9,6 +9,7 @@ import numpy as np
 
 from cartwheel.codes import devices, robot
 from cartwheel.description.kinematics import link_poses
+from cartwheel.description.model import RobotDescription
 from cartwheel.devices.drives.differential import (
     DifferentialDrive,
     DifferentialDriveConfig,
@@ -80,30 +81,9 @@ def add_differential_drive(
 
 
 def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> None:
-    """Reports a left wheel on the right side, because the robot then turns the wrong way.
-
-    If the wheels are beside each other along x, their axes define the sides.
-    """
-    description = plugin.part.description
-    poses = link_poses(description, {})
-    front = poses[description.canonical_link].inverse()
+    """Reports a left wheel on the right side, because the robot then turns the wrong way."""
     for pair in pairs:
-        joints = [description.joint(name) for name in (pair.left, pair.right)]
-        wheels = [each for each in joints if each is not None]
-        if len(wheels) < 2:
-            continue
-        places = [front @ poses[each.child] @ each.pose for each in wheels]
-        gap = np.subtract(places[0].position, places[1].position)
-        axes = [
-            rotate(at.orientation, each.axis.xyz) for at, each in zip(places, wheels, strict=True)
-        ]
-        # A robot turns as commanded if its axes point from the right wheel to the left one.
-        senses = [float(np.dot(axis, gap)) for axis in axes]
-        if abs(gap[1]) < 0.1 * abs(gap[0]):
-            swapped = all(sense < 0 for sense in senses)
-        else:
-            swapped = gap[1] < 0 and not all(sense > 0 for sense in senses)
-        if swapped:
+        if are_swapped(plugin.part.description, pair.left, pair.right):
             plugin.warn(
                 robot.WHEELS_SWAPPED,
                 f'the left wheel ("{pair.left}") is to the right of the right wheel '
@@ -111,3 +91,24 @@ def _report_swapped_wheels(plugin: Plugin[Any], pairs: Sequence[WheelPair]) -> N
                 values={"left": pair.left, "right": pair.right},
             )
             return
+
+
+def are_swapped(description: RobotDescription, left: str, right: str) -> bool:
+    """Whether a robot turns the wrong way because the joint of its left wheel is on the right.
+
+    If the wheels are beside each other along x, their axes define the sides.
+    """
+    joints = [description.joint(name) for name in (left, right)]
+    wheels = [each for each in joints if each is not None]
+    if len(wheels) < 2:
+        return False
+    poses = link_poses(description, {})
+    front = poses[description.canonical_link].inverse()
+    places = [front @ poses[each.child] @ each.pose for each in wheels]
+    gap = np.subtract(places[0].position, places[1].position)
+    axes = [rotate(at.orientation, each.axis.xyz) for at, each in zip(places, wheels, strict=True)]
+    # A robot turns as commanded if its axes point from the right wheel to the left one.
+    senses = [float(np.dot(axis, gap)) for axis in axes]
+    if abs(gap[1]) < 0.1 * abs(gap[0]):
+        return all(sense < 0 for sense in senses)
+    return bool(gap[1] < 0 and not all(sense > 0 for sense in senses))

@@ -7,7 +7,7 @@ import pytest
 import yaml
 from tests.coded import coded
 
-from cartwheel.codes import running
+from cartwheel.codes import robot, running
 from cartwheel.messages import from_dict
 
 RADIUS, TRACK = 0.1, 0.4
@@ -85,6 +85,14 @@ def test_it_drives_at_the_speed_that_it_is_told(drive):
     assert told.twist.twist.linear.x == pytest.approx(0.5, rel=0.02)
     assert told.pose.covariance.reshape(6, 6).diagonal().tolist() == [1, 2, 3, 4, 5, 6]
     assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_link")
+
+
+def test_swapped_wheels_are_reported(drive):
+    assert not coded(drive().world, robot.WHEELS_SWAPPED)
+    made = drive(left_wheel="right_joint", right_wheel="left_joint")
+    assert coded(made.world, robot.WHEELS_SWAPPED, controller="base", left="right_joint")
+    made.go(2.0, angular=0.5)
+    assert made.model.pose.rpy[2] < -0.5
 
 
 def test_a_circle_closes(drive):

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, robot, running
 from cartwheel.devices.drives.differential import (
     DifferentialDrive,
     DifferentialDriveConfig,
@@ -30,6 +30,7 @@ from cartwheel.dialects.ros_control.controllers.wheels import (
     wheel_radius,
 )
 from cartwheel.dialects.ros_control.parameters import ignored, parameter, ros2_parameter
+from cartwheel.dialects.wheel_pairs import are_swapped
 from cartwheel.messages import header, message_class
 
 
@@ -136,6 +137,13 @@ class DiffDriveController(Controller):
         for wheel in claims:
             check_axis(self, wheel.joint, LEFT)
         first_left, first_right = claims[0].joint, claims[len(left)].joint
+        if are_swapped(self.part.description, first_left, first_right):
+            self.warn(
+                robot.WHEELS_SWAPPED,
+                f'the left wheel ("{first_left}") is to the right of the right wheel '
+                f'("{first_right}"), so the robot turns the wrong way',
+                values={"left": first_left, "right": first_right},
+            )
         separation = given.separation_factor * self._separation(given, first_left, first_right)
         radius = self._radius(given, first_left)
         left_factor, right_factor = (
