@@ -1013,6 +1013,27 @@ def test_the_joints_of_a_robot_that_lies_on_them_are_moved_above_the_ground(tmp_
     assert {fault.test for fault in found.faults} == {"stand"}
 
 
+FOOT = (
+    '<link name="foot"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4"/>'
+    '</inertial><collision><geometry><box size="0.02 0.02 0.02"/></geometry></collision></link>'
+    '<joint name="shoulder" type="prismatic"><parent link="base"/><child link="foot"/>'
+    '<origin xyz="0.1 0 {z}"/><axis xyz="0 0 -1"/>'
+    '<limit lower="0" upper="0.2" effort="50" velocity="1"/></joint>'
+    '<gazebo reference="foot"><mu1>0</mu1><mu2>0</mu2></gazebo>'
+) + ARM[ARM.index("<transmission") :]
+
+
+@pytest.mark.parametrize("z", [0.1, -0.06])
+def test_a_joint_whose_link_the_ground_holds_is_moved_above_it(tmp_path, tried, z):
+    """The foot of the second cart touches the ground, so it cannot be extended."""
+    path = tmp_path / "foot.yaml"
+    path.write_text(PID.format(p=300.0))
+    found = tried(cart(0.1), FOOT.format(kind="Effort", z=z), controllers=[path])
+    (reach,) = found.reaches
+    assert reach.target == pytest.approx(0.02, abs=0.005)
+    assert found.good and found.drives, found.faults
+
+
 def test_an_arm_that_hangs_far_below_its_base_is_tested_above_the_ground(tmp_path, tried):
     """The ground would press its lowest part, 8 m below the base, upwards."""
     path = tmp_path / "arm.yaml"

@@ -1,4 +1,4 @@
-"""What a robot rests on and what gave way, after it stood without commands."""
+"""What a robot rests on, what gave way while it stood, and what the ground holds."""
 
 from __future__ import annotations
 
@@ -123,6 +123,19 @@ def gave_way(
             origin=robot.joints[most].origin,
             hint=f'Command "{waiting[most]}" and the others at the start.' if wait else "",
         )
+
+
+def blocked(world: World, model: Model, robot: Robot) -> set[str]:
+    """The joints that hold a link other than a wheel that touches the ground or another model."""
+    found: set[str] = set()
+    for contact in world.contacts(model.name):
+        joint = robot.inbound.get(robot.rigid_root(contact.links[0]))
+        if contact.models[1] == model.name or joint is None or joint.type == "continuous":
+            continue
+        while joint is not None and joint.name not in found:
+            found.add(joint.name)
+            joint = robot.inbound.get(robot.rigid_root(joint.parent))
+    return found
 
 
 def _within(joint: Joint, position: float) -> float:

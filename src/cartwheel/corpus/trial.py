@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -18,10 +16,11 @@ from cartwheel.corpus import commands, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
+from cartwheel.corpus.gains import weak_gains
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
-from cartwheel.corpus.resting import dragging, gave_way
+from cartwheel.corpus.resting import blocked, dragging, gave_way
 from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
@@ -29,18 +28,11 @@ from cartwheel.description.launches import LaunchUse, chosen, launches_near, roo
 from cartwheel.description.model import Joint, RobotDescription
 from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
-from cartwheel.dialects.gz.joint_controller import (
-    JointController,
-    JointPositionController,
-    JointPositionParameters,
-    JointVelocityParameters,
-)
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles
 from cartwheel.dialects.ros_control.selection import selection
-from cartwheel.dialects.tags import read
 from cartwheel.dialects.world_plugins import BUILT_IN
-from cartwheel.errors import CartwheelError, Diagnostic, PluginError
+from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose
 from cartwheel.graph import Subscription
 
@@ -51,8 +43,6 @@ _LISTENING = 1.0
 _LONGEST = 5.0
 _HIGH = 5.0
 """m."""
-_COMPLETE = 50.0
-"""Exponent of a factor that is as good as infinite."""
 _WATER = """<sdf version="1.9"><world name="water"><gravity>0 0 -9.8</gravity>
 <plugin name="buoyancy" filename="gz-sim-buoyancy-system"/></world></sdf>"""
 """A world filled with water, for robots with thrusters."""
@@ -118,10 +108,20 @@ def try_robot(
                 controller_files=tuple(controllers),
                 spawned=spawned,
             )
-            for found in _moved(verdict, world, model, robot, standing):
+            held: set[str] = set()
+            for found in _moved(verdict, world, model, robot, standing, held=held):
                 verdict = replace(found, diagnostics=world.diagnostics)
         if _lies(verdict) or _is_stuck(verdict):
             verdict = _hung(verdict, robot, controllers)
+        elif held:
+            free = {each.joint: each for each in _hung(verdict, robot, controllers).reaches}
+            verdict = replace(
+                verdict,
+                reaches=tuple(
+                    free.get(each.joint, each) if each.joint in held else each
+                    for each in verdict.reaches
+                ),
+            )
     except CartwheelError as error:
         verdict = replace(verdict, error=str(error), failure=error.diagnostic())
     findings = _Findings(file, arguments, package_path, controllers)
@@ -205,9 +205,18 @@ def _place(robot: RobotDescription) -> Pose:
 
 
 def _moved(
-    verdict: Verdict, world: World, model: Model, robot: RobotDescription, standing: float
+    verdict: Verdict,
+    world: World,
+    model: Model,
+    robot: RobotDescription,
+    standing: float,
+    *,
+    held: set[str],
 ) -> Iterator[Verdict]:
-    """The verdict after each part of the test, so that an error keeps earlier results."""
+    """The verdict after each part of the test, so that an error keeps earlier results.
+
+    The joints that do not arrive because what they move touches the ground are added to `held`.
+    """
     before = motion.positions(world, model)
     stood = motion.stand(world, model, robot, standing)
     started = _controllers(world).started
@@ -238,19 +247,21 @@ def _moved(
     if _lies(verdict):
         return
     moved = verdict
-    for moved in _joints_moved(verdict, world, model, robot):
+    for moved in _joints_moved(verdict, world, model, robot, held):
         yield moved
     pushes = tuple(thrusts(world, model, robot))
     yield replace(moved, spins=(*moved.spins, *pushes))
 
 
 def _joints_moved(
-    verdict: Verdict, world: World, model: Model, robot: RobotDescription
+    verdict: Verdict, world: World, model: Model, robot: RobotDescription, held: set[str]
 ) -> Iterator[Verdict]:
     started = _controllers(world).started
-    gains = _gains(robot, started)
+    gains = weak_gains(robot, started)
     reached = [*motion.reaches(world, model, robot, started, gains), *posed(world, model, robot)]
     verdict = replace(verdict, reaches=tuple(reached))
+    late = {each.joint for each in reached if not each.arrived}
+    held |= late & blocked(world, model, Robot(robot, None)) if late else late
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
 
@@ -283,64 +294,8 @@ def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]
         model = world.spawn(hung, name=f"{robot.name}_hung", z=_HIGH, controllers=controllers)
         # The controllers start with the simulation.
         world.run(_LISTENING)
-        *_, moved = _joints_moved(verdict, world, model, robot)
+        *_, moved = _joints_moved(verdict, world, model, robot, set())
     return moved
-
-
-def _gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[str, float]:
-    """Proportional gains of PIDs with an effort output and a slow or no integral, by joint."""
-    found = _hardware_gains(started)
-    ros1 = any(short_name(tag.filename) == "gazebo_ros_control" for tag in robot.plugins)
-    for controller in started:
-        values = controller.settings.flat()
-        for joint, interface in controller.interfaces.items():
-            path = next(
-                (
-                    each
-                    for each in ("pid", f"gains.{joint}", f"{joint}.pid")
-                    if f"{each}.p" in values
-                ),
-                None,
-            )
-            if interface == "effort" and path is not None:
-                gain, integral = (values.get(f"{path}.{name}") or 0.0 for name in ("p", "i"))
-                clamps = ("i_clamp", "i_clamp_min", "i_clamp_max")
-                if ros1 and not any(values.get(f"{path}.{name}") for name in clamps):
-                    # ros_control limits the integral to 0 if no limit is stated.
-                    integral = 0.0
-                if motion.yields(float(gain), float(integral)):
-                    found[joint] = float(gain)
-    for tag in robot.plugins:
-        if plugin_named(tag.filename) is JointPositionController:
-            with contextlib.suppress(PluginError):
-                config, _ = read(JointPositionParameters, tag.element)
-                if not config.velocity and motion.yields(config.p, config.i):
-                    found |= dict.fromkeys(config.joints, config.p)
-        if plugin_named(tag.filename) is JointController:
-            with contextlib.suppress(PluginError):
-                speed, _ = read(JointVelocityParameters, tag.element)
-                weak = motion.yields(speed.p, speed.i) or speed.i_max < speed.p
-                if speed.force and weak:
-                    found |= dict.fromkeys(speed.joints, speed.p)
-    return found
-
-
-def _hardware_gains(started: Sequence[Controller]) -> dict[str, float]:
-    """The gains of PIDs in the hardware, to which controllers forward their commands."""
-    found: dict[str, float] = {}
-    for controller in started:
-        for joint, hardware in controller.claims.items():
-            interface = controller.interfaces[joint]
-            pid = hardware.pids.get(interface)
-            if pid is None or pid.gains.p <= 0:
-                continue
-            gain, integral = pid.gains.p, pid.gains.i if pid.gains.i_max > 0 else 0.0
-            if interface == "velocity":
-                # The integral reduces the error by this factor before the velocity is measured.
-                found[joint] = gain * math.exp(min(integral / gain * commands.SPEEDING, _COMPLETE))
-            elif motion.yields(gain, integral):
-                found[joint] = gain
-    return found
 
 
 def _steered(robot: RobotDescription, started: Sequence[Controller]) -> bool:
