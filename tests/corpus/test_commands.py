@@ -135,3 +135,34 @@ def test_a_robot_on_a_floating_joint_of_the_world_stands_on_the_ground(tmp_path)
     verdict = tried(tmp_path, world, BASE.format(mass=5))
     assert abs(verdict.stand.sunk) < 0.01
     assert verdict.good, verdict.faults
+
+
+WHEEL = (
+    '<link name="{name}"><inertial><mass value="0.3"/><inertia ixx="3e-4" iyy="4e-4" izz="3e-4"/>'
+    '</inertial><collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.08"'
+    ' length="0.03"/></geometry></collision></link>'
+    '<joint name="{name}_joint" type="continuous"><parent link="base"/><child link="{name}"/>'
+    '<origin xyz="{x} {y} -0.02"/><axis xyz="0 {axis} 0"/></joint>'
+)
+
+
+def test_wheels_that_are_mounted_in_opposite_directions_roll_forward_together(tmp_path):
+    """At equal speeds they would turn the robot, and weak motors cannot let its tyres slide.
+
+    Each wheel carries 40 N. To turn the robot, it must slide with a torque of up to 40 N x 0.08 m,
+    which needs an error of 3.2 rad/s. The test allows 0.025 rad/s, and 1 rad/s at 20 rad/s.
+    """
+    parts, content = BASE.format(mass=15) + CONTROL, ""
+    for end, x in (("front", 0.3), ("rear", -0.3)):
+        for side, y, axis in (("left", 0.18, 1), ("right", -0.18, -1)):
+            name = f"{end}_{side}"
+            parts += WHEEL.format(name=name, x=x, y=y, axis=axis) + TRANSMISSION.format(name=name)
+            content += (
+                f"{name}: {{type: effort_controllers/JointVelocityController, "
+                f"joint: {name}_joint, pid: {{p: 1, i: 0, d: 0}}}}\n"
+            )
+    path = tmp_path / "wheels.yaml"
+    path.write_text(content)
+    verdict = tried(tmp_path, parts, controllers=[path])
+    assert len(verdict.spins) == 4
+    assert verdict.good, verdict.faults

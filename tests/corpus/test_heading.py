@@ -3,7 +3,7 @@
 import pytest
 
 from cartwheel.checks.robot import Robot
-from cartwheel.corpus.heading import FORWARD, heading
+from cartwheel.corpus.heading import FORWARD, heading, rolling
 from cartwheel.description import load_text
 
 LINK = (
@@ -38,3 +38,20 @@ def test_a_base_drives_along_its_wheels_also_if_they_roll_along_y():
     left, right = (("left", "0.2 0 -0.05", "1 0 0"), ("right", "-0.2 0 -0.05", "1 0 0"))
     x, y = heading(robot(left, right), {"left_joint": 2.0, "right_joint": 2.0})
     assert (x, abs(y)) == pytest.approx((0.0, 1.0))
+
+
+def test_mirrored_wheels_roll_in_one_direction():
+    wheels = [
+        (f"{end}_{side}", f"{x} {y} -0.05", f"0 {axis} 0")
+        for end, x in (("front", 0.1), ("rear", -0.1))
+        for side, y, axis in (("left", 0.2, 1), ("right", -0.2, -1))
+    ]
+    names = [f"{name}_joint" for name, _, _ in wheels]
+    signs = rolling(robot(LIDAR, *wheels), [*names, "lidar_joint", "none"])
+    assert set(signs) == set(names)
+    assert {sign * (1 if "left" in name else -1) for name, sign in signs.items()} in ({1}, {-1})
+
+
+def test_wheels_that_are_not_parallel_have_no_common_direction():
+    wheels = [("a", "0.2 0 -0.05", "1 0 0"), ("b", "0 0.2 -0.05", "0 1 0")]
+    assert rolling(robot(*wheels), ["a_joint", "b_joint"]) == {}

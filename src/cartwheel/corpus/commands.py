@@ -10,7 +10,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cartwheel.api import Model, World
+from cartwheel.checks.robot import Robot
 from cartwheel.corpus.flights import MOST_ACTUATORS
+from cartwheel.corpus.heading import rolling
 from cartwheel.corpus.loads import degree, resistance
 from cartwheel.corpus.motion import positions
 from cartwheel.corpus.thrusters import thruster_topics
@@ -152,9 +154,13 @@ def _spinning(
     if not inputs:
         return
     speeds: dict[str, float] = {}
+    signs = rolling(Robot(robot, None), [name for each in inputs for name in each.joints])
 
     def speed_of(name: str) -> float:
-        speeds[name] = _velocity(robot.joint(name), model.joint(name), velocity)
+        joint = robot.joint(name)
+        endless = joint is not None and joint.type == "continuous"
+        sign = signs.get(name, 1.0) if endless else 1.0
+        speeds[name] = sign * _velocity(joint, model.joint(name), velocity)
         return speeds[name]
 
     begun = SPEEDING if velocity == _VELOCITY else _FASTER

@@ -1,14 +1,14 @@
-"""The direction in which a base drives: along its wheels, not always along x."""
+"""The direction in which a base drives along its wheels, which is not always x."""
 
 from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_place
-from cartwheel.description.model import Joint
+from cartwheel.description.solids import Floats
 
 FORWARD = (1.0, 0.0)
 _ROLLS = 0.2
@@ -33,27 +33,10 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
         robot: The robot.
         speeds: Speeds of the joints while the robot drove forward, rad/s, by name.
     """
-    turning = [
-        robot.joints[name]
-        for name, speed in speeds.items()
-        if abs(speed) >= _ROLLS
-        and name in robot.joints
-        and robot.joints[name].type in ("continuous", "revolute")
-        and robot.joints[name].child in robot.placed
-    ]
-    ground = lowest(robot, *robot.links) if turning else None
-    axes = [wheel_axis(robot, joint) for joint in turning if _is_low(robot, joint, ground)]
-    # Doubled angles, because an axis and its negative are the same line.
-    lines = [
-        cmath.exp(2j * math.atan2(axis[1], axis[0])) for axis in axes if abs(axis[2]) <= _HORIZONTAL
-    ]
-    if not lines:
+    axle = _axle(_axes(robot, [name for name, speed in speeds.items() if abs(speed) >= _ROLLS]))
+    if axle is None:
         return FORWARD
-    mean = sum(lines) / len(lines)
-    if abs(mean) < _PARALLEL:
-        return FORWARD
-    axle = cmath.phase(mean) / 2
-    forward = (math.sin(axle), -math.cos(axle))
+    forward = (axle[1], -axle[0])
     if abs(forward[0]) > 0.1:
         sign = math.copysign(1.0, forward[0])
     else:
@@ -61,10 +44,51 @@ def heading(robot: Robot, speeds: Mapping[str, float]) -> tuple[float, float]:
     return sign * forward[0], sign * forward[1]
 
 
-def _is_low(robot: Robot, joint: Joint, ground: float | None) -> bool:
-    """Whether a joint's link is near the ground, as a wheel is."""
-    bottom = lowest(robot, *wheel_links(robot, joint))
-    return bottom is not None and ground is not None and bottom - ground <= _NEAR * robot.size
+def rolling(robot: Robot, names: Iterable[str]) -> dict[str, float]:
+    """For each parallel wheel among these joints 1 or -1, so that all roll in one direction.
+
+    Wheels that are mounted in opposite directions slide if they turn at the same speed. The result
+    is empty if the wheels are not parallel.
+    """
+    axes = _axes(robot, names)
+    axle = _axle(axes)
+    if axle is None:
+        return {}
+    return {
+        name: math.copysign(1.0, axis[0] * axle[0] + axis[1] * axle[1])
+        for name, axis in axes.items()
+    }
+
+
+def _axes(robot: Robot, names: Iterable[str]) -> dict[str, Floats]:
+    """The horizontal axes of those of the joints whose links are near the ground, as wheels are."""
+    turning = [
+        robot.joints[name]
+        for name in names
+        if name in robot.joints
+        and robot.joints[name].type in ("continuous", "revolute")
+        and robot.joints[name].child in robot.placed
+    ]
+    ground = lowest(robot, *robot.links) if turning else None
+    found = {}
+    for joint in turning:
+        axis, bottom = wheel_axis(robot, joint), lowest(robot, *wheel_links(robot, joint))
+        if bottom is None or ground is None or bottom - ground > _NEAR * robot.size:
+            continue
+        if abs(axis[2]) <= _HORIZONTAL:
+            found[joint.name] = axis
+    return found
+
+
+def _axle(axes: Mapping[str, Floats]) -> tuple[float, float] | None:
+    """The direction of parallel axes, a unit vector; None if they are not parallel."""
+    # Doubled angles, because an axis and its negative are the same line.
+    lines = [cmath.exp(2j * math.atan2(axis[1], axis[0])) for axis in axes.values()]
+    mean = sum(lines) / len(lines) if lines else 0.0
+    if abs(mean) < _PARALLEL:
+        return None
+    angle = cmath.phase(mean) / 2
+    return math.cos(angle), math.sin(angle)
 
 
 def _side(robot: Robot, forward: tuple[float, float]) -> float:
