@@ -17,7 +17,7 @@ from cartwheel.codes.devices import (
     PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
 )
-from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT
+from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, LINK_RECONNECTED
 from cartwheel.codes.robot import (
     BODY_ON_GROUND,
     DUPLICATE_NAME,
@@ -321,6 +321,15 @@ def test_the_friction_of_a_body_explains_why_it_moves_slowly_over_the_ground(tri
     assert cause_of_drive([slow], 0.6, turning=False) is slow
     assert cause_of_drive([slow], 1.2, turning=True) is None
     assert cause_of_drive([slow], -0.9, turning=False) is None
+
+
+def test_the_measured_turn_rate_of_sliding_wheels_is_stated_if_it_is_not_the_predicted_one():
+    skids = SKID_STEERING.diagnostic("slide", values={"ratio": 0.4, "stated": 0.5, "rolling": 1.2})
+    assert cause_of_drive([skids], 0.41, turning=True) is skids
+    cause = cause_of_drive([skids], 0.6, turning=True)
+    assert cause.code is SKID_STEERING
+    assert cause.values["measured"] == pytest.approx(0.6)
+    assert cause.hint and cause != skids
 
 
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):
@@ -760,6 +769,28 @@ def test_wheels_whose_drive_was_in_an_absent_file_are_a_fault(tmp_path):
     assert (fault.test, fault.code, fault.source) == ("plugin", INCLUDE_ABSENT, "file")
     assert verdict.should_move
     assert not verdict.moves
+
+
+def test_a_robot_whose_body_was_in_an_absent_file_falls_because_of_that(tmp_path):
+    """Its mast is left, and tips over."""
+    path = tmp_path / "cart.xacro"
+    include = '<xacro:include filename="body.xacro"/><xacro:body name="base"/>'
+    mast = BOX.format(name="mast", at="0.3 0 0", size="0.02 0.02 0.5") + (
+        '<joint name="mast_joint" type="fixed"><parent link="base"/><child link="mast"/></joint>'
+    )
+    head = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="cart">'
+    path.write_text(f"{head}{include}{mast}</robot>")
+    verdict = try_robot(path, standing=2.0)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.code, fault.source) == ("stand", LINK_RECONNECTED, "file")
+    # A lost link that only holds a part does not explain why the rest tips over.
+    body = BOX.format(name="base", at="0.3 0 0", size="0.1 0.1 0.1")
+    arm = mast.replace('"base"', '"holder"')
+    joint = '<joint name="h" type="fixed"><parent link="base"/><child link="holder"/></joint>'
+    include = include.replace("base", "holder")
+    path.write_text(f"{head}{include}{body}{joint}{arm}</robot>")
+    (fault,) = try_robot(path, standing=2.0).faults
+    assert (fault.test, fault.code) == ("stand", UNBALANCED)
 
 
 def test_a_manager_without_controllers_is_a_fault(tried):

@@ -170,7 +170,9 @@ def _measured(
     said = (*verdict.diagnostics, *verdict.observed)
     fallen: Diagnostic | None = None
     if verdict.stand is not None and not verdict.stands:
-        fallen = most_severe(each for each in (*said, *findings()) if _explains_fall(each)) or idle
+        lost = next((each for each in said if _is_body_lost(each, description)), None)
+        reasons = [each for each in (*said, *findings()) if _explains_fall(each)]
+        fallen = lost or most_severe(reasons) or idle
         yield Fault(test="stand", subject=verdict.stand.state, reason=fallen)
     for topic in verdict.silent:
         reason = _coded(said, frozenset({world.OPENGL_MISSING}))
@@ -225,6 +227,16 @@ def _explains_fall(each: Diagnostic) -> bool:
     if each.code in (files.FILE_MISSING, files.MESH_UNREADABLE):
         return each.values.get("left_out") == "collision"
     return each.code in _STANDING
+
+
+def _is_body_lost(each: Diagnostic, description: RobotDescription) -> bool:
+    """Whether the root link is empty because the included file that defines it is absent."""
+    held = {joint.child for joint in description.joints}
+    return (
+        each.code is files.LINK_RECONNECTED
+        and not each.values.get("parent")
+        and each.values.get("link") not in held
+    )
 
 
 def _of_joint(found: Sequence[Diagnostic], joint: str, child: str) -> Diagnostic | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from cartwheel.codes import devices, robot, running
 from cartwheel.corpus.faults import most_severe
@@ -14,6 +15,9 @@ from cartwheel.errors import Diagnostic
 
 _AGREES = 0.15
 """Relative tolerance between a measured velocity and the one that a mistake predicts."""
+_DIFFERS = 0.03
+"""Difference between the predicted and the measured turn rate, relative to the command, for which
+the measured one is stated."""
 _BRAKED = 0.15
 """Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
 _PULLED = 0.5
@@ -45,6 +49,32 @@ def cause_of_drive(
     found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool = False
 ) -> Diagnostic | None:
     """The mistake that explains why a base moves at a multiple of the commanded velocity."""
+    cause = _cause(found, ratio, turning=turning, arc=arc)
+    if cause is None or cause.code is not robot.SKID_STEERING or not 0.0 < ratio < 1.0:
+        return cause
+    return _as_measured(cause, ratio)
+
+
+def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
+    """The finding that wheels slide, with the measured turn rate if it is not the predicted one."""
+    predicted, stated = (skids.values.get(name) for name in ("ratio", "stated"))
+    if not isinstance(predicted, float) or abs(predicted - ratio) <= _DIFFERS:
+        return skids
+    hint = ""
+    if isinstance(stated, float):
+        hint = f"A wheel separation of {stated / ratio:.4g} m compensates for this."
+    return replace(
+        skids,
+        message=f"the {'tracks' if 'reach' in skids.values else 'wheels'} slide when the robot "
+        f"turns, so it turns at {ratio:.0%} of the commanded rate, as measured",
+        hint=hint,
+        values={**skids.values, "measured": ratio},
+    )
+
+
+def _cause(
+    found: Sequence[Diagnostic], ratio: float, *, turning: bool, arc: bool
+) -> Diagnostic | None:
     factors = {each.code: (each, factor) for each in found if (factor := _factor(each, turning))}
     if robot.SKID_STEERING in factors:
         # Its ratio contains the stated separation.
