@@ -7,7 +7,7 @@ import pytest
 from tests.coded import coded, raises
 from tests.devices.air.multicopters import MOMENT, K, bee, motor, velocity
 
-from cartwheel.codes import devices, running, world
+from cartwheel.codes import devices, robot, running, world
 from cartwheel.devices.air.geometric_control import RotorConfig, allocation, controls_all
 from cartwheel.errors import PluginError, UnknownNameError
 from cartwheel.geometry import Pose
@@ -36,11 +36,18 @@ def control(*, tags="", rotors=None, gains=GAINS, name="gz-sim-multicopter-contr
     )
 
 
+LOAD = (
+    '<link name="load"><pose>{x} {y} 0 0 0 0</pose><inertial><mass>0.1</mass><inertia>'
+    "<ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial></link>"
+    '<joint name="load_joint" type="fixed"><parent>body</parent><child>load</child></joint>'
+)
+
+
 class Copter:
-    def __init__(self, make, *, motors=4, **given):
+    def __init__(self, make, *, motors=4, load="", **given):
         plugins = "".join(motor(n, "gz") for n in range(motors)) + control(**given)
         self.world = make.world()
-        self.world.session.spawn(bee(make, plugins), pose=Pose((0, 0, 10)))
+        self.world.session.spawn(bee(make, plugins + load), pose=Pose((0, 0, 10)))
 
     def fly(self, seconds, x=0.0, y=0.0, z=0.0, *, turn=0.0):
         self.world.publish("/bee/cmd_vel", linear_x=x, linear_y=y, linear_z=z, angular_z=turn)
@@ -64,6 +71,22 @@ def test_it_flies_at_the_commanded_velocity(make, wanted):
     made.world.run(2.0)
     moved = np.array(made.pose.position) - begin
     assert moved == pytest.approx(2 * np.array(wanted), abs=0.05)
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.1, 0.0), (0.0, -0.1)])
+def test_a_multicopter_with_a_load_at_one_end_drifts_as_reported(make, x, y):
+    """With the weight G, the gains a and k and the centre of mass at c: G² c / (a k)."""
+    made = Copter(make, load=LOAD.format(x=x, y=y))
+    weight = 9.8 * (1.5 + 4 * 0.01 + 0.1)
+    made.fly(8.0)
+    (found,) = coded(made.world, robot.UNBALANCED, link="body")
+    drift = weight**2 * (0.1 * 9.8 / weight) * np.array([x, y]) / (1.5 * 3)
+    assert found.values["drift"] == pytest.approx(drift)
+    # The equation is that of small angles; here, the error of the orientation is 0.07 rad.
+    assert made.motion[:2] == pytest.approx(drift, abs=0.02)
+    even = Copter(make)
+    even.fly(0.1)
+    assert not coded(even.world, robot.UNBALANCED)
 
 
 def test_it_hovers_and_turns(make):

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.robot import UNBALANCED
 from cartwheel.component import Component, Scope
+from cartwheel.description.kinematics import link_poses
 from cartwheel.description.model import RobotDescription
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
 from cartwheel.geometry import Array, Vec3, cross, matrix_from_quat
@@ -24,6 +26,8 @@ _MOST_CHANGE = 0.5
 """Largest part of an error of the angular velocity that one step may correct."""
 _FAST_STEP = 0.001
 """Gazebo's default time step, s."""
+_DRIFTS = 0.05
+"""Smallest error of the velocity that is reported, m/s."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,6 +95,7 @@ class GeometricControl(Component):
         self._allocation = np.linalg.pinv(allocation(config.rotors))
         self._mass = total_mass(part.description)
         self._limit_step()
+        self._examined = False
         self._clear()
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         self.subscribe(config.enable_topic, "std_msgs/msg/Bool", self._on_enable)
@@ -116,6 +121,30 @@ class GeometricControl(Component):
         if fastest * DEFAULT_STEP > _MOST_CHANGE:
             self.part.limit_step(_FAST_STEP, "the gain of the angular velocity", origin=self.origin)
 
+    def _report_drift(self) -> None:
+        """Reports a centre of mass beside the link about which the propellers turn the vehicle."""
+        part, name = self.part, self._config.link
+        x, y = centre_of_mass(part.description, name)
+        size = float(np.linalg.norm(self._link.gravity))
+        drift = drift_of(self._config, weight=self._mass * size, centre=(x, y))
+        if max(map(abs, drift)) < _DRIFTS:
+            return
+        along = abs(drift[0]) >= abs(drift[1])
+        near, far = (("in front of", "forward"), ("behind", "backward"))[drift[0] < 0]
+        if not along:
+            near, far = (
+                ("to the left of", "to the left"),
+                ("to the right of", "to the right"),
+            )[drift[1] < 0]
+        self.warn(
+            UNBALANCED,
+            f"the centre of mass is {1000 * abs(x if along else y):.2g} mm {near} the origin of "
+            f'link "{name}", so the multicopter drifts {far} at {max(map(abs, drift)):.2g} m/s, '
+            "because the controller has no integral part",
+            values={"link": name, "centre": (x, y), "drift": drift},
+            hint="Move the masses so that the centre of mass is above the origin of the link.",
+        )
+
     def reset(self) -> None:
         super().reset()
         self._clear()
@@ -140,6 +169,10 @@ class GeometricControl(Component):
         self._enabled = bool(message.data)
 
     def _control(self) -> None:
+        if not self._examined:
+            # Gravity is known when the simulation runs.
+            self._examined = True
+            self._report_drift()
         if not self._enabled:
             if self._turning:
                 self._turn(np.zeros(len(self._config.rotors)))
@@ -185,6 +218,37 @@ class GeometricControl(Component):
 def total_mass(description: RobotDescription) -> float:
     """Mass of all links, kg."""
     return sum(each.inertial.mass for each in description.links if each.inertial is not None)
+
+
+def centre_of_mass(description: RobotDescription, link: str) -> tuple[float, float]:
+    """The vehicle's centre of mass in the xy plane of a link, with all joints at 0, m."""
+    poses = link_poses(description, {})
+    inward, total, weighted = poses[link].inverse(), 0.0, np.zeros(3)
+    for each in description.links:
+        if each.inertial is not None:
+            place = inward @ poses[each.name] @ each.inertial.pose
+            weighted += each.inertial.mass * np.array(place.position)
+            total += each.inertial.mass
+    x, y, _ = weighted / total if total > 0 else weighted
+    return float(x), float(y)
+
+
+def drift_of(
+    config: GeometricControlConfig, *, weight: float, centre: tuple[float, float]
+) -> tuple[float, float]:
+    """Velocity error along x and y of the link at which the multicopter is in balance, m/s.
+
+    The weight G at the distance x from the origin of the link needs the torque G x, for which the
+    controller needs an error of the orientation of G x / a, with the attitude gain a. It tilts by
+    this angle at a velocity error of G (G x / a) / k, with the velocity gain k. Without gains, the
+    velocity is not controlled, and the error is 0.
+    """
+    (x, y), attitude, velocity = centre, config.attitude_gain, config.velocity_gain
+    ahead, aside = attitude[1] * velocity[0], attitude[0] * velocity[1]
+    return (
+        weight**2 * x / ahead if ahead > 0 else 0.0,
+        weight**2 * y / aside if aside > 0 else 0.0,
+    )
 
 
 def allocation(rotors: Sequence[RotorConfig]) -> Array:
