@@ -194,6 +194,30 @@ def test_a_part_of_a_joined_path_may_be_a_list_of_substitutions(package):
     assert use.spawned == ("arm_controller",)
 
 
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("""["'", name, "_x'"]""", "arm_x"),
+        ("""["'yes' if '", name, "' == 'arm' else 'no'"]""", "yes"),
+        ("""["not ", "False"]""", "True"),
+        ("""["'", clock(), "'"]""", None),
+        ("""["__import__('os').getcwd()"]""", None),
+    ],
+)
+def test_python_expressions_are_evaluated_without_python(package, expression, expected):
+    text = f"""def generate_launch_description():
+    name = LaunchConfiguration("name", default="arm")
+    path = PathJoinSubstitution([FindPackageShare("arm"), "urdf",
+                                 PythonExpression(["'", name, ".urdf.xacro'"])])
+    side = PythonExpression({expression})
+    Node(package="robot_state_publisher", parameters=[
+        {{"robot_description": Command(["xacro ", path, " side:=", side])}}])
+"""
+    folder = package(arm_dot_launch_dot_py=text)
+    use = chosen(folder / "urdf/arm.urdf.xacro", launches_near(folder))
+    assert use.arguments == ({} if expected is None else {"side": expected})
+
+
 LOOPS = """
 robots = [{"name": "one", "sim": "true"}]
 robots.append({"name": "two", "sim": "false"})

@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.python_values import (
     LONGEST,
     NOTHING,
@@ -326,6 +327,11 @@ class _Reader:
         self._facts.describe(joined(words.get("command", first)))
         return NOTHING
 
+    def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
+        """The value of a Python expression, which consists of substitutions."""
+        value = evaluated(joined(words.get("expression", first)).strip(), {})
+        return value if is_known(value) else NOTHING
+
     def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """Reads an included launch file."""
         source = words.get("launch_description_source", first)
@@ -376,6 +382,7 @@ _ACTIONS: Mapping[str, Callable[[_Reader, Any, list[Any], dict[str, Any]], Any]]
     "IncludeLaunchDescription": _Reader.inclusion,
     "LaunchConfiguration": _Reader.configuration,
     "Node": _Reader.node,
+    "PythonExpression": _Reader.expression,
     "SetLaunchConfiguration": _Reader.setting,
 }
 """What the classes of launch and launch_ros mean."""

@@ -11,14 +11,13 @@ from typing import Any
 
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
-from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator, Function
+from cartwheel.description.expressions import Function
+from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.use import UNKNOWN, Facts
 
 _CALL = re.compile(r"\$\(\s*([\w-]+)\s*([^()]*)\)")
 _EVAL = re.compile(r"\$\(\s*eval\s(.*)\)\s*", re.DOTALL)
 _FALSE = frozenset({"false", "0", "False"})
-_SECONDS = 0.2
-"""Maximum CPU time of an expression, s."""
 
 
 def read_xml(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
@@ -26,10 +25,6 @@ def read_xml(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int)
     root = xml.readable_file(path)
     if root is not None and root.tag == "launch":
         _Reader(path, dict(arguments), facts, depth).group(root)
-
-
-class _NoTable:
-    """xacro's tables of names do not exist here."""
 
 
 class _UnknownError(Exception):
@@ -152,17 +147,13 @@ class _Reader:
             "optenv": lambda name, default="": os.environ.get(name, default),
             "dirname": lambda: str(self._path.parent),
         }
-        names: dict[str, Any] = {**BUILTINS, **MATH}
+        names: dict[str, Any] = {}
         for name, value in self._arguments.items():
             if UNKNOWN not in value:
                 names[name] = _converted(value)
         for name, plain in functions.items():
             names[name] = Function(name, lambda _, *args, plain=plain: plain(*args))
-        evaluator = Evaluator(Budget(_SECONDS), namespace=_NoTable, dotted=_NoTable)
-        try:
-            return str(evaluator.evaluate(text, names))
-        except Exception:  # noqa: BLE001 - whatever the operation of a stranger raises
-            return UNKNOWN
+        return evaluated(text, names)
 
     def _known(self, name: str) -> Any:
         return _converted(_certain(self._arguments.get(name, UNKNOWN)))

@@ -1,0 +1,32 @@
+"""The values of expressions in launch files, which are evaluated without access to Python."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator
+from cartwheel.description.launches.use import UNKNOWN
+
+_SECONDS = 0.2
+"""Maximum CPU time of an expression, s."""
+
+
+class _NoTable:
+    """xacro's tables of names do not exist here."""
+
+
+def evaluated(text: str, names: Mapping[str, Any]) -> str:
+    """The value of an expression as text; `UNKNOWN` if it has none.
+
+    Args:
+        text: A Python expression.
+        names: Values and functions that it may use beside Python's own and those of `math`.
+    """
+    if UNKNOWN in text:
+        return UNKNOWN
+    evaluator = Evaluator(Budget(_SECONDS), namespace=_NoTable, dotted=_NoTable)
+    try:
+        return str(evaluator.evaluate(text, {**BUILTINS, **MATH, **names}))
+    except Exception:  # noqa: BLE001 - whatever the operation of a stranger raises
+        return UNKNOWN
