@@ -28,6 +28,11 @@ _HINT = "Swap the two names. Otherwise, the robot turns in the wrong direction."
 
 @rule(robot_codes.WHEELS_SWAPPED)
 def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
+    yield from _of_plugins(subject)
+    yield from _of_controllers(subject)
+
+
+def _of_plugins(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in wheel_pairs(subject):
         element = drive.left_tag
         if element is None or is_legacy(drive):
@@ -43,8 +48,7 @@ def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
             )
 
 
-@rule(robot_codes.WHEELS_SWAPPED)
-def controlled_wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
+def _of_controllers(subject: Subject) -> Iterator[Diagnostic]:
     for robot, file in subject.control:
         for controller in file.controllers:
             sides = claimed.wheel_sides(controller)
