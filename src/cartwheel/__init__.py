@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.errors import CartwheelError, TimedOutError
@@ -68,10 +69,10 @@ if TYPE_CHECKING:
     from cartwheel.geometry import Pose
     from cartwheel.sweeps import sweep
 
-_ELSEWHERE = ("CartwheelError", "Pose", "TimedOutError", "check", "sweep")
-_ARRAYS = frozenset(
-    {"Scan", "camera_matrix", "cloud", "depth", "image", "project", "scan", "unproject"}
+_PACKAGES = {"Pose": "geometry", "check": "checks", "sweep": "sweeps"} | dict.fromkeys(
+    ("Scan", "camera_matrix", "cloud", "depth", "image", "project", "scan", "unproject"), "arrays"
 )
+"""Where the names are that are not in `cartwheel.api`."""
 
 __all__ = [
     "Acceleration",
@@ -144,24 +145,6 @@ def __dir__() -> list[str]:
 def __getattr__(name: str) -> Any:
     # The import of numpy and the physics engine takes 0.1 s, but the command line must first parse
     # its arguments and handle Ctrl-C.
-    if name in _ARRAYS:
-        from cartwheel import arrays
-
-        return getattr(arrays, name)
-    if name in __all__ and name not in _ELSEWHERE:
-        from cartwheel import api
-
-        return getattr(api, name)
-    if name == "check":
-        from cartwheel.checks import check
-
-        return check
-    if name == "sweep":
-        from cartwheel.sweeps import sweep
-
-        return sweep
-    if name == "Pose":
-        from cartwheel.geometry import Pose
-
-        return Pose
-    raise AttributeError(name)
+    if name not in __all__:
+        raise AttributeError(name)
+    return getattr(importlib.import_module(f"cartwheel.{_PACKAGES.get(name, 'api')}"), name)

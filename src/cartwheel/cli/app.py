@@ -61,20 +61,21 @@ def options(
     """Options of all commands."""
 
 
-run.add_to(app)
-files.add_to(app)
-check.add_to(app)
-explain.add_to(app)
-corpus.add_to(app)
-info.add_to(app)
-play.add_to(app)
-test.add_to(app)
-model.add_to(app)
-control.add_to(app)
-teleop.add_to(app)
+for group, commands in {
+    help.SIMULATE: (run.run, files.view, play.play, test.test),
+    help.FILES: (files.convert, check.check, explain.explain, corpus.corpus, info.info),
+    help.CONTROL: (
+        *(model.spawn, model.delete, model.models),
+        *(control.status, control.pause, control.resume),
+        *(control.step, control.reset, control.speed),
+        teleop.teleop,
+    ),
+    help.OTHER: (files.version,),
+}.items():
+    for command in commands:
+        app.command(cls=help.Command, rich_help_panel=group)(command)
 app.add_typer(topic.app, name="topic", rich_help_panel=help.CONTROL)
 app.add_typer(service.app, name="service", rich_help_panel=help.CONTROL)
-help.add(app, files.version, group=help.OTHER)
 
 
 def named(words: Sequence[str]) -> typer.Typer:

@@ -21,11 +21,6 @@ class Format(StrEnum):
     junit = "junit"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, check, group=help.FILES)
-
-
 def check(
     words: arguments.CheckNames = None,
     *,

@@ -4,18 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
 from cartwheel.codes.command import OPTION_INVALID
 from cartwheel.errors import CartwheelError
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the commands."""
-    for command in (status, pause, resume, step, reset, speed):
-        help.add(app, command, group=help.CONTROL)
 
 
 def parse_speed(text: str) -> float | None:

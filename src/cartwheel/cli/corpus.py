@@ -10,11 +10,6 @@ import typer
 from cartwheel.cli import arguments, help
 
 
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, corpus, group=help.FILES)
-
-
 def corpus(
     folders: Annotated[
         list[Path], help.argument("FOLDER|FILE...", "Folders to search, or robot files.")

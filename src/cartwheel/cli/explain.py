@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import help
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, explain, group=help.FILES)
 
 
 def explain(

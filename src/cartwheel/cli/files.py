@@ -6,8 +6,6 @@ import enum
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import arguments, help
 from cartwheel.cli.console import say_version
 
@@ -17,12 +15,6 @@ class Format(enum.StrEnum):
 
     URDF = "urdf"
     MJCF = "mjcf"
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the commands."""
-    help.add(app, view, group=help.SIMULATE)
-    help.add(app, convert, group=help.FILES)
 
 
 def view(

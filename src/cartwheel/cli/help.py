@@ -6,7 +6,7 @@ groups as boxes; here they are sections, which any terminal, pipe and screen rea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 import typer
@@ -54,11 +54,6 @@ class Group(TyperGroup):
             sections.setdefault(title, []).append((name, command.get_short_help_str(width)))
         _write(formatter, sections)
         _write(formatter, option_sections(self, ctx))
-
-
-def add(app: typer.Typer, function: Callable[..., Any], *, group: str) -> None:
-    """Adds a command to a program, in a group of commands."""
-    app.command(cls=Command, rich_help_panel=group)(function)
 
 
 def option(usage: str, text: str, group: str | None = None, **more: Any) -> Any:

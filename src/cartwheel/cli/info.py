@@ -5,14 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import arguments, help
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, info, group=help.FILES)
 
 
 def info(

@@ -4,16 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import arguments, help
 from cartwheel.cli.arguments import Sim
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the commands."""
-    for command in (spawn, delete, models):
-        help.add(app, command, group=help.CONTROL)
 
 
 def spawn(

@@ -5,15 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import arguments, help
 from cartwheel.cli.control import parse_speed
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, play, group=help.SIMULATE)
 
 
 def play(

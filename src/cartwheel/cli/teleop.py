@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from cartwheel.cli import help
 from cartwheel.cli.arguments import Sim
-
-
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, teleop, group=help.CONTROL)
 
 
 def teleop(

@@ -12,11 +12,6 @@ from cartwheel.cli import arguments, help
 CASES = "Cases"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Adds the command."""
-    help.add(app, test, group=help.SIMULATE)
-
-
 def test(  # noqa: PLR0917 - typer passes them by name
     files: Annotated[
         list[Path] | None,
