@@ -68,7 +68,7 @@ class MotorRequests(Requests):
             motor = self._share(motor, max_effort)
         elif motor is None or (not yields and all(each.yields for each in self._drives(joint))):
             motor = self._entry.motors[joint] = made
-        handle = MotorHandle(self.name, motor, self._stop(joint), yields=yields)
+        handle = MotorHandle(motor, self._stop(joint), yields=yields)
         self._add_drive(handle, origin)
         return handle
 

@@ -9,9 +9,10 @@ from typing import Any
 
 from cartwheel.component import Component, Scope
 from cartwheel.devices.air.velocity_control import merged_inertia
+from cartwheel.devices.contact.wrench import WRENCH_STAMPED, wrench_stamped
 from cartwheel.devices.periodic import Elapsed
 from cartwheel.geometry import Vec3, quat_conjugate, rotate
-from cartwheel.messages import header, message_class
+from cartwheel.messages import header
 
 _FASTEST = 100.0
 """Largest velocity that causes drag, m/s or rad/s."""
@@ -55,20 +56,15 @@ class BodyDrag(Component):
         self._mass, self._inertia = (mass, mass, mass), inertia
         self._frame = self.frame(config.frame)
         self._wrenches = (
-            self.advertise(config.wrench_topic, "geometry_msgs/msg/WrenchStamped")
-            if config.wrench_topic
-            else None
+            self.advertise(config.wrench_topic, WRENCH_STAMPED) if config.wrench_topic else None
         )
         if config.wind_topic:
             self.subscribe(config.wind_topic, "geometry_msgs/msg/Vector3", self._on_wind)
-        self._clear()
+        self.reset()
         part.schedule(0, before=self._apply)
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._wind = _STILL
         self._elapsed = Elapsed()
 
@@ -89,10 +85,8 @@ class BodyDrag(Component):
         torque = drag(angular, config.torque, self._inertia, seconds)
         self._wrench.apply(rotate(orientation, force), rotate(orientation, torque))
         if self._wrenches is not None and self._wrenches.wanted:
-            vector = message_class("geometry_msgs/msg/Vector3")
-            wrench = message_class("geometry_msgs/msg/Wrench")(vector(*force), vector(*torque))
-            stamped = message_class("geometry_msgs/msg/WrenchStamped")
-            self._wrenches.publish(stamped(header(self.part.time_ns, self._frame), wrench))
+            moment = header(self.part.time_ns, self._frame)
+            self._wrenches.publish(wrench_stamped(moment, (*force, *torque)))
 
 
 def drag(

@@ -96,7 +96,7 @@ class GeometricControl(Component):
         self._mass = total_mass(part.description)
         self._limit_step()
         self._examined = False
-        self._clear()
+        self.reset()
         self.subscribe(config.command_topic, "geometry_msgs/msg/Twist", self._on_command)
         self.subscribe(config.enable_topic, "std_msgs/msg/Bool", self._on_enable)
         self._motors = [self.advertise(topic, GZ_ACTUATORS) for topic in config.motor_topics]
@@ -147,9 +147,6 @@ class GeometricControl(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._enabled = True
         self._command: tuple[Array, Array] | None = None
         self._turning = False

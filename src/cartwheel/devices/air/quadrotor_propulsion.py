@@ -11,6 +11,7 @@ import numpy as np
 
 from cartwheel.codes import running
 from cartwheel.component import Component, Scope
+from cartwheel.devices.contact.wrench import wrench_stamped
 from cartwheel.devices.periodic import Elapsed, Periodic
 from cartwheel.geometry import Vec3, rotate
 from cartwheel.messages import header, message_class
@@ -121,7 +122,6 @@ class QuadrotorPropulsion(Component):
         self._types = {
             name: message_class(f"hector_uav_msgs/msg/{name}") for name in ("MotorStatus", "Supply")
         }
-        self._Vector3 = message_class("geometry_msgs/msg/Vector3")
         self._publishers = {
             name: self.advertise(topic, f"{package}/msg/{name}")
             for name, package, topic in (
@@ -137,14 +137,11 @@ class QuadrotorPropulsion(Component):
             )
         if config.pwm_topic:
             self.subscribe(config.pwm_topic, "hector_uav_msgs/msg/MotorPWM", self._on_pwm)
-        self._clear()
+        self.reset()
         part.schedule(0, before=self._control)
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._voltages = [0.0] * _COUNT
         self._speeds = [0.0] * _COUNT
         self._currents = [0.0] * _COUNT
@@ -230,7 +227,4 @@ class QuadrotorPropulsion(Component):
             none = np.zeros(0, dtype=np.float32)
             supply.publish(self._types["Supply"](head, voltage, none))
         if wrench is not None and wrench.wanted:
-            made = message_class("geometry_msgs/msg/Wrench")(
-                self._Vector3(0.0, 0.0, force), self._Vector3(*torque)
-            )
-            wrench.publish(message_class("geometry_msgs/msg/WrenchStamped")(head, made))
+            wrench.publish(wrench_stamped(head, (0.0, 0.0, force, *torque)))

@@ -62,14 +62,11 @@ class WindDrag(Component):
             (part.link(name, origin=origin), part.wrench(name, origin=origin), centres[name])
             for name in config.links
         ]
-        self._clear()
+        self.reset()
         part.schedule(0, before=self._apply)
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._elapsed = Elapsed()
         self._speed = self._vertical = 0.0
         x, y, _ = self._config.wind

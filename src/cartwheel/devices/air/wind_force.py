@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cartwheel.component import Component, Scope
+from cartwheel.devices.contact.wrench import WRENCH_STAMPED, wrench_stamped
 from cartwheel.geometry import Vec3, cross, rotate
-from cartwheel.messages import header, message_class
-
-_WRENCH = "geometry_msgs/msg/WrenchStamped"
+from cartwheel.messages import header
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -53,7 +52,7 @@ class WindForce(Component):
         self._link = part.link(config.link, origin=origin)
         self._wrench = part.wrench(config.link, origin=origin)
         self._frame = self.frame(config.frame)
-        self._publisher = self.advertise(config.topic, _WRENCH) if config.topic else None
+        self._publisher = self.advertise(config.topic, WRENCH_STAMPED) if config.topic else None
         part.schedule(0, before=self._apply)
 
     def _apply(self) -> None:
@@ -67,8 +66,5 @@ class WindForce(Component):
         torque = cross(rotate(orientation, config.place), force)
         self._wrench.apply(force.tolist(), torque.tolist())
         if self._publisher is not None and self._publisher.wanted:
-            vector = message_class("geometry_msgs/msg/Vector3")
-            wrench = message_class("geometry_msgs/msg/Wrench")(vector(*force), vector(0, 0, 0))
-            self._publisher.publish(
-                message_class(_WRENCH)(header(self.part.time_ns, self._frame), wrench)
-            )
+            moment = header(self.part.time_ns, self._frame)
+            self._publisher.publish(wrench_stamped(moment, (*force, 0.0, 0.0, 0.0)))

@@ -60,11 +60,6 @@ class Trajectory:
         """Simulation time of the last point."""
         return self.start_ns + round(self._times[-1] * 1e9)
 
-    @property
-    def last(self) -> Vector:
-        """Position of the last point."""
-        return self._points[-1].position
-
     def at(self, time_ns: int) -> State:
         """Returns the state at a simulation time."""
         time = (time_ns - self.start_ns) / 1e9

@@ -45,7 +45,8 @@ class TrajectoryFollower:
         self._pids = [Pid(gains) for gains in config.gains]
         for joint, pid in zip(self._joints, self._pids, strict=False):
             joint.tune(pid)
-        self._current = Trajectory.hold(0, [0.0] * len(self._joints))
+        self.current = Trajectory.hold(0, [0.0] * len(self._joints))
+        """The trajectory that the joints follow now."""
         self._next: Trajectory | None = None
 
     def start(self, time_ns: int) -> None:
@@ -57,19 +58,14 @@ class TrajectoryFollower:
     def hold(self, time_ns: int) -> None:
         """Holds the current position."""
         self._next = None
-        self._current = Trajectory.hold(time_ns, [joint.position for joint in self._joints])
+        self.current = Trajectory.hold(time_ns, [joint.position for joint in self._joints])
 
     def follow(self, trajectory: Trajectory, time_ns: int) -> None:
         """Follows a trajectory from its start on; until then, the current one continues."""
         if trajectory.start_ns > time_ns:
             self._next = trajectory
         else:
-            self._current, self._next = trajectory, None
-
-    @property
-    def current(self) -> Trajectory:
-        """The trajectory that the joints follow now."""
-        return self._current
+            self.current, self._next = trajectory, None
 
     @property
     def waits(self) -> bool:
@@ -79,13 +75,13 @@ class TrajectoryFollower:
     @property
     def end_ns(self) -> int:
         """Simulation time of the last point of the latest trajectory."""
-        return (self._next or self._current).end_ns
+        return (self._next or self.current).end_ns
 
     def at(self, time_ns: int) -> State:
         """Returns the desired state at a simulation time."""
         if self._next is not None and time_ns >= self._next.start_ns:
             return self._next.at(time_ns)
-        return self._current.at(time_ns)
+        return self.current.at(time_ns)
 
     def update(self, time_ns: int, seconds: float) -> Tracking:
         """Commands the joints.
@@ -95,8 +91,8 @@ class TrajectoryFollower:
             seconds: Time since the last call, s.
         """
         if self._next is not None and time_ns >= self._next.start_ns:
-            self._current, self._next = self._next, None
-        desired = self._current.at(time_ns)
+            self.current, self._next = self._next, None
+        desired = self.current.at(time_ns)
         errors = []
         by_position, control = self._config.interface == "position", self._control
         for index, joint in enumerate(self._joints):

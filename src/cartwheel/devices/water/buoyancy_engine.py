@@ -54,7 +54,7 @@ class BuoyancyEngine(Component):
         self._config = config
         self._link = part.link(config.link, origin=origin)
         self._wrench = part.wrench(config.link, origin=origin)
-        self._clear()
+        self.reset()
         self.subscribe(config.command_topic, _FLOAT, self._on_command)
         self._state = self.advertise(config.state_topic, _FLOAT)
         self._Float64 = message_class(_FLOAT)
@@ -63,9 +63,6 @@ class BuoyancyEngine(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self.volume = self._target = self._config.initial
         self._elapsed = Elapsed()
 

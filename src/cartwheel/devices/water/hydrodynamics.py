@@ -66,16 +66,13 @@ class Hydrodynamics(Component):
         assert description is not None
         x, y, z = description.mass_centre
         self._to_origin = np.array((-x, -y, -z))
-        self._clear()
+        self.reset()
         if config.current_topic:
             self.subscribe(config.current_topic, "geometry_msgs/msg/Vector3", self._on_current)
         part.schedule(0, before=self._apply)
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._current = self._config.current
         self._elapsed = Elapsed()
         self._before: Array | None = None

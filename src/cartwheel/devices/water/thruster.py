@@ -78,7 +78,7 @@ class Thruster(Component):
         self._motor = part.velocity_motor(config.joint, max_effort=None, origin=origin)
         self._Float = message_class(_FLOAT)
         self._states = self.advertise(config.state_topic, _FLOAT)
-        self._clear()
+        self.reset()
         self.subscribe(config.command_topic, _FLOAT, self._on_command)
         self.subscribe(config.deadband_topic, _BOOL, self._on_deadband)
         part.schedule(0, before=self._apply)
@@ -86,9 +86,6 @@ class Thruster(Component):
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._command = self._speed = self._thrust = 0.0
         self._deadband = self._config.deadband > 0
         self._motor.command(0.0)

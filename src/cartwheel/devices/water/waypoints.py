@@ -80,15 +80,12 @@ class Waypoints(Component):
         inertial = description.inertial
         self._frame: Quat = inertial.pose.orientation if inertial else (0.0, 0.0, 0.0, 1.0)
         _, _, self._inertia = merged_inertia(part.description, config.link)
-        self._clear()
+        self.reset()
         self.subscribe(config.pause_topic, "std_msgs/msg/Bool", self._on_pause)
         part.schedule(0, before=self._move)
 
     def reset(self) -> None:
         super().reset()
-        self._clear()
-
-    def _clear(self) -> None:
         self._paused = False
         self._left: deque[Point] | None = None
         self._elapsed = Elapsed()

@@ -112,7 +112,6 @@ class MotorHandle:
     position limits stops at them.
 
     Args:
-        model: Model name.
         motor: The motor.
         stop: Stops the motor at the joint's limits; bound before this handle.
         yields: Whether the owner of the handle leaves the joint to others while it has no command.
@@ -121,8 +120,7 @@ class MotorHandle:
     rivalled = False
     """Whether another handle, which does not yield, drives the joint."""
 
-    def __init__(self, model: str, motor: Motor, stop: JointStop, *, yields: bool = False) -> None:
-        self.model_name = model
+    def __init__(self, motor: Motor, stop: JointStop, *, yields: bool = False) -> None:
         self.motor = motor
         self.stop = stop
         self.yields = yields

@@ -12,7 +12,7 @@ from cartwheel.codes import running
 from cartwheel.codes import world as world_codes
 from cartwheel.description.model import RobotDescription
 from cartwheel.errors import SimulationError, UnknownNameError
-from cartwheel.geometry import Array, Vec3, cross
+from cartwheel.geometry import Vec3, cross
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.handles import JointHandle, LinkHandle
 from cartwheel.simulation.limits import STRONGEST, number, numbers
@@ -297,13 +297,6 @@ class GroundTruth:
         """
         entries = [each.entry for each in self._population.residents.values()]
         return self._touches.read(entries, counts)
-
-    def center_of_mass(self, model: str, link: str) -> Array:
-        """A link's centre of mass in the world, m, shape (3,)."""
-        handle = self.link(model, link)
-        self.locate()
-        centre: Array = self._engine.data.xipos[handle.id].copy()
-        return centre
 
     def _bind(self) -> None:
         """Forgets the handles after a compilation."""
