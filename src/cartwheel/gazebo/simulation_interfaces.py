@@ -73,7 +73,6 @@ class SimulationInterfaces:
         self._entities = entities
         self._spawning = spawning
         self._states = states
-        self._package_path = tuple(package_path)
         self._infos = EntityInfos(session.simulation, entities)
         self._stepping = Stepping(session, spawning)
         self._resources = Resources(session.simulation, package_path, spawning.reach)

@@ -29,12 +29,8 @@ class Parameters:
     def __init__(self, server: ParameterServer | None = None) -> None:
         self.server = server
         self._lock = threading.Lock()
-        self._tree: dict[str, Any] = {}
-
-    @property
-    def tree(self) -> dict[str, Any]:
+        self.tree: dict[str, Any] = {}
         """The tree of this process; empty if the values are stored externally."""
-        return self._tree
 
     def get(self, name: str, default: Any = None) -> Any:
         """Value of a name, mapping for a namespace, or `default` if the name does not exist.
@@ -46,7 +42,7 @@ class Parameters:
             value = self.server.get(path)
             return default if value is None else value
         with self._lock:
-            node: Any = self._tree
+            node: Any = self.tree
             for part in path.split("/")[1:] if path != "/" else ():
                 if not isinstance(node, dict) or part not in node:
                     return default
@@ -70,7 +66,7 @@ class Parameters:
             return
         with self._lock:
             *parents, last = path.split("/")[1:]
-            node = self._tree
+            node = self.tree
             for part in parents:
                 below = node.get(part)
                 if not isinstance(below, dict):

@@ -54,12 +54,8 @@ class PlayedScene:
         self._joints: dict[str, dict[str, float]] = {}
         """Joint positions by namespace and joint."""
         self._version = 0
-        self._scene = self._made()
-
-    @property
-    def scene(self) -> Scene:
+        self.scene = self._made()
         """The objects that are currently shown."""
-        return self._scene
 
     def robot_near(self, topic: str) -> str | None:
         """Name of the robot whose namespace contains a topic, or of the first robot."""
@@ -108,7 +104,7 @@ class PlayedScene:
                 f"{name}_{i}" for i in range(2, len(taken) + 3) if f"{name}_{i}" not in taken
             )
         self._robots[topic] = _Robot(name, namespace, found)
-        self._scene = self._made()
+        self.scene = self._made()
 
     def take(self, topic: str, message: Any) -> None:
         """Applies a message with transforms or joint states."""
@@ -129,7 +125,7 @@ class PlayedScene:
 
     def pose(self, name: str) -> Pose:
         """Pose of a model."""
-        for placed in self._scene.models:
+        for placed in self.scene.models:
             if placed.name == name:
                 robot = next((r for r in self._robots.values() if r.name == name), None)
                 return self._links(robot)[0] if robot else placed.pose
@@ -141,7 +137,7 @@ class PlayedScene:
         """Snapshot of the scene at a time."""
         poses: list[Pose] = []
         positions: list[float] = []
-        for placed in self._scene.models:
+        for placed in self.scene.models:
             robot = next((r for r in self._robots.values() if r.name == placed.name), None)
             description = placed.description
             if robot is None:
@@ -155,7 +151,7 @@ class PlayedScene:
                 values[joint.name] for joint in description.joints if joint.type != "fixed"
             ]
         return Snapshot(
-            scene=self._scene,
+            scene=self.scene,
             time_ns=time_ns,
             run_state=run_state,
             speed=speed,

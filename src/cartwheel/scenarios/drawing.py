@@ -19,14 +19,10 @@ _LINES = 8
 """Maximum number of grid lines in a direction."""
 
 
-def drawing(outcomes: Sequence[Outcome], *, size: int = _SIZE) -> str:
+def drawing(outcomes: Sequence[Outcome]) -> str:
     """The trajectories of cases from above, as an SVG element.
 
     Failed cases are drawn last, in a different colour.
-
-    Args:
-        outcomes: The cases.
-        size: Maximum width and height in pixels.
     """
     points = [
         (point[1], point[2]) for each in outcomes for track in each.trajectories.values()
@@ -36,7 +32,7 @@ def drawing(outcomes: Sequence[Outcome], *, size: int = _SIZE) -> str:
         return ""
     targets = list(dict.fromkeys(tuple(target) for each in outcomes for target in each.targets))
     points += [(x, y) for x, y, _ in targets]
-    area = _Area(points, size)
+    area = _Area(points)
     parts = [*area.grid()]
     parts += [area.box(box) for box in outcomes[0].obstacles]
     parts += [area.circle(target) for target in targets[:50]]
@@ -55,7 +51,7 @@ def drawing(outcomes: Sequence[Outcome], *, size: int = _SIZE) -> str:
 class _Area:
     """The part of the ground that a drawing shows."""
 
-    def __init__(self, points: Iterable[tuple[float, float]], size: int) -> None:
+    def __init__(self, points: Iterable[tuple[float, float]]) -> None:
         xs, ys = zip(*((x, y) for x, y in points if math.isfinite(x + y)), strict=True)
         self._x, self._y, wide, high = min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys)
         border = 0.08 * max(wide, high, _LEAST)
@@ -65,7 +61,7 @@ class _Area:
         least = 0.4 * max(wide, high, _LEAST)
         self._wide = max(wide, least) + 2 * border
         self._high = max(high, least) + 2 * border
-        self._scale = (size - 2 * _MARGIN) / max(self._wide, self._high)
+        self._scale = (_SIZE - 2 * _MARGIN) / max(self._wide, self._high)
         self.width = self._wide * self._scale + 2 * _MARGIN
         self.height = self._high * self._scale + 2 * _MARGIN
 

@@ -53,7 +53,7 @@ class Backlog:
         self._called = False
         """Whether the reader was woken for the messages in the queue."""
         self._changed = threading.Condition()
-        self._open = True
+        self.is_open = True
         self.waited = 0.0
         """Wall time in s for which `put` has waited."""
 
@@ -83,7 +83,7 @@ class Backlog:
         deadline = time.monotonic() + timeout
         with self._changed:
             # The writer calls before it adds a message, whose predecessors may have been returned.
-            while self._open and not (self._called and self._items):
+            while self.is_open and not (self._called and self._items):
                 left = min(deadline - time.monotonic(), _LINGER)
                 if left <= 0:
                     break
@@ -103,14 +103,10 @@ class Backlog:
             self._written += size
             self._changed.notify_all()
 
-    @property
-    def is_open(self) -> bool:
-        return self._open
-
     def close(self) -> None:
         """Rejects new messages. Queued messages can still be read."""
         with self._changed:
-            self._open = False
+            self.is_open = False
             self._limit = -1
             self._changed.notify_all()
 
@@ -122,9 +118,9 @@ class Backlog:
             self._changed.notify_all()
             if self._is_full:
                 begin = time.perf_counter()
-                self._changed.wait_for(lambda: not self._is_full or not self._open)
+                self._changed.wait_for(lambda: not self._is_full or not self.is_open)
                 waited = time.perf_counter() - begin
-            is_open = self._open
+            is_open = self.is_open
             if is_open:
                 self._limit = min(self._put + self._batch, self._written + self._room)
         if waited:

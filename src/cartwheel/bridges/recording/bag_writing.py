@@ -67,7 +67,6 @@ class BagWriter:
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = path
         self.kept_ns = 0
         self._codec = codec("ros1")
         self._connections: list[_Connection] = []

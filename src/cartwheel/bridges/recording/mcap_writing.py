@@ -75,7 +75,6 @@ class McapWriter:
     """
 
     def __init__(self, path: Path, encoding: Encoding, *, notes: Mapping[str, str]) -> None:
-        self.path = path
         self.kept_ns = 0
         self._codec = codec(encoding)
         self._profile = encoding
@@ -87,7 +86,8 @@ class McapWriter:
         """Size of `_chunk` in bytes."""
         self._first, self._last = _NEVER, -1
         """Times of the first and last message in the current chunk, in ns."""
-        self._whole: tuple[int, int] | None = None
+        self.span: tuple[int, int] | None = None
+        """Times of the first and last message in the file in ns; None if it has no messages."""
         self._indexes: list[bytes] = []
         """Index records of chunks, attachments and metadata, for the end of the file."""
         self._written: list[_Written] = []
@@ -185,7 +185,7 @@ class McapWriter:
         )
         begin = self._sink.position
         counts = [each.count - len(each.index) // 2 for each in self._channels]
-        before = _Written(begin, counts, len(self._indexes), self._whole)
+        before = _Written(begin, counts, len(self._indexes), self.span)
         offsets, indexes = [], bytearray()
         for channel in self._channels:
             if channel.index:
@@ -204,9 +204,9 @@ class McapWriter:
             text("zstd"),
             struct.pack("<QQ", len(packed), len(whole)),
         )
-        begun, ended = self._whole or (first, last)
-        self._whole = (min(begun, first), max(ended, last))
-        self.kept_ns = self._whole[1]
+        begun, ended = self.span or (first, last)
+        self.span = (min(begun, first), max(ended, last))
+        self.kept_ns = self.span[1]
         self._written.append(before)
         self._forget_chunk()
 
@@ -238,11 +238,6 @@ class McapWriter:
         """Number of messages per channel."""
         return [channel.count for channel in self._channels]
 
-    @property
-    def span(self) -> tuple[int, int] | None:
-        """Times of the first and last message in the file in ns; None if it has no messages."""
-        return self._whole
-
     def abandon(self) -> None:
         for channel in self._channels:
             channel.count -= len(channel.index) // 2
@@ -259,8 +254,8 @@ class McapWriter:
         # Channels that were added later are empty, because their messages are already removed.
         for channel, count in zip(self._channels, last.counts, strict=False):
             channel.count = count
-        self._whole = last.span
-        self.kept_ns = self._whole[1] if self._whole else 0
+        self.span = last.span
+        self.kept_ns = self.span[1] if self.span else 0
         return True
 
     def _forget_chunk(self) -> None:
@@ -284,7 +279,7 @@ class McapWriter:
 
     def _statistics(self, stated: list[_Channel]) -> bytes:
         counts = b"".join(struct.pack("<HQ", one.number, one.count) for one in stated)
-        first, last = self._whole or (0, 0)
+        first, last = self.span or (0, 0)
         schemas = len({channel.schema for channel in stated})
         return record(
             Op.STATISTICS,

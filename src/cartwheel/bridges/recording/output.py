@@ -57,7 +57,8 @@ class Output:
         self._writer: Writer | None = None
         self._channels: dict[int, int] = {}
         """Channels of the current file, by the number of the topic."""
-        self._flush_due = 0.0
+        self.flush_due = 0.0
+        """Time of the next flush on the monotonic clock, s."""
         self.files: list[Path] = []
         self.messages = 0
         """Number of written messages."""
@@ -73,11 +74,6 @@ class Output:
             RecordingError: The file cannot be written.
         """
         self._begin(self._path)
-
-    @property
-    def flush_due(self) -> float:
-        """Time of the next flush on the monotonic clock, s."""
-        return self._flush_due
 
     def write(self, numbers: list[int], times: list[int], data: list[Any]) -> None:
         """Writes messages.
@@ -127,10 +123,10 @@ class Output:
             OSError: The file cannot be written.
         """
         now = time.monotonic()
-        if now >= self._flush_due:
+        if now >= self.flush_due:
             if self._writer is not None:
                 self._writer.flush()
-            self._flush_due = now + FLUSH
+            self.flush_due = now + FLUSH
 
     def close(self) -> None:
         """Completes the current file.
@@ -175,5 +171,5 @@ class Output:
         self._writer = open_writer(
             path, self._encoding, overwrite=self._overwrite, notes=self._notes
         )
-        self._flush_due = time.monotonic() + FLUSH
+        self.flush_due = time.monotonic() + FLUSH
         self.files.append(path)

@@ -22,8 +22,6 @@ from cartwheel.codes.recording import RECORDING_EXISTS, RECORDING_NOT_WRITABLE
 class Writer(Protocol):
     """Writes messages to a file in the order of time."""
 
-    path: Path
-
     @property
     def kept_ns(self) -> int:
         """Time of the last message that was passed to the operating system."""

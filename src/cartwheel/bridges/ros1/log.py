@@ -50,7 +50,6 @@ class Log:
         self._early: deque[Any] = deque(maxlen=_KEPT)
         self._heard = False
         self.publication = _LogPublication(
-            loop,
             topic=TOPIC,
             type_=ros1_type(TYPE),
             latched=False,

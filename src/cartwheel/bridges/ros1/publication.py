@@ -24,7 +24,6 @@ class Publication:
     It subscribes to the graph only while a node is connected.
 
     Args:
-        loop: Event loop of the bridge.
         topic: ROS name of the topic.
         type_: Type of the messages.
         latched: Whether new subscribers receive the last message.
@@ -34,7 +33,6 @@ class Publication:
 
     def __init__(
         self,
-        loop: Loop,
         *,
         topic: str,
         type_: Ros1Type,
@@ -42,7 +40,6 @@ class Publication:
         node: str,
         warn: Callable[[Diagnostic], None],
     ) -> None:
-        self._loop = loop
         self.topic = topic
         self.type = type_
         self.latched = latched
@@ -176,7 +173,7 @@ class GraphPublication(Publication):
         node: str,
         warn: Callable[[Diagnostic], None],
     ) -> None:
-        super().__init__(loop, topic=topic, type_=type_, latched=latched, node=node, warn=warn)
+        super().__init__(topic=topic, type_=type_, latched=latched, node=node, warn=warn)
         self._tap = Tap(
             loop,
             graph,

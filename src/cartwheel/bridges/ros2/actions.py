@@ -73,7 +73,7 @@ class OfferedAction:
         self._loop = loop
         self._warn = warn
         self._submitting = False
-        self._readers = False
+        self.wants_feedback = False
         self._waiting: dict[str, list[Respond]] = {}
         """Pending result requests of active goals. Used on the owner's thread."""
         self._closed = False
@@ -102,15 +102,10 @@ class OfferedAction:
         for each in (self._status, self._feedback, *self._services):
             each.close()
 
-    @property
-    def wants_feedback(self) -> bool:
-        """See `ActionListener`."""
-        return self._readers
-
     # -- on the loop's thread
 
     def _found_readers(self, there: bool) -> None:
-        self._readers = there
+        self.wants_feedback = there
 
     def _posted(self, handler: Handler) -> Handler:
         return lambda request, respond: self._graph.post(lambda: handler(request, respond))
@@ -132,7 +127,7 @@ class OfferedAction:
 
     def goal_goes_on(self, goal: Goal, feedback: Any) -> None:
         """See `ActionListener`."""
-        if self._readers:
+        if self.wants_feedback:
             self._publish(
                 self._feedback.send,
                 message_class(f"{self.action.type}_FeedbackMessage")(

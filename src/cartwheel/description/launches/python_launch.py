@@ -81,10 +81,6 @@ _MOST_TURNS = 500
 class _Description:
     """The text that xacro produces from a file."""
 
-    def __init__(self, file: str, arguments: Mapping[str, str]) -> None:
-        self.file = file
-        self.arguments = arguments
-
 
 def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
     """Adds the contents of a launch file to `facts`."""
@@ -294,7 +290,7 @@ class _Reader:
             else {}
         )
         self._facts.add(Path(file), arguments)
-        return _Description(file, arguments)
+        return _Description()
 
     def configuration(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a launch argument."""

@@ -40,20 +40,19 @@ def read_plugins(owner: Node) -> list[PluginTag]:
     return [read_plugin(node) for node in nodes if node.get("filename") != "__default__"]
 
 
-def read_sensor(node: Node, link: str, pose: Pose | None = None, name: str = "") -> Sensor:
+def read_sensor(node: Node, link: str, pose: Pose | None = None) -> Sensor:
     """A sensor.
 
     Args:
         node: The element.
         link: The link that carries it.
         pose: Its pose in the link if it is already known; otherwise its ``<pose>`` is used.
-        name: Default name.
 
     Raises:
         DescriptionError: A parameter is invalid.
     """
     kind = node.require("type").strip()
-    title = (node.get("name") or "").strip() or name or kind
+    title = (node.get("name") or "").strip() or kind
     update_rate = node.number_at("update_rate", 0.0)
     if update_rate < 0:
         raise node.fail(f'the update_rate of sensor "{title}" must not be negative')

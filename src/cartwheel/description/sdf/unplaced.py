@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from cartwheel.codes.tags import NAME_TAKEN
 from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription
@@ -31,7 +31,6 @@ class Model:
     relative_to: str
     origin: Origin
     merge: bool = False
-    nested: list[Model] = field(default_factory=list)
     transmissions: tuple[Element, ...] = ()
     """For a URDF, like the following fields."""
     ros2_control: tuple[Element, ...] = ()

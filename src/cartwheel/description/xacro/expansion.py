@@ -37,8 +37,6 @@ class Expansion:
 
     root: Node
     diagnostics: tuple[Diagnostic, ...]
-    declared: tuple[str, ...]
-    """Arguments that the file or an included file declares or uses."""
     files: tuple[str, ...]
     """The file and the included files, each once."""
     arguments: Mapping[str, str]
@@ -74,7 +72,6 @@ def expand(
             *_stand_ins(packages),
             *_unknown_arguments(run, arguments),
         ),
-        declared=tuple(sorted(run.declared)),
         files=tuple(dict.fromkeys(run.files)),
         arguments=dict(run.values),
     )

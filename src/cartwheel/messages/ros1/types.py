@@ -41,7 +41,6 @@ class Ros1Service:
     md5: str
     request: str
     """Type of the request in the graph."""
-    response: str
 
 
 def ros1_store() -> Any:
@@ -109,7 +108,7 @@ def ros1_service(name: str) -> Ros1Service:
             code=MESSAGE_TYPE_UNKNOWN,
         )
     text = _hashed_text(request) + _hashed_text(response)
-    return Ros1Service(name=ros1_name(full), md5=_md5(text), request=request, response=response)
+    return Ros1Service(name=ros1_name(full), md5=_md5(text), request=request)
 
 
 def _known(full: str) -> str:
