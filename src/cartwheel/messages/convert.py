@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cartwheel.codes.graph import FIELD_UNKNOWN, FIELD_VALUE_INVALID
-from cartwheel.errors import GraphError
+from cartwheel.errors import GraphError, Value
 from cartwheel.messages.classes import FILLER
 from cartwheel.messages.field import Field, empty
 from cartwheel.messages.fields import fields
@@ -227,21 +227,22 @@ def _by_name(type_name: str, given: Any, path: str, strict: bool) -> dict[str, A
         return result
     if isinstance(given, Sequence) and not isinstance(given, str | bytes):
         if len(given) != len(names):
-            raise GraphError(
-                f"{_where(path)} {type_name} has {len(names)} fields, but the list has "
-                f"{len(given)} values",
-                code=FIELD_VALUE_INVALID,
+            raise _invalid(
+                path,
+                f"{type_name} has {len(names)} fields, but the list has {len(given)} values",
                 hint=f"Fields: {', '.join(names) or 'none'}.",
-                values={"type": type_name, "field": path.rstrip("."), "count": len(given)},
+                type=type_name,
+                count=len(given),
             )
         return dict(zip(names, given, strict=True))
     if given is None and not strict:
         return {}
-    raise GraphError(
-        f"{_where(path)} {_shown(given)} is not a valid {type_name}",
-        code=FIELD_VALUE_INVALID,
+    raise _invalid(
+        path,
+        f"{_shown(given)} is not a valid {type_name}",
         hint=f"Use the form {{{', '.join(f'{name}: …' for name in names)}}}.",
-        values={"type": type_name, "field": path.rstrip("."), "value": _shown(given)},
+        type=type_name,
+        value=_shown(given),
     )
 
 
@@ -262,24 +263,11 @@ def _value(field: Field, value: Any, path: str, strict: bool) -> Any:
         value = np.frombuffer(value, dtype=np.uint8)
     value = _plain_number(value)
     if isinstance(value, str | Mapping) or not isinstance(value, Sequence | np.ndarray):
-        raise GraphError(
-            f"{path}: expected a list for {field.described}, got {_shown(value)}",
-            code=FIELD_VALUE_INVALID,
-            hint="Use the form [a, b, …].",
-            values={"field": path.rstrip("."), "value": _shown(value)},
-        )
+        raise _unexpected(path, f"a list for {field.described}", value, "Use the form [a, b, …].")
     if field.length is not None and len(value) != field.length:
-        raise GraphError(
-            f"{path}: expected {field.length} values for {field.described}, got {len(value)}",
-            code=FIELD_VALUE_INVALID,
-            values={"field": path, "count": len(value)},
-        )
+        raise _miscounted(path, f"{field.length} values for {field.described}", value)
     if field.most and len(value) > field.most:
-        raise GraphError(
-            f"{path}: expected at most {field.most} values for {field.described}, got {len(value)}",
-            code=FIELD_VALUE_INVALID,
-            values={"field": path, "count": len(value)},
-        )
+        raise _miscounted(path, f"at most {field.most} values for {field.described}", value)
     if field.kind in ("message", "string"):
         return [_one(field, item, f"{path}[{index}]", strict) for index, item in enumerate(value)]
     return _numbers(field, value, path, strict)
@@ -313,27 +301,15 @@ def _one(field: Field, value: Any, path: str, strict: bool) -> Any:
     value = _plain_number(value)
     if field.kind == "string":
         if isinstance(value, str) and field.longest and len(value) > field.longest:
-            raise GraphError(
-                f"{path}: expected at most {field.longest} characters, got {len(value)}",
-                code=FIELD_VALUE_INVALID,
-                values={"field": path.rstrip("."), "count": len(value)},
-            )
+            raise _miscounted(path, f"at most {field.longest} characters", value)
         if isinstance(value, str):
             return value
-        raise GraphError(
-            f"{path}: expected a string, got {_shown(value)}",
-            code=FIELD_VALUE_INVALID,
-            hint=f'Put the value in quotes: "{value}".' if isinstance(value, int | float) else None,
-            values={"field": path.rstrip("."), "value": _shown(value)},
-        )
+        quoted = f'Put the value in quotes: "{value}".' if isinstance(value, int | float) else None
+        raise _unexpected(path, "a string", value, quoted)
     if field.kind == "bool":
         if isinstance(value, bool) or (isinstance(value, int) and value in (0, 1)):
             return bool(value)
-        raise GraphError(
-            f"{path}: expected true or false, got {_shown(value)}",
-            code=FIELD_VALUE_INVALID,
-            values={"field": path.rstrip("."), "value": _shown(value)},
-        )
+        raise _unexpected(path, "true or false", value)
     if field.kind == "float":
         return _float(field, value, path, strict)
     return _int(field, value, path)
@@ -345,44 +321,46 @@ def _float(field: Field, value: Any, path: str, strict: bool) -> float:
         try:
             return convert(value)
         except OverflowError:
-            raise GraphError(
-                f"{path}: {_shown(value)} is too large for {field.type}",
-                code=FIELD_VALUE_INVALID,
-                values={"field": path.rstrip("."), "value": _shown(value)},
-            ) from None
+            shown = _shown(value)
+            raise _invalid(path, f"{shown} is too large for {field.type}", value=shown) from None
     if isinstance(value, str) and not strict:
         # YAML 1.1 reads 1e-3 and nan as strings.
         with contextlib.suppress(ValueError):
             number = float(value.strip().replace(".inf", "inf").replace(".nan", "nan"))
             return _float(field, number, path, strict)
-    raise GraphError(
-        f"{path}: expected a number, got {_shown(value)}",
-        code=FIELD_VALUE_INVALID,
-        values={"field": path.rstrip("."), "value": _shown(value)},
-    )
+    raise _unexpected(path, "a number", value)
 
 
 def _int(field: Field, value: Any, path: str) -> int:
     if isinstance(value, float) and math.isfinite(value) and value == int(value):
         value = int(value)
     if not isinstance(value, int):
-        raise GraphError(
-            f"{path}: expected a whole number for {field.type}, got {_shown(value)}",
-            code=FIELD_VALUE_INVALID,
-            values={"field": path.rstrip("."), "value": _shown(value)},
-        )
+        raise _unexpected(path, f"a whole number for {field.type}", value)
     limits = np.iinfo(field.type)
     if not limits.min <= int(value) <= limits.max:
-        raise GraphError(
-            f"{path}: {value} is out of range for {field.type}: {limits.min} to {limits.max}",
-            code=FIELD_VALUE_INVALID,
-            values={"field": path.rstrip("."), "value": _shown(value)},
-        )
+        why = f"{value} is out of range for {field.type}: {limits.min} to {limits.max}"
+        raise _invalid(path, why, value=_shown(value))
     return int(value)
 
 
-def _where(path: str) -> str:
-    return f"{path.rstrip('.')}:" if path else "the message:"
+def _unexpected(path: str, wanted: str, value: Any, hint: str | None = None) -> GraphError:
+    shown = _shown(value)
+    return _invalid(path, f"expected {wanted}, got {shown}", hint=hint, value=shown)
+
+
+def _miscounted(path: str, wanted: str, value: Any) -> GraphError:
+    return _invalid(path, f"expected {wanted}, got {len(value)}", count=len(value))
+
+
+def _invalid(path: str, why: str, *, hint: str | None = None, **values: Value) -> GraphError:
+    """The error for a value that does not fit its field, or the message if `path` is empty."""
+    field = path.rstrip(".")
+    return GraphError(
+        f"{field or 'the message'}: {why}",
+        code=FIELD_VALUE_INVALID,
+        hint=hint,
+        values={"field": field, **values},
+    )
 
 
 def _shown(value: Any) -> str:
