@@ -95,6 +95,8 @@ class Participant:
         self._remotes = Remotes(warn=warn, lose=self._lose)
         self._next_entity = 1
         self._closed = False
+        self.malformed = 0
+        """Number of invalid datagrams."""
 
     def start(self) -> None:
         """Starts discovery. Call it on the loop's thread."""
@@ -240,7 +242,7 @@ class Participant:
                     if received.prefix != self.prefix and received.to in (None, self.prefix):
                         self._take(received, host)
             except MalformedError:
-                continue
+                self.malformed += 1
 
     def _take(self, received: Received, host: str) -> None:
         remote = self._remotes.by_prefix.get(received.prefix)
@@ -357,6 +359,7 @@ class Participant:
                 return
             endpoint = decode_endpoint(taken.payload, writer=are_writers)
         except MalformedError:
+            self.malformed += 1
             return
         if endpoint.guid[:12] != remote.data.prefix:
             return

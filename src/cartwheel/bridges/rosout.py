@@ -20,7 +20,6 @@ def line(diagnostic: Diagnostic, *, node: str, time_ns: int) -> bytes:
         name=node,
         msg=diagnostic.text,
         file=origin.file if origin else "",
-        function="",
         line=origin.line if origin else 0,
     )
     return encode_cdr(message)

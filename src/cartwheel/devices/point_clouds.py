@@ -48,7 +48,6 @@ def point_cloud2(moment: Any, cloud: Any, *, dense: bool) -> Any:
         height=height,
         width=width,
         fields=_fields(cloud.dtype),
-        is_bigendian=False,
         point_step=step,
         row_step=step * width,
         data=np.ascontiguousarray(cloud).reshape(-1).view(np.uint8),

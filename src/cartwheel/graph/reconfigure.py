@@ -180,7 +180,7 @@ class ReconfigureServer:
             lists[_LISTS[kind][0]].append(cls(name=key, value=value))
         state = message_class(f"{_PACKAGE}/msg/GroupState")
         return message_class(f"{_PACKAGE}/msg/Config")(
-            **lists, groups=[state(name="Default", state=True, id=0, parent=0)]
+            **lists, groups=[state(name="Default", state=True)]
         )
 
     def _description(self) -> Any:
@@ -197,7 +197,7 @@ class ReconfigureServer:
         ]
         group = message_class(f"{_PACKAGE}/msg/Group")
         return message_class(f"{_PACKAGE}/msg/ConfigDescription")(
-            groups=[group(name="Default", type="", parameters=described, parent=0, id=0)],
+            groups=[group(name="Default", parameters=described)],
             max=self._config({p.name: _bound(p, upper=True) for p in self._parameters.values()}),
             min=self._config({p.name: _bound(p, upper=False) for p in self._parameters.values()}),
             dflt=self._config({p.name: p.default for p in self._parameters.values()}),

@@ -70,9 +70,7 @@ class Log:
             name=self._node,
             msg=diagnostic.text,
             file=origin.file if origin else "",
-            function="",
             line=origin.line if origin else 0,
-            topics=[],
         )
         self._loop.post(lambda: self._send(message))
 

@@ -105,18 +105,6 @@ class KobukiSensors(Component):
                     bumper=_bits(self._pressed, left=4, center=2, right=1),
                     wheel_drop=_bits(self._dropped, left=2, right=1),
                     cliff=_bits(self._cliff, left=4, center=2, right=1),
-                    left_encoder=0,
-                    right_encoder=0,
-                    left_pwm=0,
-                    right_pwm=0,
-                    buttons=0,
-                    charger=0,
-                    battery=0,
-                    bottom=np.zeros(0, np.uint16),
-                    current=np.zeros(0, np.uint8),
-                    over_current=0,
-                    digital_input=0,
-                    analog_input=np.zeros(0, np.uint16),
                 )
             )
 

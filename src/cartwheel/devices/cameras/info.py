@@ -74,11 +74,6 @@ class Calibration:
             k=np.array([focal, 0, cx, 0, focal, cy, 0, 0, 1]),
             r=np.eye(3).ravel() if rectified.rotation is None else np.array(rectified.rotation),
             p=projection(rectified, focal, cx, cy, config.baseline),
-            binning_x=0,
-            binning_y=0,
-            roi=message_class("sensor_msgs/msg/RegionOfInterest")(
-                x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
-            ),
         )
         """The published message without its stamp."""
         self._response = service_classes(SET_INFO)[1]
@@ -97,7 +92,7 @@ class Calibration:
                 f"but the camera has {self.width} x {self.height}",
             )
         self.info = given
-        return self._response(success=True, status_message="")
+        return self._response(success=True)
 
 
 def projection(rectified: Rectified, focal: float, cx: float, cy: float, baseline: float) -> Array:

@@ -252,5 +252,4 @@ def trajectory_point(
         velocities=np.array(velocities, dtype=float),
         accelerations=np.array(accelerations, dtype=float),
         effort=np.array(effort, dtype=float),
-        time_from_start=message_class("builtin_interfaces/msg/Duration")(0, 0),
     )

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from cartwheel.codes import running
 from cartwheel.component import Component, Scope
 from cartwheel.devices.elementwise import Number, maximum, where
@@ -151,7 +149,6 @@ class Battery(Component):
             status = message.POWER_SUPPLY_STATUS_DISCHARGING
         elif fraction > _CHARGED:
             status = message.POWER_SUPPLY_STATUS_FULL
-        empty = np.zeros(0, np.float32)
         self._publisher.publish(
             message(
                 header=header(self.part.time_ns, ""),
@@ -166,10 +163,6 @@ class Battery(Component):
                 power_supply_health=message.POWER_SUPPLY_HEALTH_UNKNOWN,
                 power_supply_technology=message.POWER_SUPPLY_TECHNOLOGY_UNKNOWN,
                 present=True,
-                cell_voltage=empty,
-                cell_temperature=empty,
-                location="",
-                serial_number="",
             )
         )
 

@@ -26,8 +26,6 @@ def laser_scan(moment: Any, pattern: ScanPattern, scan: Scan, *, floor: float = 
         angle_min=sweep.first,
         angle_max=sweep.last,
         angle_increment=sweep.step,
-        time_increment=0.0,
-        scan_time=0.0,
         range_min=pattern.minimum,
         range_max=pattern.maximum,
         ranges=scan.ranges[row].astype(np.float32),
@@ -55,5 +53,4 @@ def range_message(
         min_range=pattern.minimum,
         max_range=pattern.maximum,
         range=value,
-        variance=0.0,
     )

@@ -115,9 +115,7 @@ class HardwareComponents:
             message_class(f"{_MESSAGES}/HardwareComponentState")(
                 name=name,
                 type=system.attribute("type") or "system",
-                is_async=False,
                 rw_rate=rate,
-                class_type="",
                 plugin_name=hardware_of(system),
                 state=self.state(name),
                 command_interfaces=self._command_interfaces(name, claimed),

@@ -87,8 +87,8 @@ class DrivePanel(Panel):
     def _publish(self, topics: Iterable[str]) -> None:
         vector = message_class("geometry_msgs/msg/Vector3")
         twist: Any = message_class(TWIST)(
-            linear=vector(x=float(self._teleop.linear), y=0.0, z=0.0),
-            angular=vector(x=0.0, y=0.0, z=float(self._teleop.angular)),
+            linear=vector(x=float(self._teleop.linear)),
+            angular=vector(z=float(self._teleop.angular)),
         )
         for topic in topics:
             self.stage.drivers[topic] = self._seat.number
