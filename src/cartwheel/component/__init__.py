@@ -1,7 +1,7 @@
 """The base class of everything that acts in a simulation: devices, plugins and controllers."""
 
-from cartwheel.component.component import Closable, Component, is_connection
+from cartwheel.component.component import Component, is_connection
 from cartwheel.component.scope import Scope, Shared
 from cartwheel.component.sharing import TopicSharing
 
-__all__ = ["Closable", "Component", "Scope", "Shared", "TopicSharing", "is_connection"]
+__all__ = ["Component", "Scope", "Shared", "TopicSharing", "is_connection"]

@@ -3,16 +3,11 @@
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.finding import Kind, Survey, robots_in, survey
 from cartwheel.corpus.trial import try_robot
-from cartwheel.corpus.verdict import Drive, Flight, Reach, Spin, Stand, Verdict
+from cartwheel.corpus.verdict import Verdict
 
 __all__ = [
-    "Drive",
     "Fault",
-    "Flight",
     "Kind",
-    "Reach",
-    "Spin",
-    "Stand",
     "Survey",
     "Verdict",
     "robots_in",

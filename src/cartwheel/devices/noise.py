@@ -124,8 +124,6 @@ class _Drift:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VectorNoiseConfig:
-    """Configuration of a `VectorNoise`."""
-
     name: str
     """Name of the random sequence."""
     noises: tuple[Noise, ...]

@@ -3,17 +3,16 @@
 from cartwheel.graph.action import Action, ActionListener, Goal, GoalState
 from cartwheel.graph.actionlib import ActionTopics
 from cartwheel.graph.graph import Graph
-from cartwheel.graph.joint_inputs import JointInput, JointInputs
+from cartwheel.graph.joint_inputs import JointInput
 from cartwheel.graph.mailbox import Mailbox
 from cartwheel.graph.names import check_prefix, resolve_frame, resolve_name
-from cartwheel.graph.parameters import Parameters, ParameterServer
+from cartwheel.graph.parameters import ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
 from cartwheel.graph.renaming import TopicRenaming
 from cartwheel.graph.responses import checked_handler, made_response
 from cartwheel.graph.topic import (
     TWIST,
     TWIST_STAMPED,
-    Callback,
     CheckedPublisher,
     Publisher,
     Qos,
@@ -23,7 +22,6 @@ from cartwheel.graph.topic import (
     TopicInfo,
     made_message,
 )
-from cartwheel.graph.transforms import StaticTransforms
 
 __all__ = [
     "TWIST",
@@ -31,22 +29,18 @@ __all__ = [
     "Action",
     "ActionListener",
     "ActionTopics",
-    "Callback",
     "CheckedPublisher",
     "Goal",
     "GoalState",
     "Graph",
     "JointInput",
-    "JointInputs",
     "Mailbox",
     "ParameterServer",
-    "Parameters",
     "Publisher",
     "Qos",
     "ReconfigureParameter",
     "ReconfigureServer",
     "Service",
-    "StaticTransforms",
     "Subscription",
     "TakeValues",
     "TopicInfo",

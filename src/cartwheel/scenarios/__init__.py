@@ -1,9 +1,8 @@
 """Scenarios: tests of robots in files, for `cartwheel test`."""
 
 from cartwheel.scenarios.cases import Case, Scenario, cases_of, digests, load_scenario
-from cartwheel.scenarios.document import ScenarioError
 from cartwheel.scenarios.junit import as_junit
-from cartwheel.scenarios.outcome import Finding, Outcome
+from cartwheel.scenarios.outcome import Outcome
 from cartwheel.scenarios.page import as_page
 from cartwheel.scenarios.results import Results
 from cartwheel.scenarios.runner import Options, Runner
@@ -12,13 +11,11 @@ from cartwheel.scenarios.workers import Workers
 
 __all__ = [
     "Case",
-    "Finding",
     "Options",
     "Outcome",
     "Results",
     "Runner",
     "Scenario",
-    "ScenarioError",
     "Workers",
     "as_junit",
     "as_page",

@@ -5,6 +5,7 @@ pytest loads the plugin of this package in each run, so nothing is imported unti
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -41,22 +42,14 @@ __all__ = [
     "touches",
     "touches_nothing",
 ]
+_MODULES = {"Node": "node", "NodePublisher": "node", "Launched": "launching", "launch": "launching"}
+"""Where the names are that are not in `matchers`."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(name)
-    if name in ("Node", "NodePublisher"):
-        from cartwheel.testing import node
-
-        return getattr(node, name)
-    if name in ("Launched", "launch"):
-        from cartwheel.testing import launching
-
-        return getattr(launching, name)
-    from cartwheel.testing import matchers
-
-    return getattr(matchers, name)
+    return getattr(importlib.import_module(f"{__name__}.{_MODULES.get(name, 'matchers')}"), name)
 
 
 def __dir__() -> list[str]:

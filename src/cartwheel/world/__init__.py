@@ -11,15 +11,11 @@ from cartwheel.world.build import (
     extend_at_rest,
 )
 from cartwheel.world.chains import drag_chains
-from cartwheel.world.entry import CameraMount, ModelEntry, Motor
 from cartwheel.world.inertials import Principal, principal_inertial
 from cartwheel.world.unused import unreadable, unused
 
 __all__ = [
     "Build",
-    "CameraMount",
-    "ModelEntry",
-    "Motor",
     "Principal",
     "build",
     "build_visuals",

@@ -4,6 +4,6 @@ The package keeps its state in global variables, so each expansion runs in its o
 module. Some of its functions are replaced in the copy; see `replacements`.
 """
 
-from cartwheel.description.xacro.expansion import Expansion, expand
+from cartwheel.description.xacro.expansion import expand
 
-__all__ = ["Expansion", "expand"]
+__all__ = ["expand"]

@@ -21,8 +21,6 @@ _STILL: Vec3 = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyDragConfig:
-    """Configuration of a `BodyDrag`."""
-
     link: str
     """Link on which the drag acts."""
     frame: str

@@ -39,8 +39,6 @@ class AirfoilConfig:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LiftDragConfig:
-    """Configuration of a `LiftDrag`."""
-
     link: str
     """Link of the airfoil."""
     airfoil: AirfoilConfig

@@ -16,8 +16,6 @@ from cartwheel.messages import header, message_class
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PoseSensorConfig:
-    """Configuration of a `PoseSensor`."""
-
     link: str
     """Link whose pose is measured."""
     pose_topic: str

@@ -22,8 +22,6 @@ _ZERO = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PropellerConfig:
-    """Configuration of a `Propeller`."""
-
     joint: str
     """Joint of the propeller, whose parent link receives the moments."""
     link: str

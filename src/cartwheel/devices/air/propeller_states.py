@@ -18,8 +18,6 @@ _JOINT_STATE = "sensor_msgs/msg/JointState"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PropellerJointStateConfig:
-    """Configuration of a `PropellerJointState`."""
-
     joint: str
     """Joint of the propeller."""
     velocity_topic: str | None = None
@@ -57,8 +55,6 @@ class PropellerJointState(Component):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PropellerStatesConfig:
-    """Configuration of `PropellerStates`."""
-
     joints: Sequence[str]
     """Joints of the propellers, in the order of the speeds."""
     speed_topic: str
@@ -103,8 +99,6 @@ class PropellerStates(Component):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SpeedRelayConfig:
-    """Configuration of a `SpeedRelay`."""
-
     command_topic: str
     """Topic of the Actuators commands."""
     output_topic: str

@@ -22,8 +22,6 @@ _ON_GROUND = -1.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SimpleQuadrotorConfig:
-    """Configuration of a `SimpleQuadrotor`."""
-
     control: VelocityControlConfig
     topic: str
     """Topic of the commands (Twist)."""

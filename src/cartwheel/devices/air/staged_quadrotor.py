@@ -31,8 +31,6 @@ _UP = (0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StagedQuadrotorConfig:
-    """Configuration of a `StagedQuadrotor`."""
-
     control: VelocityControlConfig
     place: FilteredPidConfig
     """Controllers of the horizontal position, which result in velocities."""

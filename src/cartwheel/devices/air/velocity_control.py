@@ -21,8 +21,6 @@ _NONE: Vec3 = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class VelocityControlConfig:
-    """Configuration of a `VelocityControl`."""
-
     link: str
     """Link on which the force and the torques act."""
     tilt: FilteredPidConfig

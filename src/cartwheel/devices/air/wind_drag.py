@@ -27,8 +27,6 @@ class Fluctuation:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WindDragConfig:
-    """Configuration of a `WindDrag`."""
-
     links: tuple[str, ...]
     """Links on which the wind acts."""
     wind: Vec3

@@ -14,8 +14,6 @@ from cartwheel.messages import header
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WindForceConfig:
-    """Configuration of a `WindForce`."""
-
     link: str
     """Link on which the wind acts."""
     place: Vec3

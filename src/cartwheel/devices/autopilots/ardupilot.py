@@ -30,8 +30,6 @@ _NO_RANGE = -1.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ArduPilotConfig:
-    """Configuration of an `ArduPilot`."""
-
     port: int
     """UDP port on which the packets arrive."""
     unit: InertialUnitConfig

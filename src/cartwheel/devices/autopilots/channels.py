@@ -15,8 +15,6 @@ _FLOAT = "std_msgs/msg/Float64"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChannelConfig:
-    """Configuration of a `Channel`."""
-
     number: int
     """Index of the output in the autopilot's packets."""
     joint: str

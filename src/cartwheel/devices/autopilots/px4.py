@@ -63,8 +63,6 @@ class MotorConfig:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Px4Config:
-    """Configuration of a `Px4`."""
-
     port: int
     """TCP port to which PX4 connects."""
     link: str

@@ -67,8 +67,6 @@ def sighting(receiver: Pose, emitter: Pose) -> Sighting:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class IrReceiversConfig:
-    """Configuration of `IrReceivers`."""
-
     dock: DockConfig
     receivers: tuple[tuple[float, float], ...]
     """Field of view in rad and range in m of each receiver."""
@@ -127,8 +125,6 @@ def is_docked(seen: Sighting) -> bool:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DockStatusConfig:
-    """Configuration of a `DockStatus`."""
-
     dock: DockConfig
     topic: str
     opcode_topic: str

@@ -47,8 +47,6 @@ class _HazardSensor(Component):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BumperZonesConfig:
-    """Configuration of a `BumperZones`."""
-
     collisions: frozenset[str]
     """The bumper's collisions, as ``link::collision``."""
     topic: str
@@ -85,8 +83,6 @@ def zone_at(x: float, y: float) -> str | None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CliffSensorConfig:
-    """Configuration of a `CliffSensor`."""
-
     scanner: ScannerConfig
     """Rays towards the floor."""
     threshold: float
@@ -118,8 +114,6 @@ def nearest(scanner: Scanner) -> float:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WheelDropSensorConfig:
-    """Configuration of a `WheelDropSensor`."""
-
     joint: str
     """Suspension joint of the wheel."""
     threshold: float

@@ -18,8 +18,6 @@ _BRIGHTEST = 3500.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class IrIntensityConfig:
-    """Configuration of an `IrIntensity`."""
-
     scanner: ScannerConfig
     """Rays of the sensor, whose maximum range is finite."""
     topic: str

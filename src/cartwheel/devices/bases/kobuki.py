@@ -24,8 +24,6 @@ _MOST = 4095
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KobukiSensorsConfig:
-    """Configuration of `KobukiSensors`."""
-
     floors: tuple[ScannerConfig, ScannerConfig, ScannerConfig]
     """Left, centre and right cliff sensor, which face the floor."""
     cliff_threshold: float

@@ -13,8 +13,6 @@ _MESSAGE = "irobot_create_msgs/msg/Mouse"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MouseConfig:
-    """Configuration of a `Mouse`."""
-
     link: str
     """Link whose travel is measured. Its name is the frame ID."""
     topic: str

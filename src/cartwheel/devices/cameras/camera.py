@@ -19,8 +19,6 @@ _IDLE_RATE = 1.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CameraConfig:
-    """Configuration of a `Camera`."""
-
     name: str
     """Name of the camera in the model."""
     link: str

@@ -16,8 +16,6 @@ from cartwheel.simulation import Contact
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BumperConfig:
-    """Configuration of a `Bumper`."""
-
     collisions: frozenset[str]
     """Collisions whose contacts are published, ``link::collision``."""
     topic: str

@@ -29,8 +29,6 @@ class StatedWrench:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EntityWrenchConfig:
-    """Configuration of an `EntityWrench`."""
-
     links: tuple[str, ...]
     """The links of the model; the first one is the canonical link."""
     topic: str

@@ -23,8 +23,6 @@ _WORLD = "world"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CommandedWrenchConfig:
-    """Configuration of a `CommandedWrench`."""
-
     link: str
     """Link to which the wrench is applied, at its centre of mass."""
     topic: str
@@ -73,8 +71,6 @@ class CommandedWrench(Component):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FrameSpringConfig:
-    """Configuration of a `FrameSpring`."""
-
     link: str
     """Link to pull. Gravity does not act on it."""
     target: str

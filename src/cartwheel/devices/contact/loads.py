@@ -137,8 +137,6 @@ Axes = Literal["child", "parent", "sensor"]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointLoadConfig:
-    """Configuration of a `JointLoad`."""
-
     joint: str
     """The joint. It can be fixed."""
     axes: Axes

@@ -11,8 +11,6 @@ from cartwheel.messages import message_class, service_classes
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TouchConfig:
-    """Configuration of a `Touch`."""
-
     collisions: frozenset[str]
     """The model's own collisions, ``link::collision``."""
     target: str

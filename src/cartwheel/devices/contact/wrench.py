@@ -23,8 +23,6 @@ WRENCH_STAMPED = "geometry_msgs/msg/WrenchStamped"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WrenchSensorConfig:
-    """Configuration of a `WrenchSensor`."""
-
     load: LinkLoadConfig | ContactForceConfig | JointReactionConfig | JointLoadConfig
     """The measured force and torque."""
     topic: str

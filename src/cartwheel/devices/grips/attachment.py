@@ -75,8 +75,6 @@ class Attacher(Component):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DetachableJointConfig:
-    """Configuration of a `DetachableJoint`."""
-
     parent_link: str
     """Link of this model."""
     child_model: str

@@ -40,8 +40,6 @@ class HandConfig:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GraspConfig:
-    """Configuration of a `Grasp`."""
-
     hands: tuple[HandConfig, ...]
     """The hands. Each holds one object at a time."""
     angle: float

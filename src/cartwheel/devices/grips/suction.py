@@ -14,8 +14,6 @@ _SET_BOOL = "std_srvs/srv/SetBool"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SuctionCupConfig:
-    """Configuration of a `SuctionCup`."""
-
     link: str
     """Link of the cup."""
     topic: str

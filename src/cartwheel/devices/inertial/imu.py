@@ -34,8 +34,6 @@ _SET_BIAS = "hector_gazebo_plugins/srv/SetBias"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ImuConfig:
-    """Configuration of an `Imu`."""
-
     unit: InertialUnitConfig
     """Link, mounting, and noise with a constant bias."""
     topic: str

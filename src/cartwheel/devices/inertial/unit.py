@@ -13,8 +13,6 @@ from cartwheel.simulation import Part
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class InertialUnitConfig:
-    """Configuration of an `InertialUnit`."""
-
     link: str
     """Link that carries the IMU."""
     mount: Pose

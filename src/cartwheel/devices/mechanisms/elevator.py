@@ -28,8 +28,6 @@ _TOLERANCE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ElevatorConfig:
-    """Configuration of an `Elevator`."""
-
     lift_joint: str
     """Prismatic joint that moves the car."""
     door_joint: str

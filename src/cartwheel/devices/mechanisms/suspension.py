@@ -9,8 +9,6 @@ from cartwheel.component import Component, Scope
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SuspensionConfig:
-    """Configuration of a `Suspension`."""
-
     joints: tuple[str, ...]
     """Joints, whose springs are at rest at position 0."""
     stiffness: float

@@ -51,8 +51,6 @@ class SlippingWheelConfig:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WheelSlipConfig:
-    """Configuration of a `WheelSlip`."""
-
     wheels: tuple[SlippingWheelConfig, ...]
     topic: str | None = None
     """Topic of the slip of each wheel. None: not published."""

@@ -32,8 +32,6 @@ class RopeConfig:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WinchConfig:
-    """Configuration of a `Winch`."""
-
     ropes: tuple[RopeConfig, ...]
     wound: int | None
     """Index of the rope that the winch winds. None: there is no winch."""

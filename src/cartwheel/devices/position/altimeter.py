@@ -15,8 +15,6 @@ _ALTIMETER = "ros_gz_interfaces/msg/Altimeter"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AltimeterConfig:
-    """Configuration of an `Altimeter`."""
-
     link: str
     """Link that carries the altimeter."""
     mount: Vec3

@@ -48,8 +48,6 @@ def pressure_by_qnh(altitude: Number, qnh: Number) -> Number:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PressureSensorConfig:
-    """Configuration of a `PressureSensor`."""
-
     link: str
     """Link that carries the sensor."""
     mount: Vec3
@@ -95,8 +93,6 @@ class PressureSensor(LinkSensor):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BarometricAltimeterConfig:
-    """Configuration of a `BarometricAltimeter`."""
-
     link: str
     """Link that carries the altimeter."""
     elevation: float

@@ -30,8 +30,6 @@ class Projection(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GpsConfig:
-    """Configuration of a `Gps`."""
-
     link: str
     """Link that carries the receiver."""
     mount: Vec3 = (0.0, 0.0, 0.0)

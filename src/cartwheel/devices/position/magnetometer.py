@@ -16,8 +16,6 @@ from cartwheel.messages import message_class
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MagnetometerConfig:
-    """Configuration of a `Magnetometer`."""
-
     link: str
     """Link that carries the magnetometer."""
     mount: Quat = IDENTITY

@@ -20,8 +20,6 @@ _Transform = tuple[str, str, Callable[[], Pose]]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ModelPosesConfig:
-    """Configuration of a `ModelPoses`."""
-
     model: bool
     """Publish the pose of the model in the world."""
     links: bool

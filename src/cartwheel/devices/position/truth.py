@@ -30,8 +30,6 @@ _ZERO = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GroundTruthConfig:
-    """Configuration of a `GroundTruth`."""
-
     link: str
     """Link whose state is published."""
     reference: str | None = None
@@ -117,8 +115,6 @@ def relative(state: State, reference: State) -> State:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BaseTruthConfig:
-    """Configuration of a `BaseTruth`."""
-
     link: str
     """Link that carries the base frame."""
     mount: Pose

@@ -24,8 +24,6 @@ _MESSAGE = "sensor_msgs/msg/BatteryState"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BatteryConfig:
-    """Configuration of a `Battery`."""
-
     name: str
     state_topic: str
     """Topic of the BatteryState messages."""

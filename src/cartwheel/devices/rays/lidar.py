@@ -12,8 +12,6 @@ from cartwheel.messages import header
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LidarConfig:
-    """Configuration of a `Lidar`."""
-
     scanner: ScannerConfig
     """The scanner, whose rate is also the publish rate."""
     frame: str

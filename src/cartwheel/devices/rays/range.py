@@ -15,8 +15,6 @@ from cartwheel.devices.topic_sensor import TopicSensor
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RangeFinderConfig:
-    """Configuration of a `RangeFinder`."""
-
     scanner: ScannerConfig
     """The rays."""
     topic: str

@@ -40,8 +40,6 @@ class TriggeredMessage:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TriggerConfig:
-    """Configuration of a `Trigger`."""
-
     topic: str
     type: str
     matches: tuple[Match, ...]

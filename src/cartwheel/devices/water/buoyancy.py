@@ -51,8 +51,6 @@ class FloatingLinkConfig:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BuoyancyConfig:
-    """Configuration of a `Buoyancy`."""
-
     links: tuple[FloatingLinkConfig, ...]
     fluid: Fluid
 

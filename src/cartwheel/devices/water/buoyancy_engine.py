@@ -15,8 +15,6 @@ _FLOAT = "std_msgs/msg/Float64"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BuoyancyEngineConfig:
-    """Configuration of a `BuoyancyEngine`."""
-
     link: str
     """Link on which the force acts."""
     command_topic: str

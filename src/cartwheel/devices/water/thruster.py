@@ -18,8 +18,6 @@ speeds that belong to a thrust are so high that the joint's angle means nothing.
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ThrusterConfig:
-    """Configuration of a `Thruster`."""
-
     joint: str
     """Joint of the propeller. The thrust acts on its child link, along its axis."""
     command: Literal["force", "velocity"]

@@ -38,8 +38,6 @@ class Line:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WaypointsConfig:
-    """Configuration of a `Waypoints`."""
-
     link: str
     """Link on which the force and the torque act."""
     path: tuple[Point, ...] | Circle | Line
