@@ -21,3 +21,11 @@ def bridges_of(process: subprocess.Popen[Any]) -> list[int]:
             ):
                 found.append(int(folder.name))
     return sorted(found)
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process runs, and is not only waited for."""
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False

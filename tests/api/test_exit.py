@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from tests import launching
 from tests.bridges.ros1_peers import wait_for
-from tests.processes import bridges_of
+from tests.processes import bridges_of, is_alive
 
 from cartwheel.bridges.recording.opening import open_recording
 
@@ -30,13 +30,6 @@ threading.Thread(target=world.spin, daemon=True).start()
 while world.time < 0.4:
     time.sleep(0.01)
 """
-
-
-def _alive(pid: int) -> bool:
-    try:
-        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
 
 
 @pytest.mark.parametrize(
@@ -70,7 +63,7 @@ def test_nothing_is_left(tmp_path: Path, end: str, status: int) -> None:
     _, error = process.communicate("\n", timeout=120)
     assert process.returncode == status, error
     assert ("ValueError" in error) == (status == 1), error
-    wait_for(lambda: not any(map(_alive, children)), "the end of the bridges")
+    wait_for(lambda: not any(map(is_alive, children)), "the end of the bridges")
     recording = open_recording(tmp_path / "drive.mcap")
     assert recording.complete
     assert "/odom" in {topic.name for topic in recording.topics}

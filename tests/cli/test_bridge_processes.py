@@ -6,12 +6,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 from tests.cli.conftest import Program
-from tests.processes import bridges_of
+from tests.processes import bridges_of, is_alive
 
 from cartwheel.codes.recording import RECORDING_BROKE_OFF
 from cartwheel.codes.wires import BRIDGE_ENDED
@@ -37,13 +36,6 @@ def _read_to(process: subprocess.Popen[str], start: str) -> None:
     raise AssertionError(f"{start} never came")
 
 
-def _alive(pid: int) -> bool:
-    try:
-        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
 def test_a_killed_run_leaves_no_process_and_a_whole_recording(program: Program) -> None:
     process = program.start("run", "--headless", "--ros2", "--record", "drive.mcap")
     _until(lambda: len(bridges_of(process)) == 2)
@@ -52,7 +44,7 @@ def test_a_killed_run_leaves_no_process_and_a_whole_recording(program: Program) 
     _until(lambda: file.exists() and file.stat().st_size > 100_000)
     process.kill()
     process.communicate(timeout=_PATIENCE)
-    _until(lambda: not any(map(_alive, children)))
+    _until(lambda: not any(map(is_alive, children)))
     done = program("info", "drive.mcap")
     assert "messages" in done.stdout
     assert "CW031" not in done.stderr
@@ -73,7 +65,7 @@ def test_ctrl_c_ends_them_all_and_keeps_everything(program: Program) -> None:
     out, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 0, error
     assert "recorded" in out
-    assert not any(map(_alive, children))
+    assert not any(map(is_alive, children))
     assert "messages" in program("info", "drive.mcap").stdout
 
 
@@ -121,9 +113,9 @@ def test_a_wire_that_stands_still_does_not_hold_the_simulation(program: Program)
     assert "simulated 60.000 s" in out
     # A killed process is there until the kernel has cleared it away.
     deadline = time.monotonic() + _PATIENCE
-    while _alive(child) and time.monotonic() < deadline:
+    while is_alive(child) and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert not _alive(child)
+    assert not is_alive(child)
 
 
 _HELD = """
@@ -155,5 +147,5 @@ def test_a_file_that_cannot_be_read_leaves_nothing_behind(program: Program) -> N
     _, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 2
     assert "broken.urdf:1" in error
-    _until(lambda: not any(map(_alive, children)))
+    _until(lambda: not any(map(is_alive, children)))
     assert not (program.folder / "a.mcap").exists()

@@ -2,6 +2,7 @@
 
 import threading
 
+import numpy as np
 import pytest
 from tests.coded import coded
 
@@ -139,6 +140,21 @@ class Gazebo:
 def notes(answer):
     """What a successful answer says besides Gazebo's own status."""
     return answer.status_message.split("; ")[1:]
+
+
+def vec(v):
+    return np.array([v.x, v.y, v.z])
+
+
+def xyz(v):
+    return dict(zip("xyz", map(float, v), strict=True))
+
+
+def pose_fields(position, orientation=(0, 0, 0, 1)):
+    return {
+        "position": xyz(position),
+        "orientation": dict(zip("xyzw", map(float, orientation), strict=True)),
+    }
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from tests.coded import coded
 from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
 
-from .conftest import notes
+from .conftest import notes, vec, xyz
 
 MASS, SIDE = 2.0, 0.5
 INERTIA = MASS * SIDE**2 / 6
@@ -27,14 +27,6 @@ def floating(make, gazebo):
 def motion(api, link="cube::link"):
     state = api.done("get_link_state", link_name=link).link_state
     return vec(state.twist.linear), vec(state.twist.angular)
-
-
-def vec(v):
-    return np.array([v.x, v.y, v.z])
-
-
-def xyz(v):
-    return dict(zip("xyz", map(float, v), strict=True))
 
 
 def time(seconds):

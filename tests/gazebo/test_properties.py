@@ -10,18 +10,10 @@ from cartwheel.description.model import Light
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
 
-from .conftest import notes
+from .conftest import notes, vec, xyz
 
 STEP = 0.005
 G = 9.8
-
-
-def vec(v):
-    return np.array([v.x, v.y, v.z])
-
-
-def xyz(v):
-    return dict(zip("xyz", map(float, v), strict=True))
 
 
 CUBE = {"mass": 5.0, "ixx": 0.3, "iyy": 0.4, "izz": 0.5, "ixy": 0.01, "ixz": 0.02, "iyz": 0.03}

@@ -18,20 +18,9 @@ from cartwheel.gazebo.entities import Entities
 from cartwheel.gazebo.spawning import Spawning
 from cartwheel.geometry import Pose, quat_from_rpy
 
-from .conftest import SDF, URDF
+from .conftest import SDF, URDF, pose_fields
 
 BOTH = pytest.mark.parametrize("service", ["spawn_urdf_model", "spawn_sdf_model"])
-
-
-def xyz(v):
-    return dict(zip("xyz", map(float, v), strict=True))
-
-
-def pose_fields(position, orientation=(0, 0, 0, 1)):
-    return {
-        "position": xyz(position),
-        "orientation": dict(zip("xyzw", map(float, orientation), strict=True)),
-    }
 
 
 @pytest.fixture

@@ -10,30 +10,15 @@ from cartwheel.codes.graph import SERVICE_FAILED
 from cartwheel.geometry import Pose, quat_from_rpy, rotate
 from cartwheel.simulation.engine import Engine
 
-from .conftest import CHAIN, notes
+from .conftest import CHAIN, notes, pose_fields, vec, xyz
 
 TURNED = quat_from_rpy(0.3, -0.4, 1.1)
 STEP = 0.005
 CART_START = Pose((1.0, 2.0, 0.5), quat_from_rpy(0, 0, 0.7))
 
 
-def vec(v):
-    return np.array([v.x, v.y, v.z])
-
-
 def quat(q):
     return np.array([q.x, q.y, q.z, q.w])
-
-
-def xyz(v):
-    return dict(zip("xyz", map(float, v), strict=True))
-
-
-def pose_fields(position, orientation=(0, 0, 0, 1)):
-    return {
-        "position": xyz(position),
-        "orientation": dict(zip("xyzw", map(float, orientation), strict=True)),
-    }
 
 
 def twist_fields(linear=(0, 0, 0), angular=(0, 0, 0)):

@@ -146,17 +146,12 @@ def test_values_that_do_not_fit(values: tuple[Any, ...]) -> None:
         odometry().encode_ros1(values)
 
 
-@pytest.mark.parametrize("path", ["header.time", "transforms.0", "pose.pose.position.w"])
-def test_a_field_that_the_template_does_not_have(path: str) -> None:
-    for form in (Form(zero(ODOMETRY), path), Form(lambda: zero(ODOMETRY), path)):
-        with pytest.raises(ValueError, match=path):
-            form.message(1.0)
-        with pytest.raises(ValueError, match=path):
-            form.cdr(1.0)
+_MISSING = ("header.time", "transforms.0", "pose.pose.position.w")
+_NO_NUMBERS = ("child_frame_id", "header", "pose.pose")
 
 
-@pytest.mark.parametrize("path", ["child_frame_id", "header", "pose.pose"])
-def test_a_field_that_does_not_consist_of_numbers(path: str) -> None:
+@pytest.mark.parametrize("path", [*_MISSING, *_NO_NUMBERS])
+def test_fields_that_do_not_exist_or_do_not_consist_of_numbers(path: str) -> None:
     for form in (Form(zero(ODOMETRY), path), Form(lambda: zero(ODOMETRY), path)):
         with pytest.raises(ValueError, match=path):
             form.message(1.0)

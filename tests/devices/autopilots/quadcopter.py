@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import pytest
+
+from cartwheel.codes import wires
 
 BODY, ROTOR, ARM = 1.5, 0.02, 0.2
 SPIN = 2e-4
@@ -119,3 +122,32 @@ def outputs(motion: Motion) -> list[float]:
         lift = thrust / 4 + (about_x * left + about_y * forward) / (4 * ARM * ARM)
         lifts.append(max(0.0, lift))
     return [min(1.0, math.sqrt(lift / K) / FASTEST) for lift in lifts]
+
+
+def reported(world, code):
+    """Returns the diagnostics with a code."""
+    return [each for each in world.diagnostics if each.code == code]
+
+
+def check_flight(world):
+    """Runs until the quadcopter has landed, and checks that it hovered on the way."""
+    hover = []
+    while world.time < LANDED:
+        world.run(0.1)
+        if 5.0 < world.time < 7.0:
+            hover.append(position(world))
+    assert np.abs(np.array(hover) - [0.0, 0.0, 2.05]).max() < 0.2
+    x, y, z = position(world)
+    assert z == pytest.approx(0.05, abs=0.01)
+    assert abs(x) < 0.3
+    assert abs(y) < 0.3
+
+
+def check_loss(world):
+    """Runs without the autopilot: it is reported as lost, and the quadcopter falls."""
+    before = world.time
+    world.run(2.0)
+    (lost,) = reported(world, wires.AUTOPILOT_LOST)
+    assert lost.values["address"].startswith("127.0.0.1:")
+    assert world.time == pytest.approx(before + 2.0)
+    assert position(world)[2] < 0.5

@@ -121,3 +121,15 @@ class Car:
 def heading(message):
     turn = message.pose.pose.orientation
     return 2 * math.atan2(turn.z, turn.w)
+
+
+class Driven:
+    """A car in `world` that follows Twist messages."""
+
+    def drive(self, seconds, speed, angle):
+        """Sends a command ten times a second; returns the last odometry."""
+        box = self.world.mailbox("/base/odom", size=1000)
+        for _ in range(round(seconds * 10)):
+            self.world.publish("/base/cmd_vel", linear_x=speed, angular_z=angle)
+            self.world.run(0.1)
+        return box.drain()[-1].twist.twist

@@ -6,7 +6,7 @@ import pytest
 import yaml
 from tests.coded import coded
 from tests.dialects.ros_control.arms import ROS1
-from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, car, four_wheels
+from tests.dialects.ros_control.cars import BASE, RADIUS, TRACK, Driven, car, four_wheels
 
 from cartwheel.codes import devices, robot, running
 from cartwheel.description import load
@@ -36,7 +36,7 @@ STATES = {"type": "joint_state_controller/JointStateController", "publish_rate":
 SPEED, ANGLE = 0.3, 0.2
 
 
-class SteerBot:
+class SteerBot(Driven):
     """A car without transmissions: the names of its joints are only in the parameters."""
 
     def __init__(self, make, folder, hardware, **drive):
@@ -49,14 +49,6 @@ class SteerBot:
         self.world = make.world()
         self.model = self.world.spawn(robot, z=RADIUS, controllers=[file])
         self.world.run(0.2)
-
-    def drive(self, seconds, speed, angle):
-        """Sends a command ten times a second; returns the last odometry."""
-        box = self.world.mailbox("/base/odom", size=1000)
-        for _ in range(round(seconds * 10)):
-            self.world.publish("/base/cmd_vel", linear_x=speed, angular_z=angle)
-            self.world.run(0.1)
-        return box.drain()[-1].twist.twist
 
     def positions(self, *joints):
         simulation = self.world.session.simulation

@@ -6,14 +6,14 @@ import pytest
 import yaml
 from tests.coded import coded
 from tests.dialects.ros_control.arms import ROS1, transmission
-from tests.dialects.ros_control.cars import BASE, FRONT, RADIUS, REAR, car
+from tests.dialects.ros_control.cars import BASE, FRONT, RADIUS, REAR, Driven, car
 
 from cartwheel.codes import running
 
 SPEED, ANGLE = 0.4, 0.3
 
 
-class Bicycle:
+class Bicycle(Driven):
     """A tricycle of which one rear wheel is driven."""
 
     def __init__(self, make, folder, **settings):
@@ -28,14 +28,6 @@ class Bicycle:
         self.world = make.world()
         self.world.spawn(robot, z=RADIUS, controllers=[file])
         self.world.run(0.2)
-
-    def drive(self, seconds, speed, angle):
-        """Sends a command ten times a second; returns the last odometry."""
-        box = self.world.mailbox("/base/odom", size=1000)
-        for _ in range(round(seconds * 10)):
-            self.world.publish("/base/cmd_vel", linear_x=speed, angular_z=angle)
-            self.world.run(0.1)
-        return box.drain()[-1].twist.twist
 
     def position(self, joint):
         return self.world.session.simulation.joint_position("car", joint)
