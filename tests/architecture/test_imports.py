@@ -76,7 +76,15 @@ MAY_IMPORT = {
         "assembly",
     },
     "control": {"description", "simulation", "messages", "graph", "interfaces"},
-    "viewer": {"description", "simulation", "messages", "graph", "interfaces", "gate"},
+    "viewer": {
+        "arrays",
+        "description",
+        "simulation",
+        "messages",
+        "graph",
+        "interfaces",
+        "gate",
+    },
     "gazebo": {"description", "world", "simulation", "messages", "graph", "dialects", "session"},
     "bridges": {"messages", "graph", "gate"},
     "assembly": {

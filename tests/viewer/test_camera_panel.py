@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from tests.coded import raises
 
+from cartwheel.codes.graph import ARRAY_INVALID
 from cartwheel.geometry import Pose
 from cartwheel.messages import from_dict
 from cartwheel.viewer.panels.camera import pixels_of
@@ -77,6 +79,13 @@ def test_infinite_depths_are_black():
     values = np.array([[np.inf, -np.inf, np.nan, 2.0]], dtype="<f4")
     assert pixels_of(message("32FC1", values))[0, :, 0].tolist() == [0, 0, 0, 255]
     assert not pixels_of(message("32FC1", values[:, :3])).any()
+
+
+def test_data_that_do_not_fit_are_refused():
+    damaged = message("rgb8", np.zeros((2, 3, 3), dtype="u1"))
+    damaged.data = damaged.data[:-1]
+    with raises(ARRAY_INVALID, width=3, height=2, size=17):
+        pixels_of(damaged)
 
 
 def test_an_unknown_encoding_is_none():

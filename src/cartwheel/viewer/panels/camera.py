@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cartwheel import arrays
 from cartwheel.graph import TopicInfo
 from cartwheel.messages import nanoseconds
 from cartwheel.simulation.snapshot import Snapshot
@@ -21,23 +22,8 @@ IMAGE = "sensor_msgs/msg/Image"
 _NONE = "none"
 _RATE = 15.0
 """Maximum frame rate, Hz of wall time, because each image must be compressed."""
-_LAYOUTS = {
-    "rgb8": ("u1", 3),
-    "bgr8": ("u1", 3),
-    "rgba8": ("u1", 4),
-    "bgra8": ("u1", 4),
-    "mono8": ("u1", 1),
-    "mono16": ("u2", 1),
-    "rgb16": ("u2", 3),
-    "bgr16": ("u2", 3),
-    "bayer_rggb8": ("u1", 1),
-    "bayer_bggr8": ("u1", 1),
-    "bayer_gbrg8": ("u1", 1),
-    "bayer_grbg8": ("u1", 1),
-    "32FC1": ("f4", 1),
-    "16UC1": ("u2", 1),
-}
-"""Number type and channels of each encoding."""
+_COLOURS = ("rgb8", "bgr8", "rgba8", "bgra8", "rgb16", "bgr16", "mono8", "mono16")
+_MOSAICS = ("bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8")
 _DEPTHS = ("32FC1", "16UC1")
 _DARKEST = 30
 """Brightness of the farthest depth; black means no depth."""
@@ -140,27 +126,23 @@ def pixels_of(message: Any) -> NDArray[np.uint8] | None:
     """An image message as RGB, shape (height, width, 3); None for unsupported encodings.
 
     Depth images are grey, with the nearest pixels brightest and missing depths black.
+
+    Raises:
+        GraphError: The data do not fit the size of the image.
     """
-    layout = _LAYOUTS.get(message.encoding)
-    if layout is None or not message.height or not message.width:
+    encoding = message.encoding
+    shown = encoding in (*_COLOURS, *_MOSAICS, *_DEPTHS)
+    if not shown or not message.height or not message.width:
         return None
-    kind, channels = layout
-    dtype = np.dtype(kind).newbyteorder(">" if message.is_bigendian else "<")
-    rows = np.frombuffer(bytes(message.data), dtype=np.uint8)
-    # Rows may be padded: `step` is their length in bytes.
-    used = message.width * channels * dtype.itemsize
-    rows = np.ascontiguousarray(rows.reshape(message.height, message.step)[:, :used])
-    values = rows.view(dtype).reshape(message.height, message.width, channels)
-    if message.encoding in _DEPTHS:
-        return _grey_of(values[..., 0])
-    picture = (values >> 8 if dtype.itemsize == 2 else values).astype(np.uint8)
-    if message.encoding.startswith("bayer_"):
-        return _from_mosaic(picture[..., 0], message.encoding)
-    if channels == 1:
-        return np.repeat(picture, 3, axis=2)
-    if message.encoding.startswith("bgr"):
-        return np.ascontiguousarray(picture[:, :, 2::-1])
-    return np.ascontiguousarray(picture[:, :, :3])
+    values = arrays.image(message)
+    if encoding in _DEPTHS:
+        return _grey_of(values)
+    picture = (values >> 8 if values.dtype.itemsize == 2 else values).astype(np.uint8)
+    if encoding in _MOSAICS:
+        return _from_mosaic(picture, encoding)
+    if picture.ndim == 2:
+        return np.repeat(picture[..., None], 3, axis=2)
+    return np.ascontiguousarray(picture[..., :3])
 
 
 def _grey_of(depths: NDArray[Any]) -> NDArray[np.uint8]:
