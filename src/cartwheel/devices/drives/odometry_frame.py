@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.description.kinematics import fixed_chain, link_poses
+from cartwheel.devices.transforms import transform_stamped
 from cartwheel.geometry import IDENTITY, Pose, Quat, Vec3, quat_multiply, rotate
-from cartwheel.messages import header, message_class
+from cartwheel.messages import header
 
 if TYPE_CHECKING:
     from cartwheel.component import Component
@@ -45,17 +46,9 @@ class OdometryFrame:
         self._turned = to_root.orientation != IDENTITY
         for joint in chain:
             between = poses[joint.parent].inverse() @ poses[joint.child]
+            moment, child = header(0, owner.frame(joint.parent)), owner.frame(joint.child)
             self._sent.append(
-                message_class("geometry_msgs/msg/TransformStamped")(
-                    header=header(0, owner.frame(joint.parent)),
-                    child_frame_id=owner.frame(joint.child),
-                    transform=message_class("geometry_msgs/msg/Transform")(
-                        translation=message_class("geometry_msgs/msg/Vector3")(*between.position),
-                        rotation=message_class("geometry_msgs/msg/Quaternion")(
-                            *between.orientation
-                        ),
-                    ),
-                )
+                transform_stamped(moment, child, between.position, between.orientation)
             )
         self._graph.static_transforms.put(self, self._sent)
 
