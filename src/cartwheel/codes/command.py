@@ -14,10 +14,7 @@ OUTPUT_NOT_WRITTEN = Code(
     "CW013", "output-not-written", "error", "the output file cannot be written"
 )
 SIMULATION_NOT_RUNNING = Code(
-    "CW014",
-    "simulation-not-running",
-    "error",
-    "a command requires a running simulation",
+    "CW014", "simulation-not-running", "error", "a command requires a running simulation"
 )
 SIMULATION_AMBIGUOUS = Code(
     "CW015",
@@ -51,10 +48,7 @@ CONTROL_LIMIT = Code(
     "the control socket has too many clients, or a message is too large",
 )
 CONTROL_FOLDER_UNUSABLE = Code(
-    "CW022",
-    "control-folder-unusable",
-    "error",
-    "the folder for control sockets cannot be used",
+    "CW022", "control-folder-unusable", "error", "the folder for control sockets cannot be used"
 )
 PORT_TAKEN = Code("CW023", "port-taken", "error", "another program is using the port")
 NOTHING_TO_DRIVE = Code(
@@ -114,10 +108,7 @@ LAUNCH_FAILED = Code(
     "a program of a scenario cannot be started, or ended before the case",
 )
 COMMAND_LATE = Code(
-    "CW041",
-    "command-late",
-    "warning",
-    "a stack under test in lockstep sent a command too late",
+    "CW041", "command-late", "warning", "a stack under test in lockstep sent a command too late"
 )
 COMMAND_EXTRA = Code(
     "CW044",
@@ -126,10 +117,7 @@ COMMAND_EXTRA = Code(
     "a stack under test in lockstep sent several commands in a period",
 )
 COMMAND_MISSING = Code(
-    "CW045",
-    "command-missing",
-    "error",
-    "a stack under test in lockstep has sent no command",
+    "CW045", "command-missing", "error", "a stack under test in lockstep has sent no command"
 )
 NO_TEST_ROBOT = Code(
     "CW042", "no-test-robot", "error", "a test uses the fixture robot, but names no robot"

@@ -138,10 +138,7 @@ CONTROLLER_PARAMETER_MISSING = Code(
     "CW457", "controller-parameter-missing", "error", "a required controller parameter is missing"
 )
 PLUGIN_PARAMETER_IGNORED = Code(
-    "CW458",
-    "plugin-parameter-ignored",
-    "warning",
-    "a plugin parameter has no effect",
+    "CW458", "plugin-parameter-ignored", "warning", "a plugin parameter has no effect"
 )
 PLUGIN_PARAMETER_UNSUPPORTED = Code(
     "CW459",

@@ -3,22 +3,13 @@
 from cartwheel.errors import Code
 
 FILE_MISSING = Code(
-    "CW101",
-    "file-missing",
-    "error",
-    "a file, mesh, texture, model or package does not exist",
+    "CW101", "file-missing", "error", "a file, mesh, texture, model or package does not exist"
 )
 FILE_ON_NETWORK = Code(
-    "CW102",
-    "file-on-network",
-    "error",
-    "a file or model is on the network and is not downloaded",
+    "CW102", "file-on-network", "error", "a file or model is on the network and is not downloaded"
 )
 FILE_UNREADABLE = Code(
-    "CW103",
-    "file-unreadable",
-    "error",
-    "a file is empty, binary, too large or not a regular file",
+    "CW103", "file-unreadable", "error", "a file is empty, binary, too large or not a regular file"
 )
 FILE_NOT_ALLOWED = Code(
     "CW104",
@@ -26,23 +17,10 @@ FILE_NOT_ALLOWED = Code(
     "error",
     "a file is outside the folders that a description may read",
 )
-XML_MALFORMED = Code(
-    "CW105",
-    "xml-malformed",
-    "error",
-    "a file is not well-formed XML",
-)
-XML_ENTITY = Code(
-    "CW106",
-    "xml-entity",
-    "error",
-    "a description declares an XML entity",
-)
+XML_MALFORMED = Code("CW105", "xml-malformed", "error", "a file is not well-formed XML")
+XML_ENTITY = Code("CW106", "xml-entity", "error", "a description declares an XML entity")
 NOT_A_DESCRIPTION = Code(
-    "CW107",
-    "not-a-description",
-    "error",
-    "a file is not a robot, model or world",
+    "CW107", "not-a-description", "error", "a file is not a robot, model or world"
 )
 WRONG_KIND = Code(
     "CW108",
@@ -51,34 +29,17 @@ WRONG_KIND = Code(
     "a file describes a world instead of a robot, or a robot instead of a world",
 )
 MESH_UNREADABLE = Code(
-    "CW109",
-    "mesh-unreadable",
-    "error",
-    "a mesh file is damaged, empty or in an unsupported format",
+    "CW109", "mesh-unreadable", "error", "a mesh file is damaged, empty or in an unsupported format"
 )
 PICTURE_UNREADABLE = Code(
-    "CW110",
-    "picture-unreadable",
-    "error",
-    "a texture or heightmap cannot be read",
+    "CW110", "picture-unreadable", "error", "a texture or heightmap cannot be read"
 )
-YAML_MALFORMED = Code(
-    "CW111",
-    "yaml-malformed",
-    "error",
-    "xacro loads an invalid YAML file",
-)
+YAML_MALFORMED = Code("CW111", "yaml-malformed", "error", "xacro loads an invalid YAML file")
 XACRO_NOT_EXPANDED = Code(
-    "CW112",
-    "xacro-not-expanded",
-    "error",
-    "a description from the network contains xacro",
+    "CW112", "xacro-not-expanded", "error", "a description from the network contains xacro"
 )
 XACRO_NOT_INSTALLED = Code(
-    "CW113",
-    "xacro-not-installed",
-    "error",
-    "the Python package xacro 2 is not installed",
+    "CW113", "xacro-not-installed", "error", "the Python package xacro 2 is not installed"
 )
 XACRO_NAME_UNKNOWN = Code(
     "CW114",
@@ -93,64 +54,24 @@ MACRO_CALL_INVALID = Code(
     "a macro call does not match the parameters or blocks of the macro",
 )
 EXPRESSION_INVALID = Code(
-    "CW116",
-    "expression-invalid",
-    "error",
-    "a xacro expression fails or is not allowed",
+    "CW116", "expression-invalid", "error", "a xacro expression fails or is not allowed"
 )
 EXPANSION_TOO_LARGE = Code(
-    "CW117",
-    "expansion-too-large",
-    "error",
-    "the expansion of a xacro file exceeds a limit",
+    "CW117", "expansion-too-large", "error", "the expansion of a xacro file exceeds a limit"
 )
-XACRO_INVALID = Code(
-    "CW118",
-    "xacro-invalid",
-    "error",
-    "a xacro element is invalid",
-)
+XACRO_INVALID = Code("CW118", "xacro-invalid", "error", "a xacro element is invalid")
 XACRO_MESSAGE = Code(
-    "CW119",
-    "xacro-message",
-    "warning",
-    "xacro or the description prints a message",
+    "CW119", "xacro-message", "warning", "xacro or the description prints a message"
 )
-XACRO_DEPRECATED = Code(
-    "CW120",
-    "xacro-deprecated",
-    "info",
-    "the xacro syntax is deprecated",
-)
-XACRO_NAMESPACE = Code(
-    "CW121",
-    "xacro-namespace",
-    "warning",
-    "the xacro namespace is not declared",
-)
-XACRO_PREFIX = Code(
-    "CW122",
-    "xacro-prefix",
-    "warning",
-    "a xacro element has no prefix",
-)
+XACRO_DEPRECATED = Code("CW120", "xacro-deprecated", "info", "the xacro syntax is deprecated")
+XACRO_NAMESPACE = Code("CW121", "xacro-namespace", "warning", "the xacro namespace is not declared")
+XACRO_PREFIX = Code("CW122", "xacro-prefix", "warning", "a xacro element has no prefix")
 ARGUMENT_UNKNOWN = Code(
-    "CW123",
-    "argument-unknown",
-    "warning",
-    "the description does not declare an argument",
+    "CW123", "argument-unknown", "warning", "the description does not declare an argument"
 )
-INCLUDE_RECURSIVE = Code(
-    "CW124",
-    "include-recursive",
-    "error",
-    "a model includes itself",
-)
+INCLUDE_RECURSIVE = Code("CW124", "include-recursive", "error", "a model includes itself")
 SDF_VERSION = Code(
-    "CW125",
-    "sdf-version",
-    "error",
-    "the SDF version is missing, invalid, too old or too new",
+    "CW125", "sdf-version", "error", "the SDF version is missing, invalid, too old or too new"
 )
 ARGUMENT_UNUSED = Code("CW153", "argument-unused", "warning", "a xacro argument is never used")
 PROPERTY_UNUSED = Code("CW154", "property-unused", "info", "a xacro property is never used")

@@ -30,10 +30,7 @@ MESSAGE_NOT_ENCODABLE = Code(
     "CW713", "message-not-encodable", "error", "a message cannot be encoded"
 )
 MESSAGE_NOT_DECODABLE = Code(
-    "CW714",
-    "message-not-decodable",
-    "error",
-    "a message cannot be decoded",
+    "CW714", "message-not-decodable", "error", "a message cannot be decoded"
 )
 MESSAGE_TEXT_INVALID = Code(
     "CW715", "message-text-invalid", "error", "a message on the command line is not valid YAML"
@@ -70,10 +67,7 @@ SPAWN_INVALID = Code(
     "CW723", "spawn-invalid", "error", "a spawn request does not contain exactly one model"
 )
 REQUEST_UNSUPPORTED = Code(
-    "CW724",
-    "request-unsupported",
-    "error",
-    "a service request uses an unsupported feature",
+    "CW724", "request-unsupported", "error", "a service request uses an unsupported feature"
 )
 REQUEST_INVALID = Code(
     "CW725",
@@ -82,10 +76,7 @@ REQUEST_INVALID = Code(
     "the fields of a service request are invalid or contradict each other",
 )
 FRAMES_SHARED = Code(
-    "CW727",
-    "frames-shared",
-    "warning",
-    "two robots have frames with the same names",
+    "CW727", "frames-shared", "warning", "two robots have frames with the same names"
 )
 MESSAGE_DEFINITION_INVALID = Code(
     "CW728", "message-definition-invalid", "error", "a .msg, .srv or .action file is invalid"
@@ -110,10 +101,7 @@ MESSAGE_TYPE_IN_USE = Code(
 )
 NO_MESSAGE = Code("CW732", "no-message", "error", "a topic has no message yet")
 ARRAY_INVALID = Code(
-    "CW733",
-    "array-invalid",
-    "error",
-    "the data of a message cannot be converted to an array",
+    "CW733", "array-invalid", "error", "the data of a message cannot be converted to an array"
 )
 ACTION_UNKNOWN = Code("CW734", "action-unknown", "error", "an action does not exist")
 TOPICS_SHARED = Code(
@@ -129,8 +117,5 @@ TRANSFORM_TIME = Code(
     "CW738", "transform-time", "error", "a transform is not known at the requested time"
 )
 DELAYED_LOST = Code(
-    "CW739",
-    "delayed-messages-lost",
-    "warning",
-    "a fault delays more messages than it can hold",
+    "CW739", "delayed-messages-lost", "warning", "a fault delays more messages than it can hold"
 )

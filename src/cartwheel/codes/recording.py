@@ -29,10 +29,7 @@ RECORDING_NAME_INVALID = Code(
     "the file extension does not select a recording format",
 )
 ENCODING_UNFIT = Code(
-    "CW908",
-    "encoding-unfit",
-    "error",
-    "the recording format does not support a message encoding",
+    "CW908", "encoding-unfit", "error", "the recording format does not support a message encoding"
 )
 RECORDING_BROKE_OFF = Code(
     "CW909", "recording-broke-off", "error", "the recording ended before the simulation did"

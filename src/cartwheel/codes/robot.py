@@ -106,10 +106,7 @@ WHEEL_AXIS_MISALIGNED = Code(
     "the axis of a driven wheel points to the right, or is not parallel to the axle",
 )
 WHEEL_NOT_ROUND = Code(
-    "CW230",
-    "wheel-not-round",
-    "warning",
-    "the collision shape of a driven wheel is not round",
+    "CW230", "wheel-not-round", "warning", "the collision shape of a driven wheel is not round"
 )
 WHEEL_BASE_MISMATCH = Code(
     "CW231",
@@ -208,8 +205,5 @@ WHEELS_TOED = Code(
     "CW249", "wheels-toed", "info", "steered wheels do not point ahead while they are not steered"
 )
 ROOT_NOT_HELD = Code(
-    "CW250",
-    "root-not-held",
-    "warning",
-    "motors push against a light root link that nothing holds",
+    "CW250", "root-not-held", "warning", "motors push against a light root link that nothing holds"
 )

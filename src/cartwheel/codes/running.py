@@ -24,10 +24,7 @@ JOINT_WITHOUT_STATE = Code(
     "CW507", "joint-without-state", "info", "a fixed joint has no state to publish"
 )
 PLUGIN_LEFT_OUT = Code(
-    "CW508",
-    "plugin-left-out",
-    "error",
-    "a plugin or sensor has an error and is not loaded",
+    "CW508", "plugin-left-out", "error", "a plugin or sensor has an error and is not loaded"
 )
 PLUGIN_FAILED = Code(
     "CW509", "plugin-failed", "error", "a plugin raised an exception and is disabled"

@@ -18,10 +18,7 @@ ROS_URI_INVALID = Code(
     "CW803", "ros-uri-invalid", "error", "the address of the ROS master is invalid"
 )
 ROS_MASTER_UNAVAILABLE = Code(
-    "CW804",
-    "ros-master-unavailable",
-    "error",
-    "no ROS master responds, and none can be started",
+    "CW804", "ros-master-unavailable", "error", "no ROS master responds, and none can be started"
 )
 ROS_MASTER_NOT_STARTED = Code(
     "CW805",
@@ -31,12 +28,7 @@ ROS_MASTER_NOT_STARTED = Code(
 )
 ROS_MASTER_LOST = Code("CW806", "ros-master-lost", "warning", "the ROS master stopped responding")
 ROS_MASTER_BACK = Code("CW807", "ros-master-back", "warning", "a ROS master responds again")
-ROS_NODE_ENDED = Code(
-    "CW808",
-    "ros-node-ended",
-    "warning",
-    "ROS shut down the simulation's node",
-)
+ROS_NODE_ENDED = Code("CW808", "ros-node-ended", "warning", "ROS shut down the simulation's node")
 ROS_CALL_FAILED = Code("CW809", "ros-call-failed", "error", "a call to a ROS master or node failed")
 TYPE_UNSUPPORTED = Code(
     "CW810",
@@ -57,10 +49,7 @@ SLOW_SUBSCRIBER = Code(
     "a subscriber receives messages more slowly than they are published",
 )
 UNRESPONSIVE_SUBSCRIBER = Code(
-    "CW813",
-    "unresponsive-subscriber",
-    "warning",
-    "a subscriber no longer acknowledges messages",
+    "CW813", "unresponsive-subscriber", "warning", "a subscriber no longer acknowledges messages"
 )
 PUBLISHED_TOO_FAST = Code(
     "CW814", "published-too-fast", "warning", "a topic is published faster than it can be sent"
@@ -72,10 +61,7 @@ INCOMING_DROPPED = Code(
     "messages arrive faster than the simulation processes them",
 )
 NETWORK_FULL = Code(
-    "CW816",
-    "network-full",
-    "warning",
-    "the operating system's send buffer is full",
+    "CW816", "network-full", "warning", "the operating system's send buffer is full"
 )
 PEER_LIMIT = Code(
     "CW817", "peer-limit", "warning", "there are too many connections, publishers or subscribers"
@@ -115,10 +101,7 @@ DOMAIN_FULL = Code(
     "CW826", "domain-full", "error", "the ROS domain has no free ports for another participant"
 )
 PACKAGE_MISSING = Code(
-    "CW827",
-    "package-missing",
-    "error",
-    "an option requires a Python package that is not installed",
+    "CW827", "package-missing", "error", "an option requires a Python package that is not installed"
 )
 ZENOH_NOT_OPENED = Code(
     "CW828",
@@ -142,10 +125,7 @@ MESSAGE_UNREAD = Code(
     "CW832", "message-unread", "warning", "a client publishes to a topic without subscribers"
 )
 SEEK_UNSUPPORTED = Code(
-    "CW833",
-    "seek-unsupported",
-    "warning",
-    "a running simulation cannot jump to a different time",
+    "CW833", "seek-unsupported", "warning", "a running simulation cannot jump to a different time"
 )
 BRIDGE_FAULT = Code("CW834", "bridge-fault", "warning", "an unexpected error occurred in a bridge")
 BRIDGE_ENDED = Code("CW835", "bridge-ended", "error", "a bridge process stopped unexpectedly")
@@ -156,10 +136,7 @@ BRIDGE_SLOW = Code(
     "a bridge process does not respond or does not read its messages",
 )
 BRIDGE_RECOVERED = Code(
-    "CW837",
-    "bridge-recovered",
-    "warning",
-    "a bridge process has resumed reading its messages",
+    "CW837", "bridge-recovered", "warning", "a bridge process has resumed reading its messages"
 )
 PAGE_REFUSED = Code(
     "CW838", "page-refused", "warning", "a web page from another origin was rejected"
