@@ -52,7 +52,6 @@ def display_only(tag: PluginTag) -> Diagnostic:
     """Returns the note about a plugin that only changes what Gazebo's window shows."""
     return devices.PLUGIN_UNKNOWN.diagnostic(
         f'plugin "{tag.filename}" only changes what Gazebo\'s window shows, so it has no effect',
-        severity="info",
         origin=tag.origin,
         values={"name": tag.filename},
         mark=tag.filename,

@@ -107,7 +107,6 @@ def read_gazebo_tags(
                 "everything in it is ignored",
                 origin=node.origin,
                 hint=suggestion(reference, names),
-                severity="warning",
                 mark="reference",
                 values={"name": reference, "meant": meant(reference, names)},
             )

@@ -118,7 +118,6 @@ def read_geometry(owner: Node, kind: str, link: str, ctx: UrdfContext) -> Shape 
     ctx.report(
         tags.TAG_MISSING.diagnostic(
             f'a {kind} of link "{link}" {what}, so the {kind} is ignored',
-            severity="error",
             origin=owner.origin,
             hint=f"Add <geometry> with one of: {', '.join(SHAPES)}. ROS and Gazebo do not load "
             "this robot.",

@@ -74,7 +74,6 @@ class LinkAttacher(_LinkAttacher):
                     "links cannot be attached or detached",
                     error,
                     origin=self.tag.origin,
-                    severity="warning",
                 )
             )
             return None

@@ -119,7 +119,6 @@ class ControlPlugin(Plugin[Any]):
                         f'controller "{entry.name}" is not started',
                         error,
                         origin=self.tag.origin,
-                        severity="warning",
                         values={"controller": entry.name},
                     )
                 )

@@ -108,7 +108,6 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
         f"{message}; {here}",
         origin=i.origin,
         hint=hint,
-        severity="warning",
         values=values,
     )
     return made
