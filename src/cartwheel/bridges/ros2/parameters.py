@@ -6,20 +6,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from cartwheel.bridges.mirror import Closable
 from cartwheel.bridges.ros2.middleware import Middleware, Outlet, publisher
 from cartwheel.codes.wires import PARAMETER_REFUSED
 from cartwheel.errors import CartwheelError
-from cartwheel.messages import encode_cdr, message_class, service_classes, stamp, zero
-from cartwheel.messages.ros2.parameters import (
-    FIELDS,
-    NOT_SET,
-    listed,
-    parameter_type,
-    parameter_value,
-)
+from cartwheel.messages import encode_cdr, message_class, stamp, zero
+from cartwheel.messages.ros2.parameter_services import ParameterHandlers
+from cartwheel.messages.ros2.parameters import FIELDS, parameter_type, parameter_value
 
 Value = bool | int | float | str
 Offer = Callable[[str, str, Callable[[Any], Any]], Closable]
@@ -42,7 +35,7 @@ class Parameter:
     """Sets a value, or raises a CartwheelError if it is invalid. None means read-only."""
 
 
-class NodeParameters:
+class NodeParameters(ParameterHandlers):
     """Offers the parameters of a node.
 
     Args:
@@ -67,15 +60,7 @@ class NodeParameters:
         """Offers the services and the topic. Call it on the loop's thread."""
         self._published = {name: one.get() for name, one in self._parameters.items()}
         self._events = middleware.publish(publisher(EVENTS, EVENT))
-        for name, type_name, handler in (
-            ("describe_parameters", "DescribeParameters", self._describe),
-            ("get_parameter_types", "GetParameterTypes", self._types),
-            ("get_parameters", "GetParameters", self._get),
-            ("list_parameters", "ListParameters", self._list),
-            ("set_parameters", "SetParameters", self._set),
-            ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
-        ):
-            offer(f"{self._node}/{name}", f"rcl_interfaces/srv/{type_name}", handler)
+        self.offer(self._node, offer)
 
     def look(self) -> None:
         """Publishes changes since the last check. Call it on the loop's thread."""
@@ -97,46 +82,20 @@ class NodeParameters:
         if changed:
             self._publish(changed)
 
-    def _describe(self, request: Any) -> Any:
-        descriptors = []
-        for name in request.names:
-            descriptor = zero("rcl_interfaces/msg/ParameterDescriptor")
-            descriptor.name = name
-            known = self._parameters.get(name)
-            if known is not None:
-                descriptor.type = parameter_type(known.get())
-                descriptor.description = known.description
-                descriptor.read_only = known.set is None
-            descriptors.append(descriptor)
-        return _response("DescribeParameters", descriptors=descriptors)
+    def names(self) -> Iterable[str]:
+        return self._parameters
 
-    def _types(self, request: Any) -> Any:
-        types = [
-            parameter_type(self._parameters[name].get()) if name in self._parameters else NOT_SET
-            for name in request.names
-        ]
-        return _response("GetParameterTypes", types=np.array(types, np.uint8))
+    def value(self, name: str) -> Any:
+        known = self._parameters.get(name)
+        return parameter_value(None if known is None else known.get())
 
-    def _get(self, request: Any) -> Any:
-        values = [
-            parameter_value(self._parameters[name].get() if name in self._parameters else None)
-            for name in request.names
-        ]
-        return _response("GetParameters", values=values)
+    def describe(self, descriptor: Any) -> None:
+        known = self._parameters.get(descriptor.name)
+        if known is not None:
+            descriptor.description = known.description
+            descriptor.read_only = known.set is None
 
-    def _list(self, request: Any) -> Any:
-        result = listed(self._parameters, list(request.prefixes), int(request.depth))
-        return _response("ListParameters", result=result)
-
-    def _set(self, request: Any) -> Any:
-        results = [self._change([each]) for each in request.parameters]
-        return _response("SetParameters", results=results)
-
-    def _set_atomically(self, request: Any) -> Any:
-        return _response("SetParametersAtomically", result=self._change(request.parameters))
-
-    def _change(self, given: Sequence[Any]) -> Any:
-        result = message_class("rcl_interfaces/msg/SetParametersResult")
+    def change(self, given: Sequence[Any]) -> str:
         undo: list[tuple[Parameter, Value]] = []
         try:
             checked = [self._checked(each) for each in given]
@@ -149,11 +108,11 @@ class NodeParameters:
             for known, before in reversed(undo):
                 assert known.set is not None
                 known.set(before)
-            return result(successful=False, reason=error.message)
+            return error.message
         for known, value in checked:
             self._published[known.name], self._settling[known.name] = value, _SETTLING
         self._publish(given)
-        return result(successful=True, reason="")
+        return ""
 
     def _checked(self, given: Any) -> tuple[Parameter, Value]:
         known = self._parameters.get(given.name)
@@ -177,10 +136,6 @@ class NodeParameters:
         event.node = self._node
         event.changed_parameters = list(changed)
         self._events.send(encode_cdr(event))
-
-
-def _response(name: str, **fields: Any) -> Any:
-    return service_classes(f"rcl_interfaces/srv/{name}")[1](**fields)
 
 
 def _refused(parameter: str, why: str, **values: str) -> CartwheelError:
