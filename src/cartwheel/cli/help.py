@@ -6,7 +6,6 @@ groups as boxes; here they are sections, which any terminal, pipe and screen rea
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import typer
@@ -103,8 +102,4 @@ def _write(formatter: Any, sections: dict[str, list[tuple[str, str]]]) -> None:
     for title, records in sections.items():
         if records:
             with formatter.section(title):
-                formatter.write_dl(_aligned(records))
-
-
-def _aligned(records: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    return [(name, text or " ") for name, text in records]
+                formatter.write_dl([(name, text or " ") for name, text in records])

@@ -73,7 +73,9 @@ class ModelView:
         )
         self.size = _size_of(description)
         """Largest extent, m, used to scale drawn elements."""
-        self._frames = [self._frame(link) for link in description.links]
+        self._frames = [
+            scene.add_frame(self.path(link.name), show_axes=False) for link in description.links
+        ]
         self._shown = np.full((len(self._frames), 7), np.nan)
         self._told: set[tuple[object, ...]] = set()
         self._visuals = self.add_visuals(scene)
@@ -288,9 +290,6 @@ class ModelView:
         if clickable and self._clicked is not None:
             handle.on_click(self._clicked)
         return handle
-
-    def _frame(self, link: Link) -> Any:
-        return self._scene.add_frame(self.path(link.name), show_axes=False)
 
 
 def inertia_box(inertial: Inertial) -> tuple[Pose, tuple[float, float, float]]:

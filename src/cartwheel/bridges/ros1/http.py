@@ -109,15 +109,11 @@ class RpcConnection:
             self._loop.watch(self._sock, WRITE, self._ready)
         elif self._closing:
             self.close()
-        elif self._is_complete():
+        elif self._extent() is not None:  # a complete or invalid request is available
             self._loop.forget(self._sock)
             self._loop.post(self._go_on)
         else:
             self._loop.watch(self._sock, READ, self._ready)
-
-    def _is_complete(self) -> bool:
-        """Whether a complete or invalid request is available."""
-        return self._extent() is not None
 
     def _extent(self) -> tuple[int, int, str] | None:
         """End of the first header and of its body, or an error status; None if data is missing."""

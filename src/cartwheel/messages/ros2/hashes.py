@@ -48,7 +48,7 @@ def rihs01(known: Any, name: str) -> str:
             continue
         fields = [_field(field, kind) for field, kind in known[one][1]]
         described[one] = {"type_name": one, "fields": fields or [_field(_FILLER, _BYTE)]}
-        waiting += [field["type"]["nested_type_name"] for field in fields if _is_nested(field)]
+        waiting += filter(None, (field["type"]["nested_type_name"] for field in fields))
     own = described.pop(name)
     whole = {
         "type_description": own,
@@ -58,10 +58,6 @@ def rihs01(known: Any, name: str) -> str:
 
 
 _BYTE = (1, ("uint8", 0))
-
-
-def _is_nested(field: Any) -> bool:
-    return bool(field["type"]["nested_type_name"])
 
 
 def _field(name: str, kind: Any) -> dict[str, Any]:

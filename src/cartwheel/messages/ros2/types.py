@@ -112,7 +112,7 @@ def ros2_service(name: str) -> Ros2Service:
         raise UnknownNameError("ROS 2 service type", name, (), code=MESSAGE_TYPE_UNKNOWN)
     request, response = (each.__msgtype__ for each in service_classes(full))
     real = ros2_name(full)
-    made = _hashed_types(first=_is_first(full))
+    made = _hashed_types(first=full.partition("/")[0].endswith(FIRST))
     if real not in made:
         made |= _whole(real)
     return Ros2Service(
@@ -185,11 +185,6 @@ def dds_name(name: str) -> str:
 def _exists(name: str) -> bool:
     """Whether Cartwheel contains a message type, or has learnt it."""
     return is_bundled(name) or name in loaded().fielddefs
-
-
-def _is_first(name: str) -> bool:
-    """Whether a type in the graph is the first of two versions."""
-    return name.partition("/")[0].endswith(FIRST)
 
 
 def _hashed_types(*, first: bool = False) -> _HashedTypes:

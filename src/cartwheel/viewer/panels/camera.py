@@ -45,7 +45,8 @@ class CameraPanel(Panel):
         self._on.on_update(self.page.do(self._choose))
         self._topic = self.gui.add_dropdown("Topic", (_NONE,), visible=False)
         self._topic.on_update(self.page.do(self._choose))
-        self._image = self.gui.add_image(_blank(), format="jpeg", jpeg_quality=85, visible=False)
+        blank = np.zeros((3, 4, 3), dtype=np.uint8)
+        self._image = self.gui.add_image(blank, format="jpeg", jpeg_quality=85, visible=False)
         self._caption = self.gui.add_html(_caption("No image topic is published."))
 
     def watch(self) -> None:
@@ -169,10 +170,6 @@ def _from_mosaic(mosaic: NDArray[np.uint8], encoding: str) -> NDArray[np.uint8]:
     sums[..., 1] //= 2
     whole = np.repeat(np.repeat(sums.astype(np.uint8), 2, axis=0), 2, axis=1)
     return np.ascontiguousarray(whole[:height, :width])
-
-
-def _blank() -> NDArray[np.uint8]:
-    return np.zeros((3, 4, 3), dtype=np.uint8)
 
 
 def _caption(text: str) -> str:

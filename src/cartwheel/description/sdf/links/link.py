@@ -87,7 +87,9 @@ def read_link(node: Node, ctx: Context, frames: Frames) -> Link:
     sensors = read_sensors(
         node.all("sensor"), lambda each: read_sensor(each, name, place(each)), ctx.report
     )
-    lights = named_apart("light", [_light(each, place) for each in node.all("light")], ctx)
+    lights = named_apart(
+        "light", [read_light(each, place(each)) for each in node.all("light")], ctx
+    )
     visuals = named_apart("visual", visuals, ctx)
     collisions = named_apart("collision", collisions, ctx)
     check_unique("sensor", [(s.name, s.origin) for s in sensors])
@@ -279,10 +281,6 @@ def _collision(
     return Collision(
         name=name, pose=pose, shape=shape, surface=surface, laser_retro=retro, origin=node.origin
     )
-
-
-def _light(node: Node, place: Place) -> Light:
-    return read_light(node, place(node))
 
 
 def _optional_boolean(node: Node, tag: str) -> bool | None:
