@@ -40,6 +40,26 @@ def test_a_part_that_is_included_is_no_robot_without_it(folder):
     assert found == ["cart.xacro"]
 
 
+EYE = (
+    '<xacro:macro name="eye" params="parent">'
+    + LINK.format("eye")
+    + (
+        '<joint name="neck" type="fixed"><parent link="${parent}"/><child link="eye"/></joint>'
+        "</xacro:macro>"
+    )
+)
+
+
+def test_macros_that_attach_sensors_to_a_robot_elsewhere_are_a_part(folder):
+    calls = '<xacro:include filename="eye.xacro"/><xacro:eye parent="base"/>'
+    found = folder(
+        eye_dot_xacro=XACRO.format("", EYE),
+        extras_dot_xacro=XACRO.format(' name="extras"', calls),
+        broken_dot_xacro=XACRO.format(' name="broken"', calls + LINK.format("bse")),
+    )
+    assert found == ["broken.xacro"]
+
+
 def test_an_included_gazebo_file_that_hangs_on_the_whole_is_a_part(folder):
     sensor = LINK.format("eye") + (
         '<joint name="neck" type="fixed"><parent link="base"/><child link="eye"/></joint>'

@@ -332,6 +332,15 @@ def test_the_measured_turn_rate_of_sliding_wheels_is_stated_if_it_is_not_the_pre
     assert cause.hint and cause != skids
 
 
+def test_a_wrong_separation_is_why_a_robot_with_sliding_wheels_turns_too_fast():
+    skids = SKID_STEERING.diagnostic("slide", values={"ratio": 4.7, "stated": 1.0, "rolling": 11.0})
+    apart = WHEEL_SEPARATION_MISMATCH.diagnostic("w", values={"stated": 1.0, "measured": 0.09})
+    assert cause_of_drive([skids, apart], 4.6, turning=True) is apart
+    assert cause_of_drive([skids], 4.6, turning=True) is skids
+    slow = SKID_STEERING.diagnostic("slide", values={"ratio": 0.7, "stated": 0.2, "rolling": 2.0})
+    assert cause_of_drive([slow, apart], 0.7, turning=True) is slow
+
+
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):
     swapped = cart(0.1).replace("left_joint</", "x</").replace("right_joint</", "left_joint</")
     swapped = swapped.replace("x</", "right_joint</")
@@ -1063,6 +1072,18 @@ def test_a_joint_whose_link_the_ground_holds_is_moved_above_it(tmp_path, tried, 
     (reach,) = found.reaches
     assert reach.target == pytest.approx(0.02, abs=0.005)
     assert found.good and found.drives, found.faults
+
+
+def test_topics_of_a_robot_that_is_tested_above_the_ground_are_its_own(tried):
+    arm = (
+        '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3"/>'
+        '</inertial></link><joint name="elbow" type="continuous"><parent link="base"/>'
+        '<child link="arm"/><axis xyz="0 0 1"/></joint><gazebo><plugin name="f" '
+        'filename="gz-sim-apply-joint-force-system"><joint_name>elbow</joint_name></plugin></gazebo>'
+    )
+    found = tried(BOX.format(name="base", at="0.3 0 0", size="0.1 0.1 0.1"), arm)
+    assert found.stand.state != "yes"
+    assert [spin.topic for spin in found.spins] == ["/model/robot/joint/elbow/cmd_force"]
 
 
 def test_an_arm_that_hangs_far_below_its_base_is_tested_above_the_ground(tmp_path, tried):

@@ -50,6 +50,10 @@ def cause_of_drive(
 ) -> Diagnostic | None:
     """The mistake that explains why a base moves at a multiple of the commanded velocity."""
     cause = _cause(found, ratio, turning=turning, arc=arc)
+    if cause is not None and cause.code is robot.SKID_STEERING and ratio > 1.0:
+        # Wheels that slide slow the robot down, so it is the stated separation that is wrong.
+        wrong = (each for each in found if each.code is robot.WHEEL_SEPARATION_MISMATCH)
+        return next(wrong, cause)
     if cause is None or cause.code is not robot.SKID_STEERING or not 0.0 < ratio < 1.0:
         return cause
     return _as_measured(cause, ratio)

@@ -49,7 +49,8 @@ Kind = Literal["macros", "part", "world", "scenery", "old version"]
 - ``macros``: the file defines only macros or properties.
 - ``part``: the file is a part of a robot: a description in a launch file includes it; or it is not
   complete, and another file includes it; or it refers to links, macros, properties or arguments
-  that another file defines; or its ``<robot>`` has no name.
+  that another file defines; or it has no link of its own, and its macros attach theirs to a link
+  that does not exist; or its ``<robot>`` has no name.
 - ``world``: the file is a world.
 - ``scenery``: the file is an SDF model without plugins and sensors, such as a house.
 - ``old version``: the file of a model that its ``model.config`` does not choose.
@@ -157,7 +158,9 @@ class _Folder:
                 return "macros"
             return "part" if part or (not launched and self._is_elsewhere(path, error)) else None
         is_part = (part or path.suffix == ".xacro") and (
-            "name" not in root.attributes or self._hangs(path, root)
+            "name" not in root.attributes
+            or self._hangs(path, root)
+            or _only_attaches(self.texts[path], root)
         )
         return "part" if is_part else None
 
@@ -187,21 +190,31 @@ class _Folder:
 
     def _hangs(self, path: Path, root: Node) -> bool:
         """Whether a joint connects the file's links to a link that only another file contains."""
-        links = {each.attributes.get("name") for each in root.children if each.tag == "link"}
-        parents = {
-            each.attributes.get("link", "")
-            for joint in root.children
-            if joint.tag == "joint"
-            for each in joint.children
-            if each.tag == "parent"
-        }
+        parents = _missing_parents(root)
         return any(
             re.search(rf"""<link\s[^>]*?name\s*=\s*["']{re.escape(parent)}["']""", text)
-            for parent in parents - links
-            if parent and parent != "world"
+            for parent in parents
             for other, text in self.texts.items()
             if other != path
         )
+
+
+def _missing_parents(root: Node) -> set[str]:
+    """The parents of joints that the description does not define."""
+    links = {each.attributes.get("name", "") for each in root.children if each.tag == "link"}
+    parents = {
+        each.attributes.get("link", "")
+        for joint in root.children
+        if joint.tag == "joint"
+        for each in joint.children
+        if each.tag == "parent"
+    }
+    return parents - links - {"", "world"}
+
+
+def _only_attaches(text: str, root: Node) -> bool:
+    """Whether a file consists of macro calls that attach sensors to a link of another robot."""
+    return not re.search(r"<link\b", text) and bool(_missing_parents(root))
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -95,11 +95,9 @@ def try_robot(
     try:
         with World(_WATER if has_thrusters(robot) else "empty", lenient=True) as world:
             pose = _place(robot)
-            # A ground_plane already exists.
-            name = f"{robot.name}_tried" if robot.name in world.models else robot.name
             model = world.spawn(
-                robot, name=name, x=pose.x, y=pose.y, z=pose.z, roll=pose.rpy[0], pitch=pose.rpy[1],
-                yaw=pose.rpy[2], controllers=controllers,
+                robot, name=_name_in(world, robot), x=pose.x, y=pose.y, z=pose.z,
+                roll=pose.rpy[0], pitch=pose.rpy[1], yaw=pose.rpy[2], controllers=controllers,
             )  # fmt: skip
             verdict = replace(
                 verdict,
@@ -127,6 +125,11 @@ def try_robot(
     findings = _Findings(file, arguments, package_path, controllers)
     verdict = replace(verdict, movers=tuple(movers(verdict, robot)))
     return replace(verdict, faults=tuple(faults(verdict, robot, findings)))
+
+
+def _name_in(world: World, robot: RobotDescription) -> str:
+    """A name for the robot that is part of its topics. A ground_plane already exists."""
+    return f"{robot.name}_tried" if robot.name in world.models else robot.name
 
 
 class _Findings:
@@ -291,7 +294,7 @@ def _hung(verdict: Verdict, robot: RobotDescription, controllers: Sequence[Path]
     )
     hung = replace(robot, joints=(*robot.joints, hook))
     with World("empty", lenient=True) as world:
-        model = world.spawn(hung, name=f"{robot.name}_hung", z=_HIGH, controllers=controllers)
+        model = world.spawn(hung, name=_name_in(world, robot), z=_HIGH, controllers=controllers)
         # The controllers start with the simulation.
         world.run(_LISTENING)
         *_, moved = _joints_moved(verdict, world, model, robot, set())
