@@ -19,7 +19,7 @@ from cartwheel.dialects.gz.bridge_file import read_bridge
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.registry import attach
 from cartwheel.dialects.ros_control.files import ControllerFiles
-from cartwheel.dialects.ros_control.selection import selection_near
+from cartwheel.dialects.ros_control.selection import selection_near, with_published_control
 from cartwheel.dialects.ros_control.suggestion import lacks_controllers, no_controllers, suggested
 from cartwheel.dialects.world_plugins import attach_world
 from cartwheel.errors import CartwheelError, Code, Diagnostic, PluginError
@@ -204,6 +204,7 @@ class Session:
             self.types.forget_missing()
         with self.spawning():
             known = self.shared.get(ControllerFiles).known
+            description = with_published_control(description, package_path=package_path)
             if controllers is None and known(
                 description, "lacking", lambda: lacks_controllers(description)
             ):

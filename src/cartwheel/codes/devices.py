@@ -261,3 +261,9 @@ HARDWARE_UNKNOWN = Code(
     "error",
     "a hardware interface is not in the package that its name states",
 )
+CONTROL_ELSEWHERE = Code(
+    "CW484",
+    "control-elsewhere",
+    "info",
+    "controllers use the joints that a model's URDF lists",
+)

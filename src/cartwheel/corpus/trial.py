@@ -30,7 +30,7 @@ from cartwheel.description.solids import bounds, solid_of
 from cartwheel.dialects.catalogue import plugin_named, short_name
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.ros_control.files import ControllerFiles
-from cartwheel.dialects.ros_control.selection import selection
+from cartwheel.dialects.ros_control.selection import selection, with_published_control
 from cartwheel.dialects.world_plugins import BUILT_IN
 from cartwheel.errors import CartwheelError, Diagnostic
 from cartwheel.geometry import Pose
@@ -82,6 +82,7 @@ def try_robot(
     arguments = {**(use.arguments if use is not None else {}), **(arguments or {})}
     try:
         robot = load_robot(file, arguments=arguments, package_path=package_path)
+        robot = with_published_control(robot, launches, package_path)
     except CartwheelError as error:
         reason = error.diagnostic()
         return replace(

@@ -1,11 +1,19 @@
-"""The controllers that a robot's own package starts, by its launch files and YAML files."""
+"""The controllers that a robot's own package starts, by its launch files and YAML files.
+
+Gazebo's controller managers read ``<transmission>`` and ``<ros2_control>`` from the parameter
+``robot_description``. For an SDF model, it contains the URDF from which ``gz sdf -p`` made the
+model, without these elements.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from cartwheel.codes.devices import CONTROL_ELSEWHERE
+from cartwheel.description import load_robot
 from cartwheel.description.launches import (
     LaunchUse,
     chosen,
@@ -15,8 +23,15 @@ from cartwheel.description.launches import (
 )
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import for_robot, read_parameters
-from cartwheel.dialects.ros_control.suggestion import commanding, suggested
-from cartwheel.errors import PluginError
+from cartwheel.dialects.ros_control.suggestion import commanding, is_controlled, suggested
+from cartwheel.errors import CartwheelError, PluginError
+
+_SUFFIX = ".sdf"
+_MOST = 8
+"""Maximum number of descriptions that are read."""
+_FOLDERS = (".", "urdf", "../urdf")
+"""Folders beside an SDF model in which its URDF may be."""
+_ENDS = (".urdf", ".xacro", ".urdf.xacro")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -85,3 +100,83 @@ def _is_complete(path: Path, robot: RobotDescription) -> bool:
     except PluginError:
         return False
     return True
+
+
+def with_published_control(
+    robot: RobotDescription,
+    launches: Sequence[LaunchUse] | None = None,
+    package_path: Sequence[Path] = (),
+) -> RobotDescription:
+    """An SDF model with the hardware of the URDF from which it was made; otherwise the same robot.
+
+    The URDF is one that a launch file names, first one in the same launch file, or has the name of
+    the model or of its folder and is beside it. Its hardware must list only joints of the model.
+
+    Args:
+        robot: The robot.
+        launches: Contents of launch files; None for those near the robot.
+        package_path: Folders to search for packages first.
+    """
+    file = Path(robot.origin.file)
+    listed = robot.ros2_control or robot.transmissions
+    if file.suffix != _SUFFIX or listed or not is_controlled(robot):
+        return robot
+    if launches is None:
+        folder = root_of(file)
+        launches = () if folder is None else launches_near(folder, package_path)
+    joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
+    seen: set[Path] = set()
+    candidates = ((path, given) for path, given in _candidates(robot, file, launches))
+    for path, arguments in itertools.islice(candidates, _MOST):
+        if path.resolve() in seen:
+            continue
+        seen.add(path.resolve())
+        try:
+            other = load_robot(path, arguments=arguments, package_path=package_path)
+        except CartwheelError:
+            continue
+        names = {
+            (joint.attribute("name") or "").strip()
+            for held in (*other.ros2_control, *other.transmissions)
+            for joint in held.find_all("joint")
+        }
+        if names and names <= joints:
+            note = CONTROL_ELSEWHERE.diagnostic(
+                f'controllers command the joints that "{path.name}" lists, because Gazebo reads '
+                "them from the parameter robot_description, not from the SDF",
+                origin=robot.origin,
+                values={"file": str(path), "joints": tuple(sorted(names))},
+            )
+            return replace(
+                robot,
+                ros2_control=other.ros2_control,
+                transmissions=other.transmissions,
+                diagnostics=(*robot.diagnostics, note),
+            )
+    return robot
+
+
+def _candidates(
+    robot: RobotDescription, file: Path, launches: Sequence[LaunchUse]
+) -> Iterator[tuple[Path, dict[str, str]]]:
+    """Descriptions that may be the published one, with arguments; the most likely ones first."""
+    own = {
+        each.file
+        for each in launches
+        if each.description is not None and each.description.resolve() == file.resolve()
+    }
+    others = [
+        each
+        for each in launches
+        if each.description is not None and each.description.suffix != _SUFFIX and not each.guessed
+    ]
+    for each in sorted(others, key=lambda each: each.file not in own):
+        if each.description is not None and (
+            each.file in own or each.description.name.split(".")[0] == robot.name
+        ):
+            yield each.description, dict(each.arguments)
+    names = dict.fromkeys((robot.name, file.stem, file.absolute().parent.name))
+    for folder, name, end in itertools.product(_FOLDERS, names, _ENDS):
+        path = file.parent / folder / f"{name}{end}"
+        if "/" not in name and path.is_file():
+            yield path, {}

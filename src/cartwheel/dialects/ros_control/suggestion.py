@@ -77,6 +77,11 @@ def commanding(robot: RobotDescription, among: Sequence[Path]) -> bool:
     return any(named for ros2 in (False, True) for _, named in _fitting(among, joints, ros2=ros2))
 
 
+def is_controlled(robot: RobotDescription) -> bool:
+    """Whether the robot has a controller manager."""
+    return any(_manager(tag) for tag in robot.plugins)
+
+
 def lacks_controllers(robot: RobotDescription) -> bool:
     """Whether the robot has a controller manager whose tag contains no existing file."""
     managers = [tag for tag in robot.plugins if _manager(tag)]

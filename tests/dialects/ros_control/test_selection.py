@@ -1,0 +1,117 @@
+"""An SDF model has the hardware of the URDF that ROS publishes beside it."""
+
+import pytest
+from tests.coded import coded
+from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_system, transmission
+
+import cartwheel as cw
+from cartwheel.codes.devices import CONTROL_ELSEWHERE
+from cartwheel.description import load_robot
+from cartwheel.dialects.ros_control.selection import with_published_control
+
+SDF = """<sdf version="1.9"><model name="arm">
+  <joint name="foot" type="fixed"><parent>world</parent><child>base</child></joint>
+  <link name="base"/>
+  <link name="beam"><inertial><mass>1</mass></inertial></link>
+  <joint name="beam_joint" type="revolute"><parent>base</parent><child>beam</child>
+    <axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis></joint>
+  {plugin}</model></sdf>"""
+ROS2 = (
+    '<plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">'
+    "<parameters>{file}</parameters></plugin>"
+)
+ROS1 = '<plugin filename="libgazebo_ros_control.so" name="control"/>'
+CONTROLLERS = """
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: position_controllers/JointGroupPositionController}
+arm_controller:
+  ros__parameters:
+    joints: [beam_joint]
+"""
+LAUNCH = """<launch>
+  <param name="robot_description" command="xacro $(find arm)/robots/{name}"/>
+  <node pkg="gazebo_ros" type="spawn_model" name="s" args="-sdf -file $(find arm)/{model}"/>
+</launch>"""
+SYSTEM = ros2_system(ros2_joint("beam_joint"))
+
+
+@pytest.fixture
+def model(tmp_path):
+    """Writes a package with an SDF model and other files, and returns the path of the model."""
+
+    def write(plugin, **files):
+        folder = tmp_path / "arm"
+        texts = {
+            name.replace("__", "/").replace("_dot_", "."): text for name, text in files.items()
+        }
+        controllers = folder / "config/arm.yaml"
+        texts |= {
+            "package.xml": "<package><name>arm</name></package>",
+            "config/arm.yaml": CONTROLLERS,
+            "models/arm_v2/model.sdf": SDF.format(plugin=plugin.format(file=controllers)),
+        }
+        for name, text in texts.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_text(text)
+        return folder / "models/arm_v2/model.sdf"
+
+    return write
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["arm_v2_dot_urdf", "arm_dot_urdf", "urdf__model_dot_xacro", "urdf__arm_dot_urdf_dot_xacro"],
+)
+def test_the_urdf_beside_a_model_lists_the_joints_of_its_controllers(model, name):
+    path = model(ROS2, **{f"models__arm_v2__{name}": robot(beam("beam", "world") + SYSTEM, "")})
+    with cw.World("empty") as world:
+        arm = world.spawn(path)
+        (found,) = coded(world, CONTROL_ELSEWHERE)
+        assert found.values["joints"] == ("beam_joint",)
+        world.publish("/arm_controller/commands", data=[0.5])
+        world.run(1.0)
+        assert arm.joint("beam_joint") == pytest.approx(0.5, abs=1e-3)
+
+
+def test_the_launch_file_that_spawns_a_model_names_its_urdf(model):
+    """Other descriptions with these joints are those of other models."""
+    given = {"name": "other.urdf", "model": "models/arm_v2/model.sdf"}
+    held = transmission("beam_joint", "Position")
+    path = model(
+        ROS1,
+        launch__a_dot_launch=LAUNCH.format(**given | {"name": "third.urdf", "model": "b.sdf"}),
+        launch__sim_dot_launch=LAUNCH.format(**given),
+        robots__other_dot_urdf=robot(beam("beam", "world") + held, ""),
+        robots__third_dot_urdf=robot(
+            beam("beam", "world") + held.replace("Position", "Effort"), ""
+        ),
+    )
+    found = with_published_control(load_robot(path))
+    assert [each.find("type").text for each in found.transmissions] == [
+        "transmission_interface/SimpleTransmission"
+    ]
+    (note,) = coded(found, CONTROL_ELSEWHERE)
+    assert note.values["file"].endswith("other.urdf")
+
+
+@pytest.mark.parametrize(
+    "urdf",
+    [
+        robot(beam("beam", "world"), ""),
+        robot(beam("beam", "world") + ros2_system(ros2_joint("other_joint")), ""),
+        "<robot",
+    ],
+)
+def test_a_urdf_of_another_robot_is_not_used(model, urdf):
+    described = load_robot(model(ROS2, models__arm_v2__arm_dot_urdf=urdf))
+    assert with_published_control(described) is described
+
+
+def test_a_model_with_its_own_hardware_or_without_controllers_stays_as_it_is(model):
+    urdf = robot(beam("beam", "world") + SYSTEM, "")
+    for plugin in (SYSTEM + ROS2, ""):
+        described = load_robot(model(plugin, models__arm_v2__arm_dot_urdf=urdf))
+        assert with_published_control(described) is described
+    other = load_robot(described.origin.file.replace("model.sdf", "arm.urdf"))
+    assert with_published_control(other) is other
