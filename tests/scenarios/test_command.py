@@ -142,6 +142,20 @@ def test_the_output_of_the_program_of_a_failed_case_is_shown(command, capsys):
     assert "output of the program:\n    …\n    21\n" in shown and "\n    30\n" in shown
 
 
+def test_arguments_of_the_program_can_be_parameters(command):
+    """Numbers and truth values, also within texts, as ROS writes them."""
+    write(
+        "parameters: {speed: [0.5], fast: [true]}\n"
+        "launch: {command: [printf, '%s|', '${speed}', '${fast}', 'v:=${2 * speed}', 7]}\n"
+        "duration: 0.1\nexpect: [{expression: 'False'}]\n"
+    )
+    for _ in range(20):
+        assert command("drive.yaml", "--allow-launch") == 1
+        if results()[0]["output"]:  # it may end later than the case
+            break
+    assert results()[0]["output"].strip() == "0.5|true|v:=1.0|7|"
+
+
 def test_resume_runs_only_what_has_not_passed(command, capsys):
     write(MIXED)
     command("drive.yaml")

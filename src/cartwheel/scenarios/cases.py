@@ -135,6 +135,10 @@ def resolved(scenario: Scenario, case: Case) -> dict[str, Any]:
     validate(Document(document.path, value, document.lines))
     for part in ("steps", "expect"):
         check_conditions(document, value.get(part), (part,))
+    if launch := value.get("launch"):
+        # Arguments may be parameters.
+        words = [xacro_value(each) for each in launch["command"]]
+        value["launch"] = {**launch, "command": words}
     return value
 
 
@@ -202,7 +206,7 @@ def digests(
 
 
 def xacro_value(value: Any) -> str:
-    """An argument's value as a xacro file expects it."""
+    """An argument's value as xacro and ROS expect it."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
