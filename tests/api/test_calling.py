@@ -1,5 +1,6 @@
 """Services and actions that a program uses."""
 
+import pickle
 import threading
 from pathlib import Path
 from typing import Any
@@ -157,13 +158,16 @@ def test_goals_in_progress_end_with_a_reset_or_their_model(tmp_path: Path, ros: 
         assert goal.result() is not None
 
 
-def test_goals_and_restored_states(tmp_path: Path) -> None:
+@pytest.mark.parametrize("pickled", [False, True])
+def test_goals_and_restored_states(tmp_path: Path, pickled: bool) -> None:
     with cw.World("empty") as world:
         arm(world, tmp_path, 2)
         world.run(0.5)
         goal = world.send_goal(FOLLOW, trajectory=trajectory((1.0, [0.5, -0.3])))
         world.run(0.5)
         state, feedbacks = world.save(), len(goal.feedbacks)
+        if pickled:
+            state = pickle.loads(pickle.dumps(state))
         assert goal.result().error_code == 0
         ended, known = world.time, len(goal.feedbacks)
         later = world.send_goal(FOLLOW, trajectory=trajectory((5.0, [0.0, 0.0])))
@@ -178,6 +182,28 @@ def test_goals_and_restored_states(tmp_path: Path) -> None:
         assert len(goal.feedbacks) == known + known - feedbacks
         world.close()
         assert goal.status == "succeeded"
+
+
+def test_goals_in_progress_are_those_of_a_state_of_another_world(tmp_path: Path) -> None:
+    """A goal continues if it is the same; one with the same number in another world ends."""
+    position = {"same": 0.5, "other": 0.1}
+    goals: dict[str, cw.Goal] = {}
+    with cw.World("empty") as saved, cw.World("empty") as same, cw.World("empty") as other:
+        for name, world in (("", saved), ("same", same), ("other", other)):
+            arm(world, tmp_path, 2)
+            points = trajectory((1.0, [position.get(name, 0.5), -0.3]))
+            goals[name] = world.send_goal(FOLLOW, trajectory=points)
+            world.run(0.5)
+        state = pickle.dumps(saved.save())
+        for world in (same, other):
+            world.restore(pickle.loads(state))
+        assert [goals[name].status for name in ("same", "other")] == ["active", "aborted"]
+        before = len(goals["same"].feedbacks)
+        assert goals["same"].result().error_code == 0
+        assert len(goals["same"].feedbacks) > before
+        goals["same"].cancel()
+        other.run(1.0)
+        assert other.model("arm").joint("a_joint") == pytest.approx(0.5, abs=0.02)
 
 
 def test_a_new_goal_replaces_the_old_one_and_bad_ones_are_rejected(tmp_path: Path) -> None:

@@ -237,7 +237,6 @@ class Goal:
         action.listen(self._ear)
         submitted = action.submit(goal)
         assert submitted is not None  # the identifier is new
-        self._sent: GraphGoal = submitted
         self._ear.begin(submitted)
 
     def __repr__(self) -> str:
@@ -254,17 +253,17 @@ class Goal:
             "ABORTED": "aborted",
             "REJECTED": "rejected",
         }
-        return names[self._sent.state.name]
+        return names[self._ear.sent.state.name]
 
     @property
     def done(self) -> bool:
         """Whether the goal has ended, in any state."""
-        return self._sent.done
+        return self._ear.sent.done
 
     @property
     def text(self) -> str:
         """Explanation of the final state; may be empty."""
-        return self._sent.text
+        return self._ear.sent.text
 
     @property
     def feedback(self) -> Any:
@@ -303,7 +302,7 @@ class Goal:
                     "feedbacks": len(self.feedbacks),
                 },
             )
-        return self._sent.result
+        return self._ear.sent.result
 
     def cancel(self) -> None:
         """Requests the cancellation of the goal. Does nothing if it has ended.
@@ -313,7 +312,7 @@ class Goal:
         """
         with self._world.used(change=True):
             if not self.done:
-                self._action.cancel(identity=self._sent.id)
+                self._action.cancel(identity=self._ear.sent.id)
 
 
 class _Ear:
@@ -338,9 +337,18 @@ class _Ear:
         self._early.clear()
 
     @property
+    def sent(self) -> GraphGoal:
+        """The goal. A state from another process or world, if restored, contains a copy of it."""
+        assert self._sent is not None
+        known = self._action.goal(self._sent.id)
+        if known is not None and known is not self._sent and known.is_copy_of(self._sent):
+            self._sent = known
+        return self._sent
+
+    @property
     def wants_feedback(self) -> bool:
         """Whether feedback is received, which the action asks."""
-        return self._sent is None or not self._sent.done
+        return self._sent is None or not self.sent.done
 
     def goal_changed(self, goal: GraphGoal) -> None:
         """Called by the action when the state of one of its goals changes."""
@@ -349,7 +357,7 @@ class _Ear:
         """Called by the action with feedback on one of its goals."""
         if self._sent is None:
             self._early.append((goal, feedback))
-        elif goal is self._sent:
+        elif goal is self.sent:
             self.heard.append(feedback)
 
     def _leave(self, _: object) -> None:

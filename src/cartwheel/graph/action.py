@@ -61,6 +61,11 @@ class Goal:
         """Whether the goal has ended in any state."""
         return self.state not in (GoalState.PENDING, GoalState.ACTIVE)
 
+    def is_copy_of(self, other: Goal) -> bool:
+        """Whether this is a goal that was saved in a state and created again from it."""
+        mine, its = ((each.id, each.stamp_ns, each.goal) for each in (self, other))
+        return bool(mine == its)
+
     def accept(self) -> None:
         """Accepts the goal."""
         self.state = GoalState.ACTIVE

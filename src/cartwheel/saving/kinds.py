@@ -22,7 +22,7 @@ import numpy as np
 from cartwheel.component import Component, Scope, Shared
 from cartwheel.dialects.plugin_files import PluginFiles
 from cartwheel.dialects.ros_control.files import ControllerFiles
-from cartwheel.graph import Action, ActionTopics, Graph, Mailbox, Publisher, ReconfigureServer
+from cartwheel.graph import Action, ActionTopics, Goal, Graph, Mailbox, Publisher, ReconfigureServer
 from cartwheel.graph.joint_inputs import JointInput
 from cartwheel.graph.topic import Service, Subscription, Topic
 from cartwheel.messages import CdrCache, Form
@@ -122,6 +122,10 @@ FIXED: tuple[type, ...] = (
 )
 """Classes whose instances are registered with the graph or the schedule: the instance in the same
 place is restored, and none can be created."""
+
+IDENTIFIED: tuple[type, ...] = (Goal,)
+"""Classes whose instances programs and clients know: a state of another world does not make one of
+them another one, and creates new ones."""
 
 CONTAINERS: tuple[type, ...] = (list, dict, set, deque, bytearray)
 GENERATORS: tuple[type, ...] = (np.random.Generator, np.random.RandomState, random.Random)

@@ -34,7 +34,7 @@ from cartwheel.saving.encoded import (
     Sentinel,
     View,
 )
-from cartwheel.saving.kinds import FIXED, PLAIN, adapter, slots, unsaved
+from cartwheel.saving.kinds import FIXED, IDENTIFIED, PLAIN, adapter, slots, unsaved
 
 _BOUND, _MISSING, _UNSET = Sentinel.BOUND, Sentinel.MISSING, Sentinel.UNSET
 _ALWAYS_NEW = (Kind.VALUE, Kind.ARRAY, Kind.MESSAGE, Kind.PICKLED)
@@ -216,7 +216,7 @@ class Reader:
             found = original
         elif node.kind in _ALWAYS_NEW:
             found = self._made(node, live if same else _MISSING)
-        elif same and id(live) not in self._claimed:
+        elif same and id(live) not in self._claimed and not isinstance(live, IDENTIFIED):
             found = live
         else:
             found = self._created(node)

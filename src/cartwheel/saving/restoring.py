@@ -51,7 +51,8 @@ def restore(session: Session, state: State) -> None:
             _restore(session, before, changed=True)
         raise
     for action, goal in current:
-        if action.goal(goal.id) is not goal:
+        restored = action.goal(goal.id)
+        if restored is None or not restored.is_copy_of(goal):
             action.drop(goal, "a state before this goal was restored")
 
 
