@@ -16,6 +16,7 @@ from cartwheel.api.arguments import (
     source,
     xacro_arguments,
 )
+from cartwheel.api.basis import Basis
 from cartwheel.api.world import World
 from cartwheel.codes import codes_matching
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
@@ -84,14 +85,12 @@ class Built:
                     hint=f"Pass it to build: cartwheel.build(…, {name}=…).",
                     values={"name": name},
                 )
-        made = World(
-            self._description,
-            seed=seed,
-            _compiler=self._compiler,
-            _readings=self._readings,
-            **self._options,
-            **options,
-        )
+        return self._world(seed=seed, **options)
+
+    def _world(self, *, seed: int = 0, watched: bool = True, **options: Any) -> World:
+        """`world`, also without showing it in reports of tests."""
+        basis = Basis(compiler=self._compiler, readings=self._readings, watched=watched)
+        made = World._based(basis, self._description, seed=seed, **self._options, **options)
         try:
             with made.spawning():
                 for robot in self._robots:
@@ -114,7 +113,7 @@ class Built:
             self._compile(visuals=True)
 
     def _compile(self, *, visuals: bool) -> None:
-        with self.world(_watched=False) as world:
+        with self._world(watched=False) as world:
             self._models, self._diagnostics = world.models, world.diagnostics
             if visuals:
                 world.session.simulation.engine.visuals.current()

@@ -71,7 +71,7 @@ class CallingWorld(ActionServingWorld):
             GraphError: The request type does not have a given field.
             SimulationError: The world is closed.
         """
-        self.check_open()
+        self._check_open()
         limit = duration_ns(timeout, "the timeout in s") / NANOSECONDS
         try:
             offered = self.graph.service(text(service, "service"))
@@ -81,7 +81,7 @@ class CallingWorld(ActionServingWorld):
             raise
         kind = service_classes(offered.type)[0].__msgtype__
         made = made_message(service, kind, request, fields)
-        with self.used(change=True) as simulation, finding_with(self.session.types):
+        with self._used(change=True) as simulation, finding_with(self.session.types):
             inside = self._runner == threading.get_ident()
             if not inside:
                 simulation.drain_queued()
@@ -148,7 +148,7 @@ class CallingWorld(ActionServingWorld):
             GraphError: The name is already in use or invalid, the definition of the type is
                 invalid, or it is the type of an action.
         """
-        self.check_open()
+        self._check_open()
         text(name, "name")
         if not callable(handler):
             raise refused("handler", "a function", handler)
@@ -178,13 +178,13 @@ class CallingWorld(ActionServingWorld):
         """
         from cartwheel.gazebo import GazeboApi
 
-        with self.used():
+        with self._used():
             if not self._offers_gazebo:
                 self._gazebo = GazeboApi(self.session)
                 self._gazebo.start()
 
     def connect_ros1(self, node: str = "gazebo", arguments: Sequence[str] = ()) -> Ros1Connection:
-        with self.used():
+        with self._used():
             # The connection provides the same services.
             self._withdraw_gazebo()
             return super().connect_ros1(node, arguments)
@@ -218,10 +218,10 @@ class CallingWorld(ActionServingWorld):
             GraphError: The goal type does not have a given field.
             SimulationError: The world is closed.
         """
-        self.check_open()
+        self._check_open()
         offered = self.graph.action(text(action, "action"))
         made = made_message(action, f"{offered.type}_Goal", goal, fields)
-        with self.used(change=True) as simulation, finding_with(self.session.types):
+        with self._used(change=True) as simulation, finding_with(self.session.types):
             if self._runner != threading.get_ident():
                 simulation.drain_queued()
             return Goal(self, offered, made)
@@ -310,7 +310,7 @@ class Goal:
         Raises:
             SimulationError: The world is closed.
         """
-        with self._world.used(change=True):
+        with self._world._used(change=True):
             if not self.done:
                 self._action.cancel(identity=self._ear.sent.id)
 

@@ -118,7 +118,7 @@ class Link(LinkProperties):
         wrench = vector(force, "force"), vector(torque, "torque")
         point = None if at is None else vector(at, "at")
         duration = None if seconds == float("inf") else duration_ns(seconds)
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             simulation.truth.push(
                 self.model,
                 self.name,
@@ -135,7 +135,7 @@ class Link(LinkProperties):
             UnknownNameError: The model or the link does not exist any more.
             SimulationError: The world is closed.
         """
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             simulation.truth.end_pushes(self.model, self.name)
 
     # -- attached links
@@ -159,7 +159,7 @@ class Link(LinkProperties):
             UnknownNameError: A model or a link does not exist any more.
             SimulationError: The world is closed.
         """
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             one, two = self._place(simulation), self._other(other)._place(simulation)
             attachments = simulation.attachments
             if one == two or not (attachments.movable(one) or attachments.movable(two)):
@@ -178,7 +178,7 @@ class Link(LinkProperties):
             UnknownNameError: A model or a link does not exist any more.
             SimulationError: The world is closed.
         """
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             one = self._place(simulation)
             if other is not None:
                 simulation.attachments.detach(one, self._other(other)._place(simulation))

@@ -48,7 +48,7 @@ class MessagingWorld(TimedWorld):
             GraphError: The message type does not have a given field, `message` is not a message of
                 the topic's type, or both a message and fields are given.
         """
-        self.check_open()
+        self._check_open()
         kind = self.graph.topic(text(topic, "topic")).type
         self.graph.publish(topic, kind, made_message(topic, kind, message, fields))
 
@@ -91,12 +91,12 @@ class MessagingWorld(TimedWorld):
                 definition is invalid.
             CartwheelError: `keep` is out of range.
         """
-        self.check_open()
+        self._check_open()
         full = self._full_name(text(name, "name"), type)
         if keep is not None:
             check_size(keep)
         self._describe(name)
-        with self.used():
+        with self._used():
             found = self._known_topics.get(name)
             if found is None:
                 found = Topic(self, name, full, keep)
@@ -139,7 +139,7 @@ class MessagingWorld(TimedWorld):
         if self._run_by_another():
             session.simulation.post(describe)
         else:
-            with self.used():
+            with self._used():
                 describe()
 
     @functools.cached_property
@@ -193,7 +193,7 @@ class MessagingWorld(TimedWorld):
             SimulationError: The world is closed.
             GraphError: As for `topic`.
         """
-        self.check_open()
+        self._check_open()
         text(topic, "topic")
         if not callable(callback):
             raise refused("callback", "a function", callback)
@@ -229,7 +229,7 @@ class MessagingWorld(TimedWorld):
             GraphError: The topic exists with a different type, `type` is not a message type, or
                 its definition is invalid.
         """
-        self.check_open()
+        self._check_open()
         full = str(self.message_class(name_of(type)).__msgtype__)
         publisher = self.graph.advertise(text(topic, "topic"), full, checked=True)
         assert isinstance(publisher, CheckedPublisher)
@@ -270,7 +270,7 @@ class MessagingWorld(TimedWorld):
             GraphError: As for `topic`.
             CartwheelError: `size` is out of range.
         """
-        self.check_open()
+        self._check_open()
         check_size(size)
         full = self._full_name(topic, type)
         self._describe(text(topic, "topic"))

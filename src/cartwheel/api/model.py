@@ -67,7 +67,7 @@ class Model(MessagingModel):
     @pose.setter
     def pose(self, pose: Pose) -> None:
         pose = instance(pose, Pose, "pose", "cartwheel.Pose((x, y, z))")
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             simulation.set_pose(self.name, pose)
 
     @property
@@ -90,7 +90,7 @@ class Model(MessagingModel):
         velocity = instance(velocity, Twist, "velocity", "cartwheel.Twist(linear=(x, y, z))")
         linear = vector(velocity.linear, "velocity.linear")
         angular = vector(velocity.angular, "velocity.angular")
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             simulation.truth.set_velocity(self.name, linear, angular)
 
     def push(
@@ -185,5 +185,5 @@ class Model(MessagingModel):
 
     def delete(self) -> None:
         """Removes the model from the world."""
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             simulation.delete(self.name)

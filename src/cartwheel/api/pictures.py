@@ -166,7 +166,7 @@ class PicturedWorld(RunningWorld):
                     values={"name": name, "value": size},
                 )
         # A closed world shows its last state.
-        with self.lock if self.session.simulation.closed else self.used():
+        with self.lock if self.session.simulation.closed else self._used():
             simulation = self.session.simulation
             middle, radius = _movable(simulation)
             target = middle if target is None else _point(target, "target")
@@ -213,7 +213,7 @@ class PicturedWorld(RunningWorld):
             SimulationError: The world is closed.
         """
         url = self.show(port)
-        with self.used():
+        with self._used():
             frame = self._connected().assembly.access.framed(url)
         return Page(url, frame, str(width), int(number(height, "the height")))
 

@@ -84,7 +84,7 @@ class RunningWorld:
                 raise
             error.add_note(str(failure))
 
-    def check_open(self) -> None:
+    def _check_open(self) -> None:
         """Refuses the use of a closed world.
 
         Raises:
@@ -94,7 +94,7 @@ class RunningWorld:
             raise SimulationError("the world is closed", code=SIMULATION_CLOSED)
 
     @contextlib.contextmanager
-    def used(self, *, change: bool = False) -> Iterator[Simulation]:
+    def _used(self, *, change: bool = False) -> Iterator[Simulation]:
         """Exclusive access to the simulation for this thread.
 
         Args:
@@ -104,7 +104,7 @@ class RunningWorld:
             SimulationError: The world is closed, or is connected and belongs to the parent process.
         """
         with self.lock:
-            self.check_open()
+            self._check_open()
             simulation = self.session.simulation
             with uninterrupted() if change else contextlib.nullcontext():
                 try:
@@ -126,7 +126,7 @@ class RunningWorld:
 
     def _advance(self, simulation: Simulation, duration_ns: int, speed: float | None) -> None:
         """Runs for a simulation time within `_run`, or until the run is stopped."""
-        if speed is None and not self.is_paced:
+        if speed is None and not self._is_paced:
             rewinds = None
             while rewinds != simulation.engine.rewinds:
                 rewinds, target = simulation.engine.rewinds, simulation.time_ns + duration_ns
@@ -166,7 +166,7 @@ class RunningWorld:
             self.session.simulation.stop()
 
     @property
-    def is_paced(self) -> bool:
+    def _is_paced(self) -> bool:
         """Whether runs follow the wall clock or have clients, which need the thread."""
         return self._connections is not None or self.pace is not None
 
@@ -174,9 +174,9 @@ class RunningWorld:
         """Runs the block, which may close the world."""
         return Turn(self)
 
-    def begin(self) -> int | None:
+    def _begin(self) -> int | None:
         """Begins a run, and returns the thread of another one that is in progress."""
-        self.check_open()
+        self._check_open()
         outer = self._runner
         thread = threading.get_ident()
         if outer == thread:
@@ -195,14 +195,14 @@ class RunningWorld:
         if outer is None:
             if thread != threading.main_thread().ident and threading.current_thread().daemon:
                 # Otherwise it would run while libraries end what it uses, such as OpenGL.
-                at_exit.close_at_exit(self)
+                at_exit.close_at_exit(self, self._end_with_process)
                 self._ends_at_exit = True
                 at_exit.end_thread_if_exiting()
             self._driver.begin()
         return outer
 
-    def finish(self, outer: int | None, *, failed: bool) -> None:
-        """Ends the run that `begin` began."""
+    def _finish(self, outer: int | None, *, failed: bool) -> None:
+        """Ends the run that `_begin` began."""
         try:
             if not failed and self._connections is not None:
                 self._connections.raise_failure()
@@ -219,7 +219,7 @@ class RunningWorld:
                     self._connections.update()
                     self._driver.pacer.show()
 
-    def close_at_exit(self) -> None:
+    def _end_with_process(self) -> None:
         """Ends a run of a daemon thread at the end of the process, which does not wait for it."""
         self.session.simulation.stop()
         # The thread, which may begin the next run, then waits forever.
@@ -241,7 +241,7 @@ class RunningWorld:
         Raises:
             CartwheelError: A name is invalid, or no ROS master can be used.
         """
-        with self.used():
+        with self._used():
             return self._connected(ros1=True).assembly.connect_ros1(node, arguments)
 
     def connect_ros2(
@@ -259,7 +259,7 @@ class RunningWorld:
         Raises:
             CartwheelError: A name is invalid, or a dependency is missing.
         """
-        with self.used():
+        with self._used():
             return self._connected().assembly.connect_ros2(node, rmw)
 
     def serve_foxglove(self, port: int = 8765) -> str:
@@ -274,7 +274,7 @@ class RunningWorld:
         Raises:
             CartwheelError: The optional dependency is missing, or the port is in use.
         """
-        with self.used():
+        with self._used():
             return self._connected().assembly.serve_foxglove(port).url
 
     def serve_commands(self) -> None:
@@ -283,7 +283,7 @@ class RunningWorld:
         Raises:
             ControlError: The control socket cannot be created.
         """
-        with self.used():
+        with self._used():
             self._connected()
 
     def show(self, port: int | None = None) -> str:
@@ -298,7 +298,7 @@ class RunningWorld:
         Raises:
             ControlError: The port is not available, or the web interface cannot start.
         """
-        with self.used():
+        with self._used():
             return self._connected().show(port)
 
     def wait_for_browser(self, timeout: float = 60.0) -> bool:
@@ -318,7 +318,7 @@ class RunningWorld:
         return True
 
     def _browsers(self) -> int:
-        with self.used():
+        with self._used():
             return 0 if self._connections is None else self._connections.browsers
 
     def _connected(self, *, ros1: bool = False) -> Connections:

@@ -28,7 +28,7 @@ class SavingWorld(SteppedWorld):
         Raises:
             SimulationError: The world is closed, or a callback of the same world called the method.
         """
-        with self.used():
+        with self._used():
             if self._runner == threading.get_ident():
                 raise _nested("saves")
             return save(self.session, tuple(self._left_out()))
@@ -48,7 +48,7 @@ class SavingWorld(SteppedWorld):
                 each of these errors.
         """
         instance(state, State, "state", "state = world.save()")
-        with self.used(change=True):
+        with self._used(change=True):
             if self._runner is not None:
                 raise _nested("restores")
             restore(self.session, state)
@@ -64,7 +64,7 @@ class SavingWorld(SteppedWorld):
             SimulationError: The world is closed.
         """
         check_seed(seed)
-        with self.used(change=True) as simulation:
+        with self._used(change=True) as simulation:
             simulation.reset(seed=seed)
 
     def _left_out(self) -> Iterator[str]:

@@ -216,7 +216,7 @@ class TimedWorld(RunningWorld):
         """
         due = moment_ns(time)
         action = _function(action)
-        with self.used() as simulation:
+        with self._used() as simulation:
             if due < simulation.time_ns:
                 now = simulation.time_ns / NANOSECONDS
                 raise CartwheelError(
@@ -242,7 +242,7 @@ class TimedWorld(RunningWorld):
         """
         period = rate_period_ns(rate)
         action = _function(action)
-        with self.used() as simulation:
+        with self._used() as simulation:
             alarm = Alarm(_guarded(action, simulation), simulation.time_ns, period)
             return Timer(simulation.alarms.add(alarm))
 

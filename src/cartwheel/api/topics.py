@@ -305,7 +305,7 @@ class Topic(Generic[M]):
         period = rate_period_ns(rate)
         kind = self.type
         made = made_message(self.name, kind, message, fields)
-        with world.used() as simulation:
+        with world._used() as simulation:
             publisher = world.graph.advertise(self.name, kind, node="World.hold", rate=rate)
 
             def publish() -> None:

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Never, SupportsFloat
+from typing import TYPE_CHECKING, Any, Literal, Never, Self, SupportsFloat
 
 from cartwheel import description as descriptions
 from cartwheel.api.arguments import (
@@ -18,6 +18,7 @@ from cartwheel.api.arguments import (
     text,
     xacro_arguments,
 )
+from cartwheel.api.basis import Basis
 from cartwheel.api.calling import CallingWorld
 from cartwheel.api.handles import unknown_attribute
 from cartwheel.api.model import Model
@@ -27,7 +28,6 @@ from cartwheel.api.surroundings.surroundings import SurroundingWorld
 from cartwheel.api.values import instance, invalid, scalar
 from cartwheel.codes import codes_matching
 from cartwheel.codes.command import OPTION_INVALID, OPTIONS_CONFLICT
-from cartwheel.description.files.readings import Readings
 from cartwheel.description.model import RobotDescription, WorldDescription
 from cartwheel.description.sdf.worlds.world import LONGEST_STEP, SHORTEST_STEP
 from cartwheel.errors import CartwheelError, Code, Diagnostic
@@ -36,7 +36,6 @@ from cartwheel.graph import resolve_name
 from cartwheel.session import Session
 from cartwheel.simulation.clock import NANOSECONDS
 from cartwheel.simulation.limits import check_seed, number
-from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.unique_names import check_model_name
 from cartwheel.watchers import announce
 
@@ -84,6 +83,21 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
 
     _made = False
     """Whether the constructor has set all attributes."""
+    _basis = Basis()
+
+    @classmethod
+    def _based(cls, basis: Basis, /, world: WorldDescription, **options: Any) -> Self:
+        """Makes a world with what others share with it.
+
+        Args:
+            basis: What it has in common with others.
+            world: See the class.
+            options: Those of the class.
+        """
+        made = cls.__new__(cls)
+        made._basis = basis
+        cls.__init__(made, world, **options)
+        return made
 
     def __init__(
         self,
@@ -109,9 +123,6 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         allow_origin: str | Sequence[str] = (),
         without: str | Sequence[str] = (),
         step_size: float | None = None,
-        _compiler: Compiler | None = None,
-        _readings: Readings | None = None,
-        _watched: bool = True,
     ) -> None:
         source(world, "world")
         check_seed(-1 if seed is None else seed)
@@ -160,8 +171,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 plugins=paths(plugins, "plugins"),
                 package_path=paths(package_path, "package_path"),
                 without=several(without, "without"),
-                compiler=_compiler,
-                readings=_readings,
+                compiler=self._basis.compiler,
+                readings=self._basis.readings,
                 ignore=self._ignored,
             )
             super().__init__(
@@ -171,7 +182,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 connections=connections,
                 plan=plan,
             )
-            if _watched:
+            if self._basis.watched:
                 announce(self)
         except BaseException:
             if connections is not None:
@@ -298,7 +309,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
                 package_path=folders,
             )
             check_xacro_arguments(robot, self._ignored)
-        with self.used(change=True):
+        with self._used(change=True):
             spawned = self.session.spawn(
                 robot,
                 name=name,
@@ -322,7 +333,7 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
             WorldError: A model cannot be built.
             SimulationError: The world is closed.
         """
-        with self.used(change=True), self.session.spawning():
+        with self._used(change=True), self.session.spawning():
             yield
 
     def model(self, name: str) -> Model:

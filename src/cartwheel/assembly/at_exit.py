@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
-from typing import Protocol
+from collections.abc import Callable
 
 _LOOK = 0.2
 """Interval in s at which the end of the main thread is checked."""
@@ -13,31 +13,30 @@ PATIENCE = 5.0
 """Maximum wall time for a run on another thread to end when the process exits, s."""
 
 
-class Ending(Protocol):
-    """Something that ends with the process."""
-
-    def close_at_exit(self) -> None:
-        """Ends it. Called on a thread of its own."""
-
-
-_open: set[Ending] = set()
+_open: dict[object, Callable[[], None]] = {}
+"""What ends with the process, and the function that ends it."""
 _closer: threading.Thread | None = None
 _starting = threading.Lock()
 
 
-def close_at_exit(one: Ending) -> None:
-    """Ends something at the end of the process, unless it is forgotten before."""
+def close_at_exit(one: object, end: Callable[[], None]) -> None:
+    """Ends something at the end of the process, unless it is forgotten before.
+
+    Args:
+        one: What ends.
+        end: Ends it. Called on a thread of its own.
+    """
     global _closer
     with _starting:
-        _open.add(one)
+        _open[one] = end
         if _closer is None or not _closer.is_alive():
             _closer = threading.Thread(target=_close_all, name="closer", daemon=False)
             _closer.start()
 
 
-def forget(one: Ending) -> None:
+def forget(one: object) -> None:
     """Leaves out what has ended."""
-    _open.discard(one)
+    _open.pop(one, None)
 
 
 def end_thread_if_exiting() -> None:
@@ -51,7 +50,7 @@ def end_thread_if_exiting() -> None:
 
 
 def only_daemons_are_left() -> bool:
-    """Whether no other thread keeps the process alive; called by `close_at_exit` of an `Ending`."""
+    """Whether no other thread keeps the process alive; called by a function that ends something."""
     ours = (threading.main_thread(), threading.current_thread())
     return all(each.daemon or each in ours for each in threading.enumerate())
 
@@ -81,7 +80,7 @@ def _close_all() -> None:
                 _closer = None
                 return
         if not threading.main_thread().is_alive():
-            for one in list(_open):
+            for one, end in list(_open.items()):
                 with contextlib.suppress(Exception):
-                    one.close_at_exit()
+                    end()
                 forget(one)

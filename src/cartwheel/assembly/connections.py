@@ -59,7 +59,7 @@ class Connections:
         self.closed = False
         self._owner: weakref.ref[object] | None = None
         keep_object(self)
-        at_exit.close_at_exit(self)
+        at_exit.close_at_exit(self, self.close_at_exit)
 
     @property
     def forked(self) -> bool:

@@ -18,10 +18,10 @@ class _World(Protocol):
     session: Session
     lock: Turns
 
-    def begin(self) -> int | None:
+    def _begin(self) -> int | None:
         """Begins a run, and returns the thread of the run around it."""
 
-    def finish(self, outer: int | None, *, failed: bool) -> None:
+    def _finish(self, outer: int | None, *, failed: bool) -> None:
         """Ends a run."""
 
 
@@ -46,7 +46,7 @@ class Turn:
         world = self._world
         world.lock.acquire()
         try:
-            self._outer = world.begin()
+            self._outer = world._begin()
         except BaseException:
             world.lock.release()
             raise
@@ -63,7 +63,7 @@ class Turn:
             RecordingError: A recording has failed.
         """
         try:
-            self._world.finish(self._outer, failed=failed)
+            self._world._finish(self._outer, failed=failed)
         finally:
             self._world.lock.release()
 

@@ -42,7 +42,7 @@ def run_abreast(
             the first error is raised.
     """
     duration = duration_ns(seconds)
-    alone = [world for world in worlds if world.is_paced]
+    alone = [world for world in worlds if world._is_paced]
     errors: list[Exception] = []
     with Interruption(lambda: _stop(worlds)) as interruption:
         for world in alone:
@@ -54,7 +54,7 @@ def run_abreast(
         lanes: list[Run] = []
         try:
             if not interruption.pressed:
-                lanes += (Run(each, duration, errors) for each in worlds if not each.is_paced)
+                lanes += (Run(each, duration, errors) for each in worlds if not each._is_paced)
             if lanes:
                 with finding_with(lanes[0].types):
                     _run(lanes, _Mujoco() if physics is None else physics)

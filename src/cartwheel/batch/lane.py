@@ -40,7 +40,7 @@ class Lane:
 
     def __init__(self, built: Built, plan: Plan, seed: int) -> None:
         self._plan, self._seed = plan, seed
-        self.world: World = built.world(seed=seed, _watched=False)
+        self.world: World = built._world(seed=seed, watched=False)
         self._newest: dict[str, Any] = {}
         self._actions: list[Callable[[Sequence[float]], object]] = []
         self._sources: list[tuple[str, TopicFields | Observer, list[Reader]]] = []

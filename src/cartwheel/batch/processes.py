@@ -66,7 +66,7 @@ class Lanes:
 
     def _run(self, lanes: Sequence[Lane]) -> Values:
         worlds = [lane.world for lane in lanes]
-        if self._physics is not None and any(world.is_paced for world in worlds):
+        if self._physics is not None and any(world._is_paced for world in worlds):
             raise unsupported("worlds with connections or a pace")
         run_abreast(worlds, self._period, self._physics)
         return stacked([lane.observe() for lane in lanes])

@@ -148,7 +148,7 @@ class Dataset:
 
     def _photograph(self, camera: Viewpoint, number: int) -> dict[str, Any]:
         pose, file = self._pose(camera), f"{camera.name}/{number:06}.png"
-        with self._world.used() as simulation:
+        with self._world._used() as simulation:
             simulation.refresh()
             renderer = simulation.engine.renderer
             seen = renderer.render_labelled(pose, camera.lens)
@@ -191,7 +191,7 @@ class Dataset:
         """A camera of a robot."""
         model, _, camera = name.partition("::")
         self._world.model(model)
-        with self._world.used() as simulation:
+        with self._world._used() as simulation:
             mounts = simulation.truth.cameras(model)
         for mount in mounts:
             if mount.name == camera:

@@ -291,7 +291,7 @@ class Runner:
 
         if files not in self._fixed:
             made = built(frozenset())
-            with made.world(_watched=False) as probe:
+            with made._world(watched=False) as probe:
                 names = made.models[len(made.models) - len(robots) :]
                 moves = probe.session.simulation.moves
                 self._fixed[files] = frozenset(

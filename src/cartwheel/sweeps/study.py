@@ -151,7 +151,7 @@ def _do(function: Callable[[World, dict[str, Any]], Any], built: Built, job: Job
     values: Any = {}
     error = ""
     try:
-        with built.world(seed=case.get("seed", 0), _watched=False) as world:
+        with built._world(seed=case.get("seed", 0), watched=False) as world:
             value = plain(function(world, dict(case)))
         values = _named(value, case)
     except CartwheelError as failure:

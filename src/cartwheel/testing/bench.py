@@ -40,7 +40,7 @@ class Bench:
         self._config = request.config
         marks = _Marks(self._node, self._config)
         # Its robots are in the world when it is recorded and shown.
-        self.world = self._build(marks).world(seed=marks.seed, _watched=False)
+        self.world = self._build(marks)._world(seed=marks.seed, watched=False)
         count = len(marks.robots)
         self._robots = self.world.models[len(self.world.models) - count :] if count else ()
         try:

@@ -98,7 +98,7 @@ def test_shapes_that_only_show_change_no_bit_of_the_motion(make):
 def test_a_camera_shows_a_fixed_model_where_it_was_moved(make):
     world = make.world(make.sdf(BOX), make.sdf(sensor(width=32, height=24)))
     before = pixels_of(take(world, "/cam/image_raw"))
-    with world.used(change=True) as simulation:
+    with world._used(change=True) as simulation:
         simulation.set_pose("box", Pose((3.0, 0.4, 1.0)))
     after = pixels_of(take(world, "/cam/image_raw"))
     assert not np.array_equal(before, after)
@@ -110,7 +110,7 @@ def test_a_change_of_the_sun_is_seen(make):
     sun = Light(name="sun", type="directional", direction=(0.5, 0.1, -1.0), origin=PLACE)
     world = make.world(make.sdf(BOX), eye, lights=(sun,))
     before = pixels_of(take(world, "/cam/image_raw"))
-    with world.used() as simulation:
+    with world._used() as simulation:
         dark = replace(sun, diffuse=(0.1, 0.1, 0.1, 1.0))
         simulation.change_world(replace(simulation.world, lights=(dark,)))
     after = pixels_of(take(world, "/cam/image_raw"))

@@ -75,14 +75,14 @@ class ActionServingWorld(MessagingWorld):
             GraphError: The name is already in use or invalid, or the definition of the type is
                 invalid.
         """
-        self.check_open()
+        self._check_open()
         text(name, "name")
         for each, given in (("on_goal", on_goal), ("on_cancel", on_cancel or on_goal)):
             if not callable(given):
                 raise refused(each, "a function", given)
         kind = name_of(type).removesuffix("_Goal")
         self.session.types.named(kind)
-        with self.used(), finding_with(self.session.types):
+        with self._used(), finding_with(self.session.types):
             message_class(f"{kind}_Goal")
             return ActionServer(self.session, name, kind, on_goal, on_cancel or _cancel)
 

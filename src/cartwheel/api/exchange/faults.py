@@ -82,7 +82,7 @@ class FaultyWorld(FramedWorld):
             SimulationError: The world is closed.
         """
         names = several(topics, "topics")
-        with self.used() as simulation:
+        with self._used() as simulation:
             made = Fault(
                 simulation,
                 [(name, self.graph.topic(name).type) for name in names],

@@ -58,7 +58,7 @@ class SteppedWorld(FaultyWorld):
         period: float = PERIOD,
         wall_timeout: float = WALL_TIMEOUT,
         start_timeout: float = START_TIMEOUT,
-        check: Callable[[], None] = lambda: None,
+        check: Callable[[], None] | None = None,
     ) -> Lockstep:
         """Runs the world in lockstep with another program from now on, such as a node of ROS.
 
@@ -90,7 +90,7 @@ class SteppedWorld(FaultyWorld):
         times = {"period": period, "wall_timeout": wall_timeout, "start_timeout": start_timeout}
         for name, seconds in times.items():
             scalar(seconds, name, above=0.0)
-        self.check_open()
+        self._check_open()
         if self._advancer is not None:
             error = invalid("lockstep", "must end before another one begins", topics)
             error.hint = "Use it in a with block."
@@ -109,6 +109,10 @@ class SteppedWorld(FaultyWorld):
     def _end(self) -> None:
         self._advancer = None
         super()._end()
+
+
+def _nothing() -> None:
+    """The program under test is not checked."""
 
 
 class Lockstep:
@@ -131,12 +135,12 @@ class Lockstep:
         period: float = PERIOD,
         wall_timeout: float = WALL_TIMEOUT,
         start_timeout: float = START_TIMEOUT,
-        check: Callable[[], None] = lambda: None,
+        check: Callable[[], None] | None = None,
     ) -> None:
         self._world = world
         self._simulation = world.session.simulation
         self._period, self._wall_timeout = period, wall_timeout
-        self._start_timeout, self._check = start_timeout, check
+        self._start_timeout, self._check = start_timeout, check or _nothing
         self._lock = threading.Lock()
         self._boxes: dict[str, deque[Any]] = {name: deque(maxlen=_MOST) for name in commands}
         self._deliver: dict[str, Callable[[Any], None]] = {}
@@ -305,7 +309,7 @@ class Lockstep:
         end = time.monotonic() + quiet
         while min(counts) < most and (left := end - time.monotonic()) > 0:
             self._check()
-            with self._world.used() as simulation:
+            with self._world._used() as simulation:
                 simulation.wait(min(left, 0.5))
             before, counts = counts, self._counts()
             if counts != before:
@@ -341,7 +345,7 @@ class Lockstep:
             if left <= 0:
                 return False
             self._check()
-            with self._world.used() as simulation:
+            with self._world._used() as simulation:
                 simulation.wait(min(left, 0.5))
         return True
 

@@ -52,7 +52,7 @@ class FramedWorld(MessagingWorld):
             SimulationError: The world is closed.
         """
         moment = None if time is None else moment_ns(time)
-        with self.used():
+        with self._used():
             frames = self._frame(target, "target"), self._frame(source, "source")
             stored = self._stored()
             try:
@@ -69,7 +69,7 @@ class FramedWorld(MessagingWorld):
     @property
     def frames(self) -> tuple[str, ...]:
         """Names of the frames of all transforms that are stored, sorted; see `transform`."""
-        with self.used():
+        with self._used():
             return tuple(self._stored().buffer.frames)
 
     def keep_transforms(self, seconds: float = KEPT_NS / SECOND) -> None:
@@ -83,7 +83,7 @@ class FramedWorld(MessagingWorld):
             SimulationError: The world is closed.
         """
         scalar(seconds, "seconds", above=0.0)
-        with self.used():
+        with self._used():
             buffer = self._stored().buffer
             buffer.kept_ns = max(buffer.kept_ns, duration_ns(seconds))
 

@@ -90,7 +90,7 @@ class JointValues(Sealed, MutableMapping[str, float]):
             joint: scalar(value, f'the {self._name} of joint "{joint}"')
             for joint, value in values.items()
         }
-        with self._joints.world.used(change=True) as simulation:
+        with self._joints.world._used(change=True) as simulation:
             self._write(simulation, given)
 
     def _array(self, values: object, what: str) -> Array:

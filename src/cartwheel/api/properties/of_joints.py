@@ -198,7 +198,7 @@ class JointProperties(Handle):
     @gains.setter
     def gains(self, gains: Gains) -> None:
         given = {name: scalar(getattr(gains, name), name) for name in ("p", "i", "d")}
-        with self._joints.world.used(change=True) as simulation:
+        with self._joints.world._used(change=True) as simulation:
             if not simulation.truth.set_gains(self._joints.model, self.name, given):
                 raise missing("joint", self.name, "PID controller")
 
@@ -217,13 +217,13 @@ class JointProperties(Handle):
 
     def _limit(self, **limits: float | None) -> None:
         """Sets limits of the joint and of what drives it."""
-        with self._joints.world.used(change=True) as simulation:
+        with self._joints.world._used(change=True) as simulation:
             self._find(simulation)
             simulation.truth.limits.set(self._joints.model, self.name, limits)
 
     def _change(self, **values: float | None) -> None:
         """Changes values of the joint's axis."""
-        with self._joints.world.used(change=True) as simulation:
+        with self._joints.world._used(change=True) as simulation:
             description, joint = self._find(simulation)
             axis = replace(joint.axis, **values)  # type: ignore[arg-type]
             if axis != joint.axis:

@@ -211,7 +211,7 @@ class LinkProperties(Handle):
                 return read(link)
 
     def _change(self, change: Callable[[Description], Description]) -> None:
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             description, link = self._find(simulation)
             with naming(description.links):
                 changed = change(link)

@@ -102,7 +102,7 @@ class Light(Handle):
             return described_light(self._world.session.simulation, self.name)
 
     def _change(self, **values: object) -> None:
-        with self._world.used(change=True) as simulation:
+        with self._world._used(change=True) as simulation:
             light = described_light(simulation, self.name)
             changed = replace(light, **values)  # type: ignore[arg-type]
             lights = (changed if each is light else each for each in simulation.world.lights)

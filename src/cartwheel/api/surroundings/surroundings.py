@@ -69,7 +69,7 @@ class SurroundingWorld(RunningWorld):
             TypeError: `between` contains more than two models or links.
             SimulationError: The world is closed.
         """
-        with self.used() as simulation:
+        with self._used() as simulation:
             ignored = distances.among(simulation, ignore)
             return ContactRecord(simulation, selection(simulation, between, ignored))
 
@@ -147,7 +147,7 @@ class SurroundingWorld(RunningWorld):
     def gravity(self, gravity: Vector) -> None:
         pull = vector(gravity, "gravity")
         numbers(pull, "gravity")
-        with self.used(change=True) as simulation:
+        with self._used(change=True) as simulation:
             simulation.change_world(replace(simulation.world, gravity=pull))
 
     @property
