@@ -132,19 +132,57 @@ GZ = """<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-s
 <wheel_separation>0.4</wheel_separation><wheel_radius>0.1</wheel_radius>{tags}</plugin>"""
 
 
-@pytest.mark.parametrize("on_tf", [True, False])
-def test_a_drive_of_gz_sim_has_a_topic_of_its_own(world, on_tf):
+@pytest.mark.parametrize("prefix", ["", "own"])
+@pytest.mark.parametrize("late", [False, True])
+def test_the_odometry_of_gz_sim_is_on_a_topic_of_its_own(world, prefix, late):
+    """Its frames have the name of the model, or its prefix, also on a robot spawned later."""
+    if late:
+        world.keep_transforms()
+    sdf = cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, GZ.format(tags=""))
+    cart = world.spawn(f'<sdf version="1.9">{sdf}</sdf>', frame_prefix=prefix)
+    world.keep_transforms()
+    cart.publish("/model/cart/cmd_vel", linear_x=0.2, angular_z=0.3)
+    odometry = world.topic("/model/cart/odometry")
+    world.run(1.0)
+    stamp, at = odometry.latest.header.stamp, odometry.latest.pose.pose
+    first = prefix or "cart"
+    own = f"{prefix}/" if prefix else ""
+    base = world.transform(f"{first}/odom", f"{own}base_link", time=stamp)
+    assert (base.x, base.y, base.orientation[2]) == (at.position.x, at.position.y, at.orientation.z)
+    assert world.transform(f"/{first}/odom", f"{first}/base_link", time=stamp) == base
+    between = cart.link("base_link").pose.inverse() @ cart.link("left_wheel").pose
+    wheel = world.transform(f"{first}/odom", cart.link("left_wheel"), time=stamp)
+    assert close(wheel, base @ between, 0.02)
+    assert world.transform(f"{first}/left_wheel", f"{own}left_wheel") == cw.Pose()
+    assert f"{first}/base_link" in world.frames or not prefix
+    world.reset()
+    with raises(FRAME_UNKNOWN, UnknownNameError, name=f"{first}/odom"):
+        world.transform(f"{first}/odom", f"{own}base_link")
+
+
+def test_a_drive_of_gz_sim_can_publish_on_tf(world):
     tags = "<tf_topic>/tf</tf_topic><frame_id>odom</frame_id>"
     tags += "<child_frame_id>base_link</child_frame_id>"
-    sdf = cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, GZ.format(tags=tags if on_tf else ""))
+    sdf = cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, GZ.format(tags=tags))
     world.spawn(f'<sdf version="1.9">{sdf}</sdf>')
     world.keep_transforms()
     world.run(1.0)
-    if on_tf:
-        wheel = world.transform("base_link", "left_wheel")
-        assert close(world.transform("odom", "left_wheel"), wheel, 1e-3)
-        return
-    for _ in range(2):
-        with raises(FRAME_UNKNOWN, UnknownNameError, elsewhere=("/model/cart/tf",)):
-            world.transform("cart/odom", "left_wheel")
-        world.reset()
+    wheel = world.transform("base_link", "left_wheel")
+    assert close(world.transform("odom", "left_wheel"), wheel, 1e-3)
+
+
+POSES = """<plugin name="p" filename="gz-sim-pose-publisher-system">
+<use_pose_vector_msg>true</use_pose_vector_msg></plugin>"""
+
+
+def test_a_frame_that_is_only_on_another_topic_names_it(world):
+    """A similar frame that is known is more likely meant."""
+    sdf = cart_sdf({"left": (0, 0.2), "right": (0, -0.2)}, POSES)
+    world.spawn(f'<sdf version="1.9">{sdf}</sdf>')
+    world.keep_transforms()
+    world.run(0.1)
+    with raises(FRAME_UNKNOWN, UnknownNameError, elsewhere=("/model/cart/pose",)):
+        world.transform("somewhere", "left_wheel")
+    with raises(FRAME_UNKNOWN, UnknownNameError, meant="base_link") as caught:
+        world.transform("base_lnk", "left_wheel")
+    assert "elsewhere" not in caught.value.values

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from operator import itemgetter
 from typing import Any
 
@@ -48,19 +48,26 @@ class TransformBuffer:
         self._ignored: dict[str, str] = {}
         """Why transforms of a frame are ignored."""
 
-    def add(self, transforms: Iterable[Any], *, static: bool) -> None:
+    def add(
+        self,
+        transforms: Iterable[Any],
+        *,
+        static: bool,
+        named: Callable[[str], str] = str,
+    ) -> None:
         """Stores ``TransformStamped`` messages.
 
         Args:
             transforms: The messages.
             static: Whether they apply to all times, as those on ``/tf_static`` do.
+            named: Returns the name of a frame here.
         """
         for sent in transforms:
             stamp = sent.header.stamp
             place, turn = sent.transform.translation, sent.transform.rotation
-            child = sent.child_frame_id.lstrip("/")
+            child = named(sent.child_frame_id.lstrip("/"))
             pose = Pose((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
-            parent = sent.header.frame_id.lstrip("/")
+            parent = named(sent.header.frame_id.lstrip("/"))
             if reason := _invalid(child, parent, pose):
                 self._ignored[child] = reason
             elif static:

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.api.arguments import refused
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.values import Moment, moment_ns, scalar
+from cartwheel.devices.drives.odometry import Odometry
 from cartwheel.errors import UnknownNameError
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.graph import resolve_frame
 from cartwheel.graph.transform_buffer import KEPT_NS, SECOND, TransformBuffer
+from cartwheel.saving.models import components
 from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
     from cartwheel.api.links import Link
     from cartwheel.geometry import Pose
     from cartwheel.session import Session
+    from cartwheel.simulation.models.resident import Resident
 
 _TYPE = "tf2_msgs/msg/TFMessage"
 _NODE = "World.transform"
@@ -32,8 +37,9 @@ class FramedWorld(MessagingWorld):
 
         It is what tf2's ``lookup_transform(target, source, time)`` returns: `Pose.apply` of the
         result transforms points from `source` to `target`. All transforms on ``/tf`` and
-        ``/tf_static`` count, such as those of drives, of the links of robots, and of programs.
-        Between two transforms, the pose is interpolated. For exact poses, use `Link.pose`.
+        ``/tf_static`` count, such as those of drives, of the links of robots, and of programs, and
+        those of odometry on other topics, such as ``/model/rover/tf``. Between two transforms, the
+        pose is interpolated. For exact poses, use `Link.pose`.
 
         Transforms are stored from the first call of this method, `frames` or `keep_transforms` on.
         At this call, the poses of a robot's links in each other are known at once, and other
@@ -56,13 +62,14 @@ class FramedWorld(MessagingWorld):
             frames = self._frame(target, "target"), self._frame(source, "source")
             stored = self._stored()
             try:
-                return stored.buffer.lookup(*frames, moment)
+                return stored.buffer.lookup(
+                    stored.known(frames[0]), stored.known(frames[1]), moment
+                )
             except UnknownNameError as error:
-                if elsewhere := self._unread_topics():
+                if not error.values["meant"] and (elsewhere := self._unread_topics(stored)):
                     error.hint = (
-                        f"Transforms on {', '.join(elsewhere)} are not read. Systems of gz-sim "
-                        "publish on /tf with <tf_topic>/tf</tf_topic>."
-                    )
+                        f"{error.hint or ''} Transforms on {', '.join(elsewhere)} are not read."
+                    ).lstrip()
                     error.values = {**error.values, "elsewhere": elsewhere}
                 raise
 
@@ -99,12 +106,12 @@ class FramedWorld(MessagingWorld):
             raise refused(name, "the name of a frame or a Link", frame)
         return frame
 
-    def _unread_topics(self) -> tuple[str, ...]:
+    def _unread_topics(self, stored: _Stored) -> tuple[str, ...]:
         """Names of other topics with transforms than those that are read."""
         return tuple(
             each.name
             for each in self.graph.topics()
-            if each.type == _TYPE and each.name not in ("/tf", "/tf_static")
+            if each.type == _TYPE and each.name not in stored.topics
         )
 
     def _stored(self) -> _Stored:
@@ -113,7 +120,14 @@ class FramedWorld(MessagingWorld):
             self._transforms = _Stored(self.session)
         else:
             self.session.update_robots()
+            self._transforms.follow()
         return self._transforms
+
+    def _begin(self) -> int | None:
+        outer = super()._begin()
+        if self._transforms is not None:
+            self._transforms.follow()
+        return outer
 
     def _end(self) -> None:
         self._transforms = None
@@ -131,13 +145,48 @@ class _Stored:
         self._session = session
         self._rewinds = session.simulation.engine.rewinds
         self.buffer = TransformBuffer(session.simulation.time_ns)
+        self.topics: set[str] = set()
+        """Names of the topics that are read."""
+        self._residents: list[Resident] = []
         for topic, callback in (("/tf", self._on_moving), ("/tf_static", self._on_static)):
-            session.graph.subscribe(topic, callback, type_name=_TYPE, node=_NODE)
+            self._read(topic, callback)
+        self.follow()
         static = session.graph.latched("/tf_static")
         if static is not None:
             self._on_static(static)
         self._add_links()
         session.simulation.on_reset.append(self._rewind)
+
+    def _read(self, topic: str, callback: Callable[[Any], None]) -> None:
+        self._session.graph.subscribe(topic, callback, type_name=_TYPE, node=_NODE)
+        self.topics.add(topic)
+
+    def follow(self) -> None:
+        """Reads the topics on which new robots publish the transform of their odometry."""
+        residents = list(self._session.simulation.population.residents.values())
+        if residents == self._residents:
+            return
+        self._residents = residents
+        for component in chain.from_iterable(map(components, residents)):
+            topic = component.tf_topic if isinstance(component, Odometry) else None
+            if topic is not None and topic not in self.topics:
+                self._read(topic, self._on_odometry)
+
+    def known(self, frame: str) -> str:
+        """A frame that is stored, which may have a name of gz-sim; otherwise, the name itself."""
+        return frame if frame.lstrip("/") in self.buffer.frames else self._named(frame.lstrip("/"))
+
+    def _named(self, frame: str) -> str:
+        """The frame of a link on ``/tf``, for its name in gz-sim: ``model/link``."""
+        name, _, link = frame.partition("/")
+        resident = self._session.simulation.population.residents.get(name)
+        if resident is None or resident.entry.description.link(link) is None:
+            return frame
+        return resolve_frame(link, resident.part.frame_prefix)
+
+    def _on_odometry(self, message: Any) -> None:
+        self._forget()
+        self.buffer.add(message.transforms, static=False, named=self._named)
 
     def _on_moving(self, message: Any) -> None:
         self._forget()

@@ -113,6 +113,11 @@ class Odometry(Component):
             template.transforms += self._joints.messages()
         return template
 
+    @property
+    def tf_topic(self) -> str | None:
+        """Topic of the transforms; None: not published."""
+        return None if self._tf is None else self._tf.topic
+
     def wanted(self) -> bool:
         """Whether one of the topics has subscribers."""
         if self._odometry is not None and self._odometry.wanted:
