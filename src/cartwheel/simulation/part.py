@@ -77,6 +77,8 @@ class Part(MotorRequests):
         """Plugins and their handles."""
         self.published: set[str] = set()
         """Names of the topics that plugins of the model have advertised."""
+        self.transformed: set[str] = set()
+        """Names of those topics on which transforms of odometry are published."""
         self.subscribed: set[str] = set()
         """Names of the topics that plugins of the model have subscribed to."""
         self.services: set[str] = set()

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from cartwheel.api.arguments import refused
 from cartwheel.api.messaging import MessagingWorld
 from cartwheel.api.values import Moment, moment_ns, scalar
-from cartwheel.devices.drives.odometry import Odometry
 from cartwheel.errors import UnknownNameError
 from cartwheel.gazebo.robot_states import RobotStates
 from cartwheel.graph import resolve_frame
 from cartwheel.graph.transform_buffer import KEPT_NS, SECOND, TransformBuffer
-from cartwheel.saving.models import components
 from cartwheel.simulation.limits import duration_ns
 
 if TYPE_CHECKING:
@@ -167,9 +164,8 @@ class _Stored:
         if residents == self._residents:
             return
         self._residents = residents
-        for component in chain.from_iterable(map(components, residents)):
-            topic = component.tf_topic if isinstance(component, Odometry) else None
-            if topic is not None and topic not in self.topics:
+        for resident in residents:
+            for topic in sorted(resident.part.transformed - self.topics):
                 self._read(topic, self._on_odometry)
 
     def known(self, frame: str) -> str:

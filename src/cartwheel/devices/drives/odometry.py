@@ -72,6 +72,8 @@ class Odometry(Component):
             if config.transform or config.joints
             else None
         )
+        if self._tf is not None:
+            self.part.transformed.add(self._tf.topic)
         self._child = self.keep(OdometryFrame(self, config.base)) if config.transform else None
         self._form = self._odometry_form()
         self._tf_form = self._transforms_form()
@@ -112,11 +114,6 @@ class Odometry(Component):
         if self._joints is not None:
             template.transforms += self._joints.messages()
         return template
-
-    @property
-    def tf_topic(self) -> str | None:
-        """Topic of the transforms; None: not published."""
-        return None if self._tf is None else self._tf.topic
 
     def wanted(self) -> bool:
         """Whether one of the topics has subscribers."""
