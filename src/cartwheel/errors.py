@@ -116,7 +116,6 @@ class Code:
         *,
         origin: Origin | None = None,
         hint: str | None = None,
-        severity: Severity | None = None,
         values: Mapping[str, Value] | None = None,
     ) -> Diagnostic:
         """Creates a diagnostic with this code and its cause.
@@ -126,7 +125,6 @@ class Code:
             error: The cause.
             origin: The location if the error has none.
             hint: Replaces the error's hint.
-            severity: None for the code's default severity.
             values: For programs. The error's values are added, and ``cause``: the error's code
                 number, or its text.
         """
@@ -138,7 +136,6 @@ class Code:
             f"{message}: {error.message}",
             origin=error.origin or origin,
             hint=(error.hint or "") if hint is None else hint,
-            severity=severity,
             mark=error.mark,
             values={**error.values, **(values or {}), "cause": cause},
         )

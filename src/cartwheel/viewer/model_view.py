@@ -62,7 +62,6 @@ class ModelView:
         problem: Callable[[CartwheelError], None] = lambda _: None,
         clicked: Any = None,
     ) -> None:
-        self._scene = scene
         self.name = name
         self.description = description
         self._problem = problem

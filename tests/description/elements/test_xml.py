@@ -183,13 +183,13 @@ def test_attributes_and_descendants():
     assert root.number_of("n") == 2
     assert root.number_of("m", 7) == 7
     assert root.vec3_of("v") == (1, 2, 3)
-    assert root.boolean_of("b", False) is True
+    assert root.boolean_of("b") is True
     assert root.number_at("c/d", 0) == 4
     assert root.integer_at("c/d", 0) == 4
     assert root.optional_number_at("c/e") is None
     assert root.require_child("pose").pose() == Pose((1, 2, 3))
     assert root.boolean_at("t", False)
-    assert root.text_at("x", "none") == "none"
+    assert root.text_at("x") == ""
 
 
 def test_missing_attribute_names_the_likely_meant_one():

@@ -179,27 +179,20 @@ class Node:
             return None
         return numbers.number(value, self._attribute_label(name), self.origin, infinite=infinite)
 
-    def vector_of(
-        self, name: str, size: int, default: tuple[float, ...] | None = None
-    ) -> tuple[float, ...]:
-        """An attribute as `size` numbers separated by white space; required without a default."""
+    def vec3_of(self, name: str, default: Vec3 | None = None) -> Vec3:
+        """An attribute as three numbers; required without a default."""
         value = self.get(name) if default is not None else self.require(name)
         if value is None:
             assert default is not None
             return default
-        return numbers.vector(value, size, self._attribute_label(name), self.origin)
-
-    def vec3_of(self, name: str, default: Vec3 | None = None) -> Vec3:
-        """An attribute as three numbers; required without a default."""
-        x, y, z = self.vector_of(name, 3, default)
+        x, y, z = numbers.vector(value, 3, self._attribute_label(name), self.origin)
         return (x, y, z)
 
-    def boolean_of(self, name: str, default: bool) -> bool:
-        """An attribute as true, false, 1 or 0."""
+    def boolean_of(self, name: str) -> bool:
+        """An attribute as true, false, 1 or 0; false if it is missing."""
         value = self.get(name)
-        if value is None:
-            return default
-        return numbers.boolean(value, self._attribute_label(name), self.origin)
+        label = self._attribute_label(name)
+        return value is not None and numbers.boolean(value, label, self.origin)
 
     # The element's own text.
 
@@ -252,10 +245,10 @@ class Node:
 
     # The text of a descendant, by its path.
 
-    def text_at(self, path: str, default: str = "") -> str:
-        """The text at a path such as ``image/format``."""
+    def text_at(self, path: str) -> str:
+        """The text at a path such as ``image/format``; empty if there is none."""
         node = self.find(path)
-        return node.text if node is not None else default
+        return node.text if node is not None else ""
 
     def number_at(self, path: str, default: float) -> float:
         """The number at a path."""

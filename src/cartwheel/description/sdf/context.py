@@ -90,7 +90,7 @@ def read_pose(node: Node | None) -> Pose:
         return Pose()
     notation = (node.get("rotation_format") or "euler_rpy").strip()
     quaternion = notation == "quat_xyzw"
-    in_degrees = node.boolean_of("degrees", False)
+    in_degrees = node.boolean_of("degrees")
     if notation not in _NOTATIONS:
         raise node.fail(
             f'the rotation_format "{notation}" is unknown',

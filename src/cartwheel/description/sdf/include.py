@@ -79,7 +79,7 @@ def open_include(node: Node, ctx: Context) -> Included:
         static=static.boolean() if static is not None else None,
         placement_frame=node.text_at("placement_frame").strip(),
         plugins=tuple(read_plugins(node)),
-        merge=node.boolean_of("merge", False),
+        merge=node.boolean_of("merge"),
     )
 
 

@@ -157,7 +157,7 @@ def _inertial(link: Node, ctx: Context, place: Place, collisions: list[Collision
     node = link.child("inertial")
     if node is None:
         return Inertial(mass=1.0, ixx=1.0, iyy=1.0, izz=1.0, origin=link.origin)
-    if node.boolean_of("auto", False):
+    if node.boolean_of("auto"):
         found = _auto_inertial(link, node, ctx, collisions)
     else:
         found = _stated_inertial(link, node, ctx, place)

@@ -200,7 +200,7 @@ def _default_physics(node: Node, ctx: Context) -> Node | None:
     profiles = node.all("physics")
     if not profiles:
         return None
-    chosen = next((each for each in profiles if each.boolean_of("default", False)), profiles[0])
+    chosen = next((each for each in profiles if each.boolean_of("default")), profiles[0])
     for each in profiles:
         each.get("name"), each.get("type")
         if each is not chosen:
