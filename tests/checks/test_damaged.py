@@ -68,6 +68,14 @@ def test_an_attribute_changed(survives, data, value):
     survives(URDF[: match.start()] + f'{name}="{value}"' + URDF[match.end() :])
 
 
+@pytest.mark.parametrize("radius", ["1e160", "1e308"])
+def test_wheels_of_any_size(survives, radius):
+    wheels = list(re.finditer(r'radius="0.26"', URDF))
+    assert wheels
+    for match in wheels:
+        survives(URDF[: match.start()] + f'radius="{radius}"' + URDF[match.end() :])
+
+
 @bounded
 @given(st.data())
 def test_an_element_twice(survives, data):

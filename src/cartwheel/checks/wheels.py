@@ -59,14 +59,18 @@ def wheel_middle(robot: Robot, joint: Joint) -> tuple[float, float, float]:
 def wheel_tread(robot: Robot, joint: Joint) -> tuple[float, float, float]:
     """Middle of the part of a wheel that touches the ground, on its axis, in the model frame, m.
 
-    A tapered wheel rolls on its widest part. Without a collision, it is the middle of the wheel.
+    A tapered wheel rolls on its widest part. Without a collision, or if the wheel is so large that
+    its radius cannot be computed, it is the middle of the wheel.
     """
     cloud = _cloud(robot, joint, robot.collisions)
     if cloud is None:
         return wheel_middle(robot, joint)
     axis = np.array(joint.axis.xyz) / (np.linalg.norm(joint.axis.xyz) or 1.0)
     along = cloud @ axis
-    radii = np.linalg.norm(cloud - np.outer(along, axis), axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):
+        radii = np.linalg.norm(cloud - np.outer(along, axis), axis=1)
+    if not np.isfinite(radii).all():
+        return wheel_middle(robot, joint)
     tread = along[radii > radii.max() - _WORN * radii.max()]
     x, y, z = (axis * (tread.min() + tread.max()) / 2).tolist()
     return (wheel_place(robot, joint) @ Pose((x, y, z))).position
