@@ -272,10 +272,16 @@ def _constant(names: dict[str, Any], given: list[str], data: bytes) -> str:
 def _function(
     name: str, arguments: Sequence[str], lines: Sequence[str], names: dict[str, Any]
 ) -> Any:
-    """Compiles a function with constant values as its global names."""
-    text = "\n    ".join((f"def {name}({', '.join(arguments)}):", *lines))
-    exec(_compiled(text), names)  # noqa: S102 - all names in it are made here
-    return names[name]
+    """Compiles a function with constant values.
+
+    They are variables of an enclosing function. Many forms share the code, so Python would have to
+    look up global names anew in each call.
+    """
+    inner = "\n        ".join((f"def {name}({', '.join(arguments)}):", *lines))
+    text = f"def enclosing({', '.join(names)}):\n    {inner}\n    return {name}"
+    made: dict[str, Any] = {}
+    exec(_compiled(text), made)  # noqa: S102 - all names in it are made here
+    return made["enclosing"](**names)
 
 
 @functools.lru_cache(256)
