@@ -22,6 +22,7 @@ from cartwheel.geometry import (
     cross,
     from_wxyz,
     matrix_from_quat,
+    quat_multiply,
     rotate,
 )
 from cartwheel.simulation.dynamics.external_servos import BodyDriveHandle, WrenchHandle
@@ -71,6 +72,11 @@ class LinkHandle:
         x, y, z = self._position.tolist()
         qw, qx, qy, qz = self._quaternion.tolist()
         return (x, y, z), (qx, qy, qz, qw)
+
+    def turn(self) -> Quat:
+        """Orientation of `pose`, as `place` returns it."""
+        qw, qx, qy, qz = self._quaternion.tolist()
+        return (qx, qy, qz, qw)
 
     def motion(self, *, local: bool) -> tuple[Vec3, Vec3]:
         """`velocity` as plain tuples."""
@@ -135,8 +141,8 @@ class LinkHandle:
             turn: Array = self._data.xmat[self.id].reshape(3, 3)
             weight: Array = -turn.T @ self._model.opt.gravity
             return weight, np.zeros(3)
-        six = np.zeros(6)
         self._find_accelerations()
+        six = np.empty(6)
         mujoco.mj_objectAcceleration(self._model, self._data, _XBODY, self.id, six, 1)
         acceleration: Array = six[3:]
         if any(offset):
@@ -243,6 +249,8 @@ class JointHandle:
         self._anchor: Vec3 = tuple(model.jnt_pos[self.id].tolist())
         self._axis: Vec3 = tuple(model.jnt_axis[self.id].tolist())
         self._off_centre = any(self._anchor)
+        self._axis_turn = quat_multiply(self._rest_turn, (*self._axis, 0.0))
+        """The product of the orientation at rest and the axis."""
         self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
         self._zero = float(model.qpos0[self.qposadr])
         self.lightness = float(model.dof_invweight0[self.dofadr])
@@ -291,22 +299,18 @@ class JointHandle:
         Computed only from the joint's position, so it is exact anywhere in the world.
         """
         moved = self.qpos[self.qposadr] - self._zero
-        x, y, z = self._axis
         if self._slides:
+            x, y, z = self._axis
             dx, dy, dz = rotate(self._rest_turn, (x * moved, y * moved, z * moved))
             px, py, pz = self._rest
             return (px + dx, py + dy, pz + dz), self._rest_turn
+        # The orientation at rest times the rotation: this runs for each wheel at the rate of
+        # odometry.
         half = moved / 2
-        sin, w = math.sin(half), math.cos(half)
-        x, y, z = x * sin, y * sin, z * sin
-        # This is `quat_multiply` inlined: it runs for each wheel at the rate of odometry.
+        sin, cos = math.sin(half), math.cos(half)
         ax, ay, az, aw = self._rest_turn
-        turn = (
-            aw * x + ax * w + ay * z - az * y,
-            aw * y - ax * z + ay * w + az * x,
-            aw * z + ax * y - ay * x + az * w,
-            aw * w - ax * x - ay * y - az * z,
-        )
+        x, y, z, w = self._axis_turn
+        turn = (ax * cos + x * sin, ay * cos + y * sin, az * cos + z * sin, aw * cos + w * sin)
         if not self._off_centre:
             return self._rest, turn
         # The anchor is fixed.

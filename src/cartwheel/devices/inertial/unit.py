@@ -63,9 +63,9 @@ class InertialUnit:
         """
         orientation = IDENTITY
         if self.has_orientation:
-            _, link = self._link.place()
-            mounted = quat_multiply(link, self._mount.orientation)
-            orientation = quat_multiply(self._world, mounted)
+            orientation = self.orientation
+            if self._world != IDENTITY:
+                orientation = quat_multiply(self._world, orientation)
         # Only the acceleration depends on the position on the link, which is rigid.
         rates = self.rates()
         acceleration = self._rotated(self._link.proper_acceleration(self._mount.position).tolist())
@@ -76,8 +76,8 @@ class InertialUnit:
     @property
     def orientation(self) -> Quat:
         """True orientation of the IMU in the world."""
-        _, link = self._link.place()
-        return quat_multiply(link, self._mount.orientation)
+        link = self._link.turn()
+        return link if self._aligned else quat_multiply(link, self._mount.orientation)
 
     @property
     def gravity(self) -> Sequence[float]:
