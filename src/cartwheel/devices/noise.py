@@ -91,7 +91,8 @@ class _Drift:
         self._part, self._name, self._settled = part, name, settled
         self._period_ns = part.period_ns(rate)
         self._deviation = deviation
-        self._drifts = bool(deviation.any())
+        self.drifts = bool(deviation.any())
+        """Whether the values change."""
         self._kept, self._added = gauss_markov_step(deviation, frequency, self._period_ns)
         self.restart()
         part.on_seed.append(self.restart)
@@ -116,7 +117,7 @@ class _Drift:
             self.restart()
             return self._value
         self._updated_ns += steps * self._period_ns
-        if self._drifts:
+        if self.drifts:
             for _ in range(steps):
                 self._value = self._kept * self._value + self._random.normal(0.0, self._added)
         return self._value
@@ -180,6 +181,8 @@ class VectorNoise:
     @property
     def offset(self) -> Array:
         """Mean plus current bias, shape (n,)."""
+        if not self._drift.drifts:
+            return self._fixed
         total: Array = self._fixed + self._drift.now()
         return total
 

@@ -81,27 +81,24 @@ class EmbreeCaster:
             Distances in m, shape (n,), inf without a hit; and the index of each geom, or -1.
         """
         self._scenes.refresh()
-        band = self._band.turned(turn)
         count = len(self._directions)
         with np.errstate(divide="ignore", invalid="ignore"):
             if count <= _CHUNK:
-                hits = self._cast(start, turn, hidden, band, slice(None))
+                hits = self._cast(start, turn, hidden, slice(None))
                 return hits.distances, hits.geoms
             distances, geoms = np.empty(count), np.empty(count, dtype=np.int32)
             # Intermediate results of all rays would need several times their memory.
             for first in range(0, count, _CHUNK):
                 part = slice(first, first + _CHUNK)
-                hits = self._cast(start, turn, hidden, band, part)
+                hits = self._cast(start, turn, hidden, part)
                 distances[part], geoms[part] = hits.distances, hits.geoms
         return distances, geoms
 
-    def _cast(
-        self, start: Array, turn: Array, hidden: frozenset[int], band: Band, part: slice
-    ) -> Hits:
+    def _cast(self, start: Array, turn: Array, hidden: frozenset[int], part: slice) -> Hits:
         scenes = self._scenes
         query = Query(
             start, self._directions[part] @ turn.T, self._own, self._minimum, self._maximum,
-            hidden, band,
+            hidden, self._band, turn,
         )  # fmt: skip
         hits = scenes.cast_fixed(query)
         root = scenes.root_of(self._body)

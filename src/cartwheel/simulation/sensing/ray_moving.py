@@ -49,8 +49,11 @@ class MovingShapes:
         self._body_positions, self._body_turns = data.xpos, data.xmat.reshape(-1, 3, 3)
         self._positions, self._turns = data.geom_xpos, data.geom_xmat.reshape(-1, 3, 3)
         self._sizes, self._kinds = model.geom_size, model.geom_type
-        self._simple, self._meshes = simple, meshes
-        self._simple_kinds = np.unique(self._kinds[simple])
+        self._simple, self._meshes = simple.astype(np.intp), meshes
+        kinds, firsts = np.unique(self._kinds[simple], return_index=True)
+        self._simple_kinds = kinds.tolist()
+        self._groups = np.concatenate([firsts, len(simple) + np.arange(len(meshes) + 1)])
+        """Where each kind of simple shapes and each body with meshes begins, and the end."""
         self._roots = np.array([each.root for each in meshes], dtype=np.intp)
         self._centres = np.array([each.centre for each in meshes]).reshape(-1, 3)
         radii = [each.radius for each in meshes]
@@ -60,37 +63,53 @@ class MovingShapes:
 
     def cast(self, query: Query, hits: Hits) -> None:
         """Adds the hits of rays."""
-        if not self._radii.size:
+        count = len(self._radii)
+        if not count:
             return
         away = self._places() - query.start
         squared = np.einsum("ij,ij->i", away, away)
-        wanted = np.sqrt(squared) - self._radii < query.maximum
-        if query.band is not None and len(self._radii) * len(query.rays) > _FEW_PAIRS:
-            extent = self._extent(query.band.axis)
-            wanted &= query.band.meets(away, squared, self._radii, extent)
-        (chosen,) = wanted.nonzero()
-        if not chosen.size:
-            return
-        # A ray meets a sphere if it goes far enough along the line to its centre.
-        rest = squared - self._radii_squared
-        least = np.where(rest > 0, np.sqrt(rest), -np.inf)
-        away = away[chosen]
-        (pairs,) = (_along(away, query.rays) >= least[chosen, None]).ravel().nonzero()
+        # A ray meets a sphere if it goes far enough along the line to its centre. The root is NaN
+        # if the ray starts in the sphere, and nothing is less.
+        least, groups = np.sqrt(squared - self._radii_squared), self._groups
+        chosen: Any = None
+        if count * len(query.rays) > _FEW_PAIRS:
+            (chosen,) = self._reachable(query, away, squared).nonzero()
+            if not chosen.size:
+                return
+            away, least, groups = away[chosen], least[chosen], chosen.searchsorted(groups)
+        missed = _along(away, query.rays) < least[:, None]
+        (pairs,) = np.logical_not(missed, out=missed).ravel().nonzero()
         if not pairs.size:
             return
         row, which = np.divmod(pairs, len(query.rays))
-        count = int(chosen.searchsorted(len(self._simple)))
-        edges = row.searchsorted(range(count, len(chosen) + 1)).tolist()
-        if edges[0]:
-            few = slice(edges[0])
+        edges = row.searchsorted(groups).tolist()
+        kinds = len(self._simple_kinds)
+        if edges[kinds]:
+            few = slice(edges[kinds])
+            geoms = self._simple if chosen is None else self._simple[chosen[: groups[kinds]]]
             self._cast_simple(
-                query, hits, geoms=self._simple[chosen[:count]], away=away[:count],
-                row=row[few], which=which[few],
+                query, hits, geoms=geoms, away=away[: len(geoms)],
+                row=row[few], which=which[few], edges=edges[: kinds + 1],
             )  # fmt: skip
-        for index, first, last in zip(chosen[count:].tolist(), edges, edges[1:], strict=False):
+        for meshes, first, last in zip(
+            self._meshes, edges[kinds:], edges[kinds + 1 :], strict=False
+        ):
             if first < last:
-                meshes = self._meshes[index - len(self._simple)]
                 self._cast_meshes(meshes, which[first:last], query, hits)
+
+    def _reachable(self, query: Query, away: Array, squared: Array) -> Any:
+        """Whether any ray may reach each shape.
+
+        Args:
+            query: The rays.
+            away: Centres of the spheres, seen from the start of the rays, m.
+            squared: Square of the length of `away`.
+        """
+        found = np.sqrt(squared) - self._radii < query.maximum
+        if query.band is not None and query.turn is not None:
+            axis = query.turn @ query.band.axis
+            found &= query.band.meets(axis, away, squared, self._radii, self._extent(axis))
+        return found
 
     def _places(self) -> Array:
         """The centres of all spheres, m."""
@@ -109,7 +128,15 @@ class MovingShapes:
         return np.concatenate([extent, self._radii[extent.size :]]) if self._meshes else extent
 
     def _cast_simple(
-        self, query: Query, hits: Hits, *, geoms: Any, away: Array, row: Any, which: Any
+        self,
+        query: Query,
+        hits: Hits,
+        *,
+        geoms: Any,
+        away: Array,
+        row: Any,
+        which: Any,
+        edges: Sequence[int],
     ) -> None:
         """Adds the hits of geoms that are no meshes.
 
@@ -120,6 +147,7 @@ class MovingShapes:
             away: Their places, seen from the start of the rays.
             row: The geom of each pair that may meet, as an index of `geoms`.
             which: The ray of each pair.
+            edges: Where the pairs of each kind begin, and the end.
         """
         met = geoms.take(row)
         turns = self._turns.take(geoms, axis=0)
@@ -128,8 +156,7 @@ class MovingShapes:
         sizes = self._sizes.take(met, axis=0)
         found = np.empty(row.size)
         # The geoms are sorted by their kinds.
-        edges = [*self._kinds.take(met).searchsorted(self._simple_kinds).tolist(), row.size]
-        for kind, first, last in zip(self._simple_kinds.tolist(), edges, edges[1:], strict=False):
+        for kind, first, last in zip(self._simple_kinds, edges, edges[1:], strict=False):
             if first < last:
                 part = slice(first, last)
                 found[part] = shapes.TO_SHAPE[kind](starts[part], rays[part], sizes[part])

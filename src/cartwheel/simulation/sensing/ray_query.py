@@ -78,20 +78,19 @@ class Band:
         angle = min(largest + _SLACK, math.pi / 2)
         return cls(axis, math.sin(angle), math.cos(angle))
 
-    def turned(self, turn: Array) -> Band:
-        """The band in other axes."""
-        return Band(turn @ self.axis, self.sine, self.cosine)
-
-    def meets(self, away: Array, squared: Array, radius: Array, extent: Array) -> Any:
+    def meets(
+        self, axis: Array, away: Array, squared: Array, radius: Array, extent: Array
+    ) -> Any:  # fmt: skip
         """Whether shapes may be in the band.
 
         Args:
+            axis: The axis of the band in their axes.
             away: Their centres, seen from the start of the rays, m, shape (n, 3).
             squared: Square of the length of `away`, shape (n,).
             radius: Radii of spheres around them, m, shape (n,).
             extent: How far they extend along the axis from their centres, m, shape (n,).
         """
-        along = np.abs(away @ self.axis)
+        along = np.abs(away @ axis)
         across = np.sqrt(np.maximum(squared - along * along, 0.0))
         # Distances of the centres to the line of the cone around the directions that is nearest.
         distance = along * self.cosine - across * self.sine
@@ -115,7 +114,9 @@ class Query:
     hidden: frozenset[int] = frozenset()
     """Geoms that are not hit."""
     band: Band | None = None
-    """Where the rays go."""
+    """Where the rays go, in the axes of the sensor's body."""
+    turn: Array | None = None
+    """Rotation matrix of this body."""
 
     def some(self, rays: Any, hidden: frozenset[int]) -> Query:
         """The same for some of the rays, and with other geoms that are not hit."""

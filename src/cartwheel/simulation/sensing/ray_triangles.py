@@ -99,15 +99,16 @@ class TriangleScene:
         if begin.ndim == 1:
             # As `broadcast_to`, which takes longer.
             begin = np.ndarray(rays.shape, np.float32, begin, strides=(0, begin.itemsize))
-        return self._scene.run(begin, rays.astype(np.float32))
+        # As indices, which are read several times.
+        return self._scene.run(begin, rays.astype(np.float32)).astype(np.intp)
 
     def cast(self, start: Array, rays: Array) -> Hits:
         """The nearest hits of rays in the frame of the scene; see `Query`."""
         found = self.find(start, rays)
         distances = self._to_triangles(start, rays, found)
-        hits = Hits(distances, self._owners[found])
+        hits = Hits(distances, self._owners.take(found))
         if self._curved is not None:
-            (which,) = np.nonzero(self._curved[found])
+            (which,) = self._curved.take(found).nonzero()
             if which.size:
                 self._refine(start, rays, hits, which, found[which])
         return hits
