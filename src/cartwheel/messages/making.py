@@ -11,7 +11,7 @@ from cartwheel.errors import GraphError
 from cartwheel.messages.convert import from_dict
 from cartwheel.messages.field import Field
 from cartwheel.messages.fields import fields
-from cartwheel.messages.store import message_class
+from cartwheel.messages.forms import Form
 
 Maker = Callable[[Sequence[float]], Any]
 """Creates a message from the values of its fields."""
@@ -40,7 +40,8 @@ def maker(type_name: str, names: Sequence[str]) -> Maker:
     template = from_dict(type_name, _filled(type_name, _tree(paths, [0.0] * len(names))))
     places = _tree(paths, range(len(names)))
     if _are_floats(type_name, places):
-        return _maker(type_name, places, template)
+        made = Form(template, *names).message
+        return lambda values: made(*values)
     return lambda values: from_dict(type_name, _filled(type_name, _tree(paths, values)))
 
 
@@ -136,29 +137,3 @@ def _are_floats(type_name: str, places: dict[str | int, Any]) -> bool:
         elif field.kind != "float":
             return False
     return True
-
-
-def _maker(type_name: str, places: dict[str | int, Any], template: Any) -> Maker:
-    make = message_class(type_name)
-    # The name of each field, which values set it, and how.
-    constant: dict[str, Any] = {}
-    given: list[tuple[str, int]] = []
-    nested: list[tuple[str, Maker]] = []
-    for field in fields(type_name):
-        place, value = places.get(field.name), getattr(template, field.name)
-        if place is None:
-            constant[field.name] = value
-        elif isinstance(place, dict):
-            nested.append((field.name, _maker(field.type, place, value)))
-        else:
-            given.append((field.name, place))
-
-    def message(values: Sequence[float]) -> Any:
-        found = constant.copy()
-        for name, index in given:
-            found[name] = values[index]
-        for name, made in nested:
-            found[name] = made(values)
-        return make(**found)
-
-    return message
