@@ -205,9 +205,8 @@ class Session:
         with self.spawning():
             known = self.shared.get(ControllerFiles).known
             description = with_published_control(description, package_path=package_path)
-            if controllers is None and known(
-                description, "lacking", lambda: lacks_controllers(description)
-            ):
+            lacking = functools.partial(lacks_controllers, description)
+            if controllers is None and known(description, "lacking", lacking):
                 found = known(description, "suggested", lambda: suggested(description))
                 self.simulation.engine.report(no_controllers(description, found))
             names: tuple[str, ...] = ()
@@ -218,6 +217,8 @@ class Session:
                     lambda: selection_near(description, package_path),
                 )
                 controllers, names = selected.files, selected.names
+                for each in selected.problems:
+                    self.simulation.engine.report(each)
             files = tuple(Path(file) for file in controllers or ())
             spawned = self._spawn(
                 description,

@@ -114,8 +114,13 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
         and each.values.get("cause") not in _ALTERNATIVE
     }
     for name in verdict.spawned:
-        if name in refused and name not in verdict.controllers and not _broadcasts(refused[name]):
+        if name in verdict.controllers:
+            continue
+        if name in refused and not _broadcasts(refused[name]):
             yield Fault(test="controller", subject=name, reason=refused[name])
+        unread = next((each for each in verdict.observed if _contains(each, name)), None)
+        if unread is not None:
+            yield Fault(test="controller", subject=name, reason=unread)
     if verdict.drives or verdict.reaches or verdict.spins or verdict.flights:
         return
     if verdict.failure is not None and verdict.controllers:
@@ -143,6 +148,16 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
             )
         )
         yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+
+
+def _contains(each: Diagnostic, controller: str) -> bool:
+    """Whether a diagnostic is about an unreadable file with this controller."""
+    names = each.values.get("controllers", ())
+    return (
+        each.code is devices.CONTROLLERS_FILE_UNREADABLE
+        and isinstance(names, tuple)
+        and controller in names
+    )
 
 
 def _broadcasts(refused: Diagnostic) -> bool:

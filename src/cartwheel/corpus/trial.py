@@ -93,6 +93,7 @@ def try_robot(
     if controllers is None:
         selected = selection(robot, use, launches)
         controllers, spawned = selected.files, selected.names
+        verdict = replace(verdict, observed=selected.problems)
     try:
         with World(_WATER if has_thrusters(robot) else "empty", lenient=True) as world:
             pose = _place(robot)
@@ -225,7 +226,7 @@ def _moved(
     stood = motion.stand(world, model, robot, standing)
     started = _controllers(world).started
     given_up = [] if stood.fixed else [*gave_way(world, model, Robot(robot, None), before, started)]
-    verdict = replace(verdict, stand=stood, observed=tuple(given_up))
+    verdict = replace(verdict, stand=stood, observed=(*verdict.observed, *given_up))
     yield verdict
     topics, silent = _listened(world)
     verdict = replace(verdict, topics=topics, silent=silent)

@@ -225,7 +225,7 @@ class Verdict:
     """The launch file whose arguments were used."""
     diagnostics: tuple[Diagnostic, ...] = ()
     observed: tuple[Diagnostic, ...] = ()
-    """Reasons for failures that were seen in the simulation."""
+    """Reasons for failures that were seen in the simulation, or in the files of launch files."""
 
     @property
     def speed(self) -> float:

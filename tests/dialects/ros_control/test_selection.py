@@ -1,11 +1,12 @@
-"""An SDF model has the hardware of the URDF that ROS publishes beside it."""
+"""The controllers and the hardware that launch files and other files near a robot name."""
 
 import pytest
 from tests.coded import coded
 from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_system, transmission
 
 import cartwheel as cw
-from cartwheel.codes.devices import CONTROL_ELSEWHERE
+from cartwheel.codes.devices import CONTROL_ELSEWHERE, CONTROLLERS_FILE_UNREADABLE
+from cartwheel.corpus import try_robot
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.selection import with_published_control
 
@@ -115,3 +116,36 @@ def test_a_model_with_its_own_hardware_or_without_controllers_stays_as_it_is(mod
         assert with_published_control(described) is described
     other = load_robot(described.origin.file.replace("model.sdf", "arm.urdf"))
     assert with_published_control(other) is other
+
+
+STARTER = """<launch>
+  <param name="robot_description" command="xacro $(find arm)/robots/arm.urdf"/>
+  <rosparam file="$(find arm)/config/good.yaml"/><rosparam file="$(find arm)/config/bad.yaml"/>
+  <rosparam file="$(find arm)/config/other.yaml"/>
+  <node pkg="controller_manager" type="spawner" name="s" args="good bad"/>
+</launch>"""
+ONE = "{name}: {{type: position_controllers/JointPositionController, joint: {joint}_joint}}"
+
+
+def test_an_unreadable_controller_file_of_a_launch_file_is_reported(model, tmp_path):
+    body = beam("beam", "world") + beam("tip", "beam", origin="0 0 0.5")
+    held = transmission("beam_joint", "Position") + transmission("tip_joint", "Position")
+    model(
+        "",
+        launch__sim_dot_launch=STARTER,
+        robots__arm_dot_urdf=robot(body + held, ROS1),
+        config__good_dot_yaml=ONE.format(name="good", joint="beam"),
+        config__bad_dot_yaml=ONE.format(name="bad", joint="tip") + "\nx: [",
+        config__other_dot_yaml="moveit: [",
+    )
+    path = tmp_path / "arm/robots/arm.urdf"
+    with cw.World("empty") as world:
+        world.spawn(path, controllers="auto")
+        (found,) = coded(world, CONTROLLERS_FILE_UNREADABLE)
+        assert found.origin.file.endswith("bad.yaml")
+        assert found.values["controllers"] == ("bad",)
+    verdict = try_robot(path, standing=1.0)
+    assert verdict.controllers == ("good",)
+    (fault,) = verdict.faults
+    assert (fault.test, fault.subject, fault.source) == ("controller", "bad", "file")
+    assert fault.code is CONTROLLERS_FILE_UNREADABLE

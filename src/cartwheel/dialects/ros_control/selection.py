@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from cartwheel import yaml_text
 from cartwheel.codes.devices import CONTROL_ELSEWHERE
 from cartwheel.description import load_robot
 from cartwheel.description.launches import (
@@ -22,9 +23,9 @@ from cartwheel.description.launches import (
     root_of,
 )
 from cartwheel.description.model import RobotDescription
-from cartwheel.dialects.ros_control.files import for_robot, read_parameters
+from cartwheel.dialects.ros_control.files import for_robot, name_and_file, read_parameters
 from cartwheel.dialects.ros_control.suggestion import commanding, is_controlled, suggested
-from cartwheel.errors import CartwheelError, PluginError
+from cartwheel.errors import CartwheelError, Diagnostic, PluginError
 
 _SUFFIX = ".sdf"
 _MOST = 8
@@ -42,6 +43,8 @@ class Selection:
     """YAML files with controllers for the robot."""
     names: tuple[str, ...]
     """Names of the controllers that the launch file starts; empty: all."""
+    problems: tuple[Diagnostic, ...] = ()
+    """Why files that the launch file loads for these controllers cannot be read."""
 
 
 def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -> Selection:
@@ -90,7 +93,24 @@ def selection(
         starter, named = None, []
     files = tuple(each for each in named or suggested(robot) if _is_complete(each, robot))
     names = starter.spawned if starter is not None and (named or not files) else ()
-    return Selection(files=files, names=names)
+    problems = tuple(_unreadable(starter.controllers, names)) if starter is not None else ()
+    return Selection(files=files, names=names, problems=problems)
+
+
+def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnostic]:
+    """The errors in those of the files that contain the names of controllers."""
+    for path in paths:
+        try:
+            text = yaml_text.read(name_and_file(path)[1])
+        except (OSError, UnicodeDecodeError):
+            continue
+        held = tuple(name for name in names if f"{name}:" in text)
+        if held:
+            try:
+                read_parameters(path)
+            except PluginError as error:
+                found = error.diagnostic()
+                yield replace(found, values={**found.values, "controllers": held})
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:
