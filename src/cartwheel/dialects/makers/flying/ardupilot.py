@@ -167,7 +167,6 @@ class ArduPilotPlugin(Plugin[ArduPilotParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("ArduPilotPlugin", "libArduPilotPlugin.so")
-    parameters: ClassVar[type] = ArduPilotParameters
 
     def configure(self) -> None:
         config, element = self.config, self.tag.element

@@ -99,7 +99,6 @@ class HectorPropulsion(Plugin[HectorPropulsionParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_quadrotor_propulsion.so",)
-    parameters: ClassVar[type] = HectorPropulsionParameters
 
     def configure(self) -> None:
         config, link = self.config, self.part.description.canonical_link
@@ -154,7 +153,6 @@ class HectorAerodynamics(Plugin[HectorAerodynamicsParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_quadrotor_aerodynamics.so",)
-    parameters: ClassVar[type] = HectorAerodynamicsParameters
 
     def configure(self) -> None:
         config, link = self.config, self.part.description.canonical_link

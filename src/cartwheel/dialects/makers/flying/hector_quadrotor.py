@@ -48,7 +48,6 @@ class HectorQuadrotor(Plugin[HectorQuadrotorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libhector_gazebo_quadrotor_simple_controller.so",)
-    parameters: ClassVar[type] = HectorQuadrotorParameters
 
     def configure(self) -> None:
         config = self.config

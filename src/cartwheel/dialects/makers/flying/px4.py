@@ -157,7 +157,6 @@ class Px4Interface(Plugin[Px4Parameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_mavlink_interface.so",)
-    parameters: ClassVar[type] = Px4Parameters
 
     def configure(self) -> None:
         config = self.config

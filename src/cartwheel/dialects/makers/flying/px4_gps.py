@@ -83,7 +83,6 @@ class Px4Gps(Plugin[Px4GpsParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = (GPS_PLUGIN,)
-    parameters: ClassVar[type] = Px4GpsParameters
     for_sensor: ClassVar[bool] = True
     sensor_type: ClassVar[str] = "gps"
 
@@ -163,7 +162,6 @@ class Px4GroundTruth(Plugin[Px4GroundTruthParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_groundtruth_plugin.so",)
-    parameters: ClassVar[type] = Px4GroundTruthParameters
 
     def configure(self) -> None:
         link = self.part.description.canonical_link

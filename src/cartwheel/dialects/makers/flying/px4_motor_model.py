@@ -50,7 +50,6 @@ class Px4MotorModel(Plugin[Px4MotorParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_motor_model.so",)
-    parameters: ClassVar[type] = Px4MotorParameters
 
     def configure(self) -> None:
         config = self.config

@@ -77,7 +77,6 @@ class Px4Magnetometer(Plugin[Px4MagnetometerParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_magnetometer_plugin.so",)
-    parameters: ClassVar[type] = Px4MagnetometerParameters
 
     def configure(self) -> None:
         config = self.config
@@ -126,7 +125,6 @@ class Px4Barometer(Plugin[Px4BarometerParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_barometer_plugin.so",)
-    parameters: ClassVar[type] = Px4BarometerParameters
 
     def configure(self) -> None:
         config, link = self.config, self.part.description.canonical_link

@@ -83,7 +83,6 @@ class SjtuDrone(Plugin[SjtuDroneParameters]):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libplugin_drone.so",)
-    parameters: ClassVar[type] = SjtuDroneParameters
 
     def configure(self) -> None:
         config = self.config
