@@ -32,6 +32,11 @@ class TagScope(Scope):
         return child.origin if child is not None else self.tag.origin
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NoTags:
+    """The parameters of a plugin that reads no tags of its own."""
+
+
 class Plugin(Component, Generic[C]):
     """Base class of all plugins.
 

@@ -19,7 +19,7 @@ from cartwheel.devices.bases.infrared import IrIntensity, IrIntensityConfig
 from cartwheel.devices.bases.mouse import Mouse, MouseConfig
 from cartwheel.devices.inertial.imu import Imu, ImuConfig
 from cartwheel.dialects.common_tags import sensor_frame_tag
-from cartwheel.dialects.plugin import Plugin, SensorPlugin
+from cartwheel.dialects.plugin import NoTags, Plugin, SensorPlugin
 from cartwheel.dialects.sdf.contact import read_collisions
 from cartwheel.dialects.sdf.imu import read_inertial_unit
 from cartwheel.dialects.sdf.scan import read_scanner
@@ -32,12 +32,7 @@ def out_topic(plugin: Plugin[Any]) -> str:
     return "out" if plugin.remaps("out") else f"{plugin.tag.name}/out"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Create3BumperParameters:
-    pass
-
-
-class Create3Bumper(SensorPlugin[Create3BumperParameters]):
+class Create3Bumper(SensorPlugin[NoTags]):
     """Publishes a HazardDetection of type BUMP while the bumper is pressed.
 
     The bumper has five zones. The frame ID of a message is the name of the pressed zone, such as

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cartwheel.codes import running
 from cartwheel.devices.grips.attachment import Attacher, Place
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.plugin import NoTags, Plugin
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages import service_classes
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LinkAttacherParameters:
-    pass
-
-
-class _LinkAttacher(Plugin[LinkAttacherParameters]):
+class _LinkAttacher(Plugin[NoTags]):
     """Base class of both plugins, whose services differ."""
 
     for_world: ClassVar[bool] = True

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from cartwheel.devices.contact.loads import ContactForceConfig
 from cartwheel.devices.contact.wrench import WrenchSensor, WrenchSensorConfig
-from cartwheel.dialects.plugin import SensorPlugin
+from cartwheel.dialects.plugin import NoTags, SensorPlugin
 from cartwheel.dialects.sdf.contact import read_collisions
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FootContactParameters:
-    pass
-
-
-class FootContact(SensorPlugin[FootContactParameters]):
+class FootContact(SensorPlugin[NoTags]):
     """Publishes the contact force on a robot's foot, in the frame of the foot's link.
 
     The topic is ``/visual/<sensor>/the_force``. The force is the sum over all contacts of the

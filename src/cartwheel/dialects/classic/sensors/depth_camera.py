@@ -115,5 +115,4 @@ class OpenniKinect(DepthCamera):
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("libgazebo_ros_openni_kinect.so",)
-    sensor_type: ClassVar[str] = "depth"
     parameters: ClassVar[type] = KinectParameters

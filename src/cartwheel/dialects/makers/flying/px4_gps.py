@@ -149,12 +149,7 @@ def gps_topics(model: str, sensor: Sensor, plugin: PluginTag) -> tuple[str, str]
     return topic, f"{topic}_velocity"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Px4GroundTruthParameters(HomeTags):
-    pass
-
-
-class Px4GroundTruth(Plugin[Px4GroundTruthParameters]):
+class Px4GroundTruth(Plugin[HomeTags]):
     """Publishes the true geographic position of the root link at every simulation step.
 
     The topic is ``/<model>/groundtruth`` (NavSatFix). Original plugin:
