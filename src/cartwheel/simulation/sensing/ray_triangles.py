@@ -137,24 +137,31 @@ class TriangleScene:
             which: Indices of the rays that hit a curved shape.
             triangles: The triangles that these rays hit.
         """
-        ray, geoms, surface = rays[which], hits.geoms[which], hits.distances[which]
-        exact = self._exact(start, ray, geoms, surface)
+        ray, geoms = rays.take(which, axis=0), hits.geoms.take(which)
+        surface = hits.distances.take(which)
+        if len(self._curved_kinds) == 1:
+            kind = self._curved_kinds[0]
+            exact = _to_shape(kind, start, ray, self._geoms.take(geoms, axis=0))
+        else:
+            exact = self._exact(start, ray, geoms, surface)
         hits.distances[which] = exact
         missed = np.isinf(exact)
         # Between its triangles and a shape, a ray hits only what meets these triangles.
         going = surface < exact - _CLOSE
-        going &= missed | self._touches[geoms]
-        if not going.any():
+        going &= missed | self._touches.take(geoms)
+        (on,) = going.nonzero()
+        if not on.size:
             return
         hits.geoms[which[missed]] = -1
         step = np.full(which.size, _STEP)
         for _ in range(_MOST_STEPS):
-            which, ray, triangles, step = which[going], ray[going], triangles[going], step[going]
-            passed = surface[going] + step
+            which, ray = which.take(on), ray.take(on, axis=0)
+            triangles, step = triangles.take(on), step.take(on)
+            passed = surface.take(on) + step
             found = self.find(start + passed[:, None] * ray, ray)
             again = found == triangles
             # A ray that has hit a shape leaves its triangles behind it: nothing is in between.
-            left = np.isfinite(exact[going]) & (self._owners[found] == geoms[going])
+            left = np.isfinite(exact.take(on)) & (self._owners.take(found) == geoms.take(on))
             if (left & ~again | (found < 0)).all():
                 return
             # The plane of a triangle behind the start of the ray would be numerical noise.
@@ -171,13 +178,13 @@ class TriangleScene:
             geoms = self._owners[triangles]
             exact = self._exact(start, ray, geoms, surface)
             hits.add_some(which, exact, geoms)
-            going = surface < hits.distances[which] - _CLOSE
-            if not going.any():
+            (on,) = (surface < hits.distances[which] - _CLOSE).nonzero()
+            if not on.size:
                 return
 
     def _exact(self, start: Array, rays: Array, geoms: Any, surface: Array) -> Array:
         """Distances to curved shapes, inf for a miss, and otherwise those to the triangles."""
-        kinds, rows = self._kinds[geoms], self._geoms.take(geoms, axis=0)
+        kinds, rows = self._kinds.take(geoms), self._geoms.take(geoms, axis=0)
         exact = surface
         for kind in self._curved_kinds:
             chosen = kinds == kind
