@@ -117,5 +117,5 @@ TRANSFORM_TIME = Code(
     "CW738", "transform-time", "error", "a transform is not known at the requested time"
 )
 DELAYED_LOST = Code(
-    "CW739", "delayed-messages-lost", "warning", "a fault delays more messages than it can hold"
+    "CW739", "delayed-messages-lost", "warning", "more messages are delayed than can be held"
 )

@@ -6,7 +6,7 @@ import pytest
 from tests.coded import coded
 
 from cartwheel import World
-from cartwheel.codes import devices, running
+from cartwheel.codes import devices, graph, running
 from cartwheel.dialects.gz.messages.text_format import TextFormatError, parse_text_format
 
 KEYS = """<plugin name="t" filename="gz-sim-triggered-publisher-system">
@@ -155,6 +155,20 @@ def test_a_message_that_triggers_itself_is_published_once_in_each_step(triggered
     times = [time for time, _ in got]
     assert 20 <= len(times) <= 22
     assert len(set(times[1:])) == len(times) - 1
+
+
+def test_triggers_that_multiply_are_bounded_and_reported(triggered):
+    """Two outputs that are the input double the messages of each step."""
+    loop = '<input type="gz.msgs.Empty" topic="/a"/>' + 2 * (
+        '<output type="gz.msgs.Empty" topic="/a"/>'
+    )
+    world, got = triggered(KEYS[: KEYS.index("<input")] + loop + "</plugin>", "/a")
+    world.publish("/a")
+    world.step(14)
+    last = sum(time == got[-1][0] for time, _ in got)
+    assert 1000 < last <= 2000
+    (report,) = coded(world.session.simulation, graph.DELAYED_LOST)
+    assert report.values["topic"] == "/a"
 
 
 def test_integers_have_at_most_64_bits():

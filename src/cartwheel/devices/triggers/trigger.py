@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import DELAYED_LOST
 from cartwheel.component import Component, Scope
 from cartwheel.messages import to_dict
 
-_MOST = 10_000
+_MOST = 1000
 """Messages that wait for their delay."""
 
 
@@ -56,7 +57,8 @@ class Trigger(Component):
         super().__init__(scope)
         self._config = config
         self._delay_ns = round(config.delay * 1e9)
-        self._due: deque[int] = deque(maxlen=_MOST)
+        self._due: deque[int] = deque()
+        self._lost = 0
         self._outputs = [
             (self.advertise(each.topic, each.type), each.message) for each in config.outputs
         ]
@@ -66,10 +68,22 @@ class Trigger(Component):
     def reset(self) -> None:
         super().reset()
         self._due.clear()
+        self._lost = 0
 
     def _on_message(self, message: Any) -> None:
-        if all(holds(each, message) for each in self._config.matches):
+        if not all(holds(each, message) for each in self._config.matches):
+            return
+        if len(self._due) < _MOST:
             self._due.append(self.part.time_ns + self._delay_ns)
+            return
+        self._lost += 1
+        if self._lost == 1:
+            self.warn(
+                DELAYED_LOST,
+                f"messages on {self._config.topic} trigger nothing: {_MOST} triggers already wait",
+                hint="Shorten the delay, or check whether an output triggers its own input.",
+                values={"topic": self._config.topic, "waiting": _MOST},
+            )
 
     def _publish(self) -> None:
         # Those that its own outputs trigger are due at the next step. Otherwise, a loop never ends.
