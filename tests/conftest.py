@@ -19,7 +19,6 @@ from tests import launching
 from tests.devices.drives.carts import cart_sdf
 
 import cartwheel as cw
-from cartwheel.bridges.apart import process
 from cartwheel.description import load_robot, load_text
 from cartwheel.description.model import (
     Box,
@@ -74,7 +73,7 @@ def pytest_configure(config: pytest.Config) -> None:
     # Worlds are to be as in programs: without a recording, and freed with the last reference.
     if config.pluginmanager.has_plugin("cartwheel"):
         config.pluginmanager.unregister(name="cartwheel")
-    vars(process)["Popen"] = launching.Popen
+    launching.replace_starts()
     # A shell starts background jobs with this signal ignored, and programs that tests start and
     # interrupt would inherit that.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -121,6 +120,7 @@ def pytest_collection() -> Iterator[None]:
     finally:
         gc.collect()
         gc.freeze()
+        gc.set_threshold(*launching.RARE_COLLECTIONS)
         gc.enable()
 
 

@@ -6,7 +6,8 @@ The fork gets the arguments, folder, environment and streams of the start, and t
 program would. `Popen` and `run` are those of `subprocess` in all that tests use of them.
 
 ROS 1's programs have launchers as well, in the environments that were given to `admit_ros1`.
-Bridge processes come from the launcher of the test process, also those of programs that it started.
+Bridge processes and those of `multiprocessing` come from the launcher of the test process, also
+those of programs that it started.
 
 What differs: the parent is the launcher, ``/proc/PID/cmdline`` and ``/proc/PID/environ`` are the
 launcher's (`tests.processes` finds the bridges of a program nevertheless), all modules are imported
@@ -25,6 +26,8 @@ import importlib
 import inspect
 import io
 import json
+import multiprocessing.popen_spawn_posix
+import multiprocessing.util
 import os
 import pkgutil
 import re
@@ -39,7 +42,7 @@ import sys
 import threading
 import traceback
 import types
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -75,7 +78,13 @@ _LONGEST = 200_000
 """Bytes of a request: more does not fit into a packet."""
 _MOST_FILES = 16
 """Files that a start may get besides its streams."""
+RARE_COLLECTIONS = (10_000, 20, 10)
+"""Thresholds of the garbage collector, in test processes and launchers. With Python's own, it takes a
+tenth of their processor time."""
+_SPAWNED = "--multiprocessing-fork"
+"""Last word of the command of a process of `multiprocessing`."""
 _signature = inspect.signature(subprocess.Popen._execute_child)
+_spawn_cold = multiprocessing.util.spawnv_passfds
 
 
 class Popen(subprocess.Popen):
@@ -162,6 +171,46 @@ def run(
     return done
 
 
+class SpawnedPopen(multiprocessing.popen_spawn_posix.Popen):
+    """A process of `multiprocessing`'s start method ``spawn``, from the launcher."""
+
+    def poll(self, flag: int = os.WNOHANG) -> int | None:
+        process = _spawned.get(self.pid)
+        if process is None:
+            return super().poll(flag)
+        if self.returncode is None:
+            if flag == os.WNOHANG:
+                process.poll()
+            else:
+                process.wait()
+            if process.returncode is not None:
+                self.returncode = process.returncode
+                del _spawned[self.pid]
+        return self.returncode
+
+
+_spawned: dict[int, Popen] = {}
+"""Running processes of `multiprocessing` from the launcher."""
+
+
+def _spawn(path: bytes, words: list[str], files: Sequence[int]) -> int:
+    """Starts Python as `multiprocessing` does; returns the process ID."""
+    if _SPAWNED not in words:
+        return _spawn_cold(path, words, files)
+    process = Popen([os.fsdecode(path), *words[1:]], pass_fds=sorted(files))
+    _spawned[process.pid] = process
+    return process.pid
+
+
+def replace_starts() -> None:
+    """Starts bridge processes and those of `multiprocessing` from the launcher."""
+    from cartwheel.bridges.apart import process
+
+    vars(process)["Popen"] = Popen
+    vars(multiprocessing.util)["spawnv_passfds"] = _spawn
+    vars(multiprocessing.popen_spawn_posix)["Popen"] = SpawnedPopen
+
+
 def shell(text: str) -> list[str]:
     """A shell's command, without the shell if it only starts the program."""
     if not text.startswith("cartwheel ") or re.search(r"[|&;<>()$`\\*?\[\]{}~#=%!\n]", text):
@@ -214,7 +263,7 @@ def _request(start: Mapping[str, Any]) -> tuple[_Launcher, bytes] | None:
         "environment": environment,
         "session": bool(start["start_new_session"]),
         "files": start["pass_fds"],
-        "name": BRIDGE.format(os.getpid()) if start["pass_fds"] else "",
+        "name": BRIDGE.format(os.getpid()) if start["pass_fds"] and _SPAWNED not in words else "",
     }
     data = json.dumps(request).encode()
     return (launcher, data) if len(data) <= _LONGEST else None
@@ -464,14 +513,13 @@ def _main() -> Callable[[], None]:
         with contextlib.suppress(ImportError):  # It needs a package that is not installed.
             importlib.import_module(name)
     if sys.executable != ROS1_PYTHON:
-        from cartwheel.bridges.apart import process
-
-        vars(process)["Popen"] = Popen
+        replace_starts()
     global _listening
     _listening = f"\0cartwheel-tests-{os.getpid()}"
     gc.collect()
     # Otherwise a collection in a fork copies all pages.
     gc.freeze()
+    gc.set_threshold(*RARE_COLLECTIONS)
     gc.enable()
     return _serve(socket.socket(fileno=int(sys.argv[1])))
 
