@@ -79,8 +79,8 @@ _LONGEST = 200_000
 _MOST_FILES = 16
 """Files that a start may get besides its streams."""
 RARE_COLLECTIONS = (10_000, 20, 10)
-"""Thresholds of the garbage collector, in test processes and launchers. With Python's own, it takes a
-tenth of their processor time."""
+"""Thresholds of the garbage collector in test processes and launchers. Python's own take a
+tenth of the processor time."""
 _SPAWNED = "--multiprocessing-fork"
 """Last word of the command of a process of `multiprocessing`."""
 _signature = inspect.signature(subprocess.Popen._execute_child)

@@ -6,7 +6,7 @@ import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from xml.sax.saxutils import escape, quoteattr
+from html import escape
 
 from cartwheel.description.model import Element, PluginTag
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -113,7 +113,7 @@ def substitute(tag: PluginTag) -> Substitute | None:
             return Substitute(
                 filename=filename,
                 purpose=purpose,
-                text=f"<plugin name={quoteattr(tag.name[:_LONGEST])} "
+                text=f'<plugin name="{escape(tag.name[:_LONGEST])}" '
                 f'filename="{filename}">{inner}</plugin>',
                 sensor_type=plugin.sensor_type if plugin.for_sensor else "",
             )
@@ -159,7 +159,7 @@ def _translated(
 
 
 def _written(tag: str, value: str) -> str:
-    return f"<{tag}>{escape(value) if len(value) <= _LONGEST else _BLANK}</{tag}>"
+    return f"<{tag}>{escape(value, quote=False) if len(value) <= _LONGEST else _BLANK}</{tag}>"
 
 
 def _words(tag: str) -> frozenset[str]:
