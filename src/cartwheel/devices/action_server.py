@@ -9,8 +9,9 @@ from cartwheel.component import Component
 from cartwheel.devices.periodic import Periodic
 from cartwheel.graph import Action, ActionTopics, Goal
 from cartwheel.graph.actionlib import STATUS_RATE
-from cartwheel.messages import store, zero
+from cartwheel.messages import zero
 from cartwheel.messages.limits import unfit
+from cartwheel.messages.store import exists
 from cartwheel.simulation.limits import STRONGEST
 
 
@@ -57,7 +58,7 @@ class ActionServer:
         component.keep(self._action)
         part.actions.add(self._action.name)
         self._topics: ActionTopics | None = None
-        if f"control_msgs/msg/{kind}Goal" in store().types:
+        if exists(f"control_msgs/msg/{kind}Goal"):
             self._topics = ActionTopics(component.graph, self._action)
             component.keep(self._topics)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cartwheel.messages.store import TWIN, is_bundled, message_class, store
+from cartwheel.messages.store import TWIN, is_bundled, message_class, type_names
 
 _KINDS = ("msg", "srv", "action")
 
@@ -45,5 +45,5 @@ def _type(package: str, name: str) -> str | None:
 
 def names(package: str) -> list[str]:
     """Names of the built-in messages of a package, and of parts of its services and actions."""
-    full = sorted(name for name in store().types if name.startswith(f"{package}/"))
+    full = sorted(name for name in type_names() if name.startswith(f"{package}/"))
     return [name.split("/")[2] for name in full if is_bundled(name)]

@@ -11,12 +11,13 @@ from rosbags.interfaces import Nodetype
 from cartwheel.bridges.recording.reading import RecordedTopic
 from cartwheel.codes.recording import RECORDED_TYPE_UNUSABLE
 from cartwheel.errors import CartwheelError, RecordingError, Value
-from cartwheel.messages import decode_cdr, store
+from cartwheel.messages import decode_cdr
 from cartwheel.messages.classes import FILLER
 from cartwheel.messages.learnt import learnt, recorded, register
 from cartwheel.messages.ros1 import decode_ros1, ros1_type
 from cartwheel.messages.ros1.types import ros1_store
 from cartwheel.messages.ros2.types import twin_name
+from cartwheel.messages.store import exists, fields_of
 
 _LONGEST = 1 << 20
 """Maximum length in characters of a definition with all nested types."""
@@ -50,7 +51,7 @@ def decoder(topic: RecordedTopic) -> Decode:
                 raise _other_fields(topic, kind)
             return lambda data: decode_ros1(data, kind)
         kind = _in_graph(kind, topic)
-        if kind not in store().types:
+        if not exists(kind):
             message = f"has the type {kind}, which is unknown and not defined in the recording"
             raise _unusable(topic, "unknown", f"{topic.name} {message}", type=kind)
     except (RecordingError, MemoryError):
@@ -72,15 +73,14 @@ def _learn(topic: RecordedTopic) -> None:
         _check_names(topic, name, fields)
         _check_arrays(topic, name, fields)
     ordered = _nested_first(topic, types)
-    ours = store()
-    _check_complete(topic, types, ours.fielddefs)
+    _check_complete(topic, types)
     if topic.encoding == "cdr":
         for name, (_, fields) in types.items():
-            if twin_name(name) in ours.fielddefs:
+            if exists(twin_name(name)):
                 continue
-            if name in ours.fielddefs and _plain(_known_fields(name)) != _plain(fields):
+            if exists(name) and _plain(_known_fields(name)) != _plain(fields):
                 raise _other_fields(topic, name)
-    new = [name for name in ordered if name not in ours.fielddefs]
+    new = [name for name in ordered if not exists(name)]
     if topic.encoding == "ros1":
         known = ros1_store().fielddefs
         known.update({name: fields for name, fields in types.items() if name not in known})
@@ -90,7 +90,7 @@ def _learn(topic: RecordedTopic) -> None:
 def _known_fields(name: str) -> Any:
     """The fields of a known type, with the types as in its definition."""
     known = learnt(name)
-    return store().fielddefs[name][1] if known is None else known.fielddefs(hashed=True)[1]
+    return fields_of(name) if known is None else known.fielddefs(hashed=True)[1]
 
 
 def _nested_first(topic: RecordedTopic, types: dict[str, Any]) -> list[str]:
@@ -118,13 +118,13 @@ def _nested_first(topic: RecordedTopic, types: dict[str, Any]) -> list[str]:
 
 def _in_graph(kind: str, topic: RecordedTopic) -> str:
     """The graph's name of a ROS 2 type whose name may have a different meaning in ROS 1."""
-    known, twin = store().fielddefs, twin_name(kind)
-    if twin not in known:
+    twin = twin_name(kind)
+    if not exists(twin):
         return kind
     stated = _parsed(topic).get(kind) if topic.definition else None
-    if stated is None or _plain(stated[1]) == _plain(known[twin][1]):
+    if stated is None or _plain(stated[1]) == _plain(fields_of(twin)):
         return twin
-    if kind in known and _plain(stated[1]) == _plain(known[kind][1]):
+    if exists(kind) and _plain(stated[1]) == _plain(fields_of(kind)):
         return kind
     raise _other_fields(topic, kind)
 
@@ -180,13 +180,16 @@ def _check_arrays(topic: RecordedTopic, name: str, fields: Any) -> None:
             raise _unusable(topic, "size", f"{topic.name}: {message}", type=name, field=field)
 
 
-def _check_complete(topic: RecordedTopic, types: dict[str, Any], known: Any) -> None:
+def _check_complete(topic: RecordedTopic, types: dict[str, Any]) -> None:
     """Rejects fields with undefined types, before the other types are registered."""
     for name, (_, fields) in types.items():
         for _, used in _elements(fields):
-            if used not in types and used not in known:
+            if used in types:
+                continue
+            if not exists(used):
                 message = f"{name} has a field of type {used}, which is not defined"
                 raise _unusable(topic, "unknown", f"{topic.name}: {message}", type=used)
+            fields_of(used)  # A type is registered after those of its fields.
 
 
 def _elements(fields: Any) -> Iterator[tuple[int, Any]]:

@@ -20,8 +20,8 @@ from cartwheel.messages.store import (
     message_class,
     service_classes,
     service_name,
-    store,
     type_name,
+    type_names,
 )
 
 _ROS1_ONLY = frozenset(
@@ -92,7 +92,7 @@ def ros2_type(name: str) -> Ros2Type:
     """
     full = type_name(name)
     if not _exists(full) or is_ros1_only(full):
-        known = store().fielddefs
+        known = type_names()
         raise UnknownNameError("ROS 2 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
     real = ros2_name(full)
     return Ros2Type(name=real, dds=dds_name(real), hash=rihs01(_hashed_types(), real))
@@ -148,7 +148,7 @@ def fields_of(name: str) -> list[tuple[str, Any]]:
         twin = twin_name(service)
         ros2_service(twin if _exists(f"{twin}_Request") else service)
     if name not in known:
-        names = [ros2_name(each) for each in store().fielddefs if not is_ros1_only(each)]
+        names = [ros2_name(each) for each in type_names() if not is_ros1_only(each)]
         raise UnknownNameError("ROS 2 type", name, names, code=MESSAGE_TYPE_UNKNOWN)
     from rosbags.interfaces import Nodetype
 
