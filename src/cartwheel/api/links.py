@@ -70,9 +70,7 @@ class Link(LinkProperties):
         """
         with self._world.lock:
             truth = self._world.session.simulation.truth
-            handle = truth.link(self.model, self.name)
-            truth.locate()
-            return Twist(*handle.motion(local=False))
+            return Twist(*truth.link_velocity(self.model, self.name))
 
     @property
     def acceleration(self) -> Acceleration:

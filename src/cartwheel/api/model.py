@@ -77,9 +77,14 @@ class Model(MessagingModel):
         Setting it gives the whole model this velocity, as a rigid body; its joints stop. To give
         joints a velocity, set `joints.velocities` afterwards.
 
+        A model that is fixed to the world keeps the velocity, whatever it meets, until the velocity
+        or the pose is set again. It carries by friction what lies on it. `World.reset` ends the
+        motion and returns the model to its first pose.
+
         Raises:
             UnknownNameError: The model does not exist any more.
-            SimulationError: The model is fixed to the world, or the world is closed.
+            SimulationError: The model is fixed to the world and joints depend on its links, such as
+                those of an arm, or the world is closed.
             CartwheelError: A number is not finite or too large.
         """
         with self._world.lock:

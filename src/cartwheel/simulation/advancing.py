@@ -59,6 +59,7 @@ class Advancing(Models):
         engine, forces, faults = self.engine, self.forces, self.faults
         population = self._population
         separation, watch = population.separation, population.watch
+        motions = population.motions
         commands, running, alarms = self.commands, RunState.RUNNING, self.alarms
         empty = commands.empty
         self.owner = threading.get_ident()
@@ -114,13 +115,15 @@ class Advancing(Models):
             if due < end and population.schedule.may_skip and empty():
                 due = population.schedule.skip(due, end)
             count = (due if due < end else end) - engine.step
-            if separation.roots or faults.pending is not None:
+            if separation.roots or motions.moving or faults.pending is not None:
                 count = 1
             if self.steps_allowed is not None:
                 count = min(count, self.steps_allowed)
                 self.steps_allowed -= count
             yield count, forwarded
             left -= count
+            if motions.moving:
+                motions.advance()
             if separation.roots:
                 separation.limit(engine.model, engine.data)
             if engine.step >= watch.due:

@@ -30,6 +30,8 @@ def physics_of_cartwheel(engine: Engine) -> Iterator[str]:
     """Names of what Python code computes within the steps, which another engine cannot call."""
     if engine.stepping.bounces is not None:
         yield "restitution"
+    if engine.stepping.moved is not None:
+        yield "models that are fixed to the world and move at a velocity"
     if engine.directions is not None and engine.directions.active:
         yield "friction that depends on the direction"
     if engine.model.flg_surfacevel:

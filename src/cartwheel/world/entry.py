@@ -8,6 +8,7 @@ from typing import Literal
 
 from cartwheel.description.model import CameraIntrinsics, Mimic, RobotDescription
 from cartwheel.geometry import Pose, Vec3
+from cartwheel.world.motion import Motion
 
 ROTOR = "rotor"
 """Name of the rotor of a driven joint: a body, a joint and a tendon."""
@@ -95,7 +96,9 @@ class ModelEntry:
     name: str
     description: RobotDescription
     pose: Pose
-    """Pose of the model's frame at spawn and after a reset."""
+    """Pose of the model's frame at spawn and after a reset, or now if it is fixed to the world."""
+    motion: Motion | None = None
+    """The motion of a model that is fixed to the world; None while it stands."""
     motors: dict[str, Motor] = field(default_factory=dict)
     """By joint."""
     mimics: dict[str, Mimic] = field(default_factory=dict)

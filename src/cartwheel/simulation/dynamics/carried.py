@@ -80,19 +80,30 @@ class Carried:
             return
         indices, one, two, rows = indices[used], one[used], two[used], rows[used]
         points = contacts.pos[indices]
-        between = self._bias(model, data, two, points) - self._bias(model, data, one, points)
+        between = self.bias(model, data, two, points) - self.bias(model, data, one, points)
         along = np.einsum("ijk,ik->ij", contacts.frame[indices].reshape(-1, 3, 3)[:, 1:], between)
+        self.bend(model, data, rows - 1, along)
+        mujoco.mj_fwdConstraint(model, data)
+
+    def bend(self, model: Any, data: Any, first: Ints, along: Array) -> None:
+        """Adds J̇ q̇ to contacts with friction.
+
+        Args:
+            model: The MuJoCo model.
+            data: The MuJoCo data after a forward pass.
+            first: The first row of each contact.
+            along: Along its two tangents, m/s², shape (n, 2).
+        """
         step = model.opt.timestep
         # A body moves along a straight line in a step, with its velocity at the end of the step.
         # A part of the term brings its path onto the arc; see docs/physics.md.
-        damped = data.efc_KBIP[rows, 1:2] * step
-        along *= 1 - 0.5 * damped / (1 + damped)
+        damped = data.efc_KBIP[first + 1, 1:2] * step
+        along = along * (1 - 0.5 * damped / (1 + damped))
         aref = data.efc_aref
-        aref[rows] -= along[:, 0]
-        aref[rows + 1] -= along[:, 1]
-        mujoco.mj_fwdConstraint(model, data)
+        aref[first + 1] -= along[:, 0]
+        aref[first + 2] -= along[:, 1]
 
-    def _bias(self, model: Any, data: Any, bodies: Ints, points: Array) -> Array:
+    def bias(self, model: Any, data: Any, bodies: Ints, points: Array) -> Array:
         """J̇ q̇ of points on bodies, m/s², shape (n, 3): what does not depend on q̈."""
         joints = self._joints[bodies]
         spin, arm = data.cvel[bodies, :3], points - data.xanchor[joints]

@@ -42,12 +42,13 @@ class Bounces:
             self._restitution[geom] = each.restitution
             self._threshold[geom] = each.threshold
 
-    def apply(self, model: Any, data: Any) -> bool:
+    def apply(self, model: Any, data: Any, *, moved: bool = False) -> bool:
         """Applies restitution to the contacts in the current state.
 
         Args:
             model: The MuJoCo model.
             data: The MuJoCo data after a forward pass; positions and velocities may change.
+            moved: Whether models that are fixed to the world move; see `Moved`.
 
         Returns:
             Whether anything changed; the forward pass must then be repeated.
@@ -66,6 +67,11 @@ class Bounces:
         response = np.zeros_like(jacobian)
         mujoco.mj_solveM(model, data, response, jacobian)
         speeds = jacobian @ data.qvel
+        if moved:
+            for axis in range(3):
+                known = data.contact.dim[meeting] > (2 if axis else 0)
+                rows = first[meeting[known]] + axis
+                speeds[axis::3][known] = data.efc_vel[rows]
         wanted = np.zeros_like(speeds)
         wanted[::3] = -restitution[meeting] * speeds[::3]
         friction = data.contact.friction[meeting][:, :2]

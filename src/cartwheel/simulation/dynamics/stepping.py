@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 
 from cartwheel.simulation.dynamics.carried import Carried
+from cartwheel.simulation.dynamics.moved import Moved
 from cartwheel.simulation.dynamics.restitution import Bounces
 from cartwheel.simulation.limits import too_many_contacts
 from cartwheel.world.contact import Bounce
@@ -28,6 +29,8 @@ class Stepping:
         self.bounces = Bounces(model, surfaces) if len(surfaces) > 1 else None
         carried = Carried(model)
         self.carried = carried if carried.possible else None
+        self.moved: Moved | None = None
+        """Models that are fixed to the world and move at a velocity."""
 
     def forward(self, data: Any, *, carries: bool) -> None:
         """Computes poses, contacts and forces for the current state, which does not change.
@@ -43,6 +46,8 @@ class Stepping:
             mujoco.mj_forward(self._model, data)
             if carries and self.carried is not None:
                 self.carried.apply(self._model, data)
+            if self.moved is not None:
+                self.moved.apply(self._model, data)
         except mujoco.FatalError as error:
             raise too_many_contacts(data.ncon, error) from None
 
@@ -59,11 +64,13 @@ class Stepping:
             SimulationError: There is not enough memory for the contacts.
         """
         model, data = self._model, self._data
-        if self.bounces is not None or carries:
+        if self.bounces is not None or self.moved is not None or carries:
             for each in range(count):
                 if each or not forwarded:
                     self.forward(data, carries=carries)
-                if self.bounces is not None and self.bounces.apply(model, data):
+                if self.bounces is not None and self.bounces.apply(
+                    model, data, moved=self.moved is not None
+                ):
                     self.forward(data, carries=carries)
                 self._integrate()
             return

@@ -23,6 +23,7 @@ from cartwheel.simulation.models.population import Population
 from cartwheel.simulation.models.shape_queries import ShapeQueries
 from cartwheel.simulation.models.touches import Place, Touch, Touches
 from cartwheel.world.entry import CameraMount
+from cartwheel.world.motion import Motion
 
 _STILL: Vec3 = (0.0, 0.0, 0.0)
 
@@ -111,12 +112,31 @@ class GroundTruth:
             UnknownNameError: The model does not exist.
         """
         entry = self._population.resident(model).entry
+        if entry.motion is not None:
+            return entry.motion.linear, entry.motion.angular
         handle = self.link(model, entry.description.canonical_link)
         self.locate()
         return handle.motion_at(self._engine.model_pose(entry).position)
 
+    def link_velocity(self, model: str, link: str) -> tuple[Vec3, Vec3]:
+        """Linear and angular velocity of a link's frame, m/s and rad/s, in world axes.
+
+        Raises:
+            UnknownNameError: The model or link does not exist.
+        """
+        handle = self.link(model, link)
+        self.locate()
+        entry = self._population.resident(model).entry
+        if entry.motion is None:
+            return handle.motion(local=False)
+        arm = np.subtract(handle.place()[0], entry.pose.position)
+        x, y, z = (entry.motion.linear + cross(np.array(entry.motion.angular), arm)).tolist()
+        return (x, y, z), entry.motion.angular
+
     def set_velocity(self, model: str, linear: Vec3, angular: Vec3) -> None:
         """Sets the velocity of a model as a rigid body; its joints stop.
+
+        A model that is fixed to the world keeps the velocity until it is set again.
 
         Args:
             model: Model name.
@@ -125,13 +145,24 @@ class GroundTruth:
 
         Raises:
             UnknownNameError: The model does not exist.
-            SimulationError: The model is fixed to the world.
+            SimulationError: The model is fixed to the world, and joints depend on it.
             CartwheelError: A number is not finite or too large.
         """
         entry = self._population.resident(model).entry
         numbers((*linear, *angular), f'the velocity of model "{model}"')
         if self._engine.free_joint(model, entry.description.canonical_link) < 0:
-            raise _fixed(model)
+            motions = self._population.motions
+            if not motions.can_move(entry):
+                error = _fixed(model)
+                error.hint = "A model moves at a velocity if no joint depends on its links."
+                raise error
+            self._engine.commanded += 1
+            moves = any((*linear, *angular))
+            motion = Motion(
+                pose=entry.pose, time_ns=self._engine.time_ns, linear=linear, angular=angular
+            )
+            motions.set(entry, motion if moves else None)
+            return
         self._engine.commanded += 1
         self.locate()
         push_off(self._engine, entry, linear, angular)

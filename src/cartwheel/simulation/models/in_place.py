@@ -6,7 +6,7 @@ array that the physics uses. ``tests/simulation/test_in_place.py`` compares both
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,9 +14,9 @@ import mujoco
 import numpy as np
 
 from cartwheel.description.model import Joint, Link, RobotDescription, Surface
-from cartwheel.geometry import to_wxyz
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.models.differences import differ_in_place
+from cartwheel.simulation.models.placement import put_fixed
 from cartwheel.world import (
     Build,
     Principal,
@@ -321,20 +321,7 @@ class InPlace:
         if any(name.startswith(prefix) for each in joined for name in (each.parent, each.child)):
             return False
         model = self._engine.model
-        moved = []
-        for link in _roots(entry.description):
-            body = self._engine.body_id(entry.name, link.name)
-            pose = entry.pose @ link.pose
-            turn = np.array(to_wxyz(pose.orientation))
-            mujoco.mju_normalize4(turn)
-            model.body_pos[body], model.body_quat[body] = pose.position, turn
-            free = self._engine.free_joint(entry.name, link.name)
-            if free >= 0:
-                # Where it is after a reset.
-                start = int(model.jnt_qposadr[free])
-                model.qpos0[start : start + 7] = (*pose.position, *turn)
-                model.qpos_spring[start : start + 7] = model.qpos0[start : start + 7]
-            moved.append(body)
+        moved = put_fixed(self._engine, entry)
         rooted = np.isin(model.body_rootid, moved)
         if model.neq or bool(model.body_dofnum[rooted].any()):
             self._settle(weighs=True)
@@ -352,22 +339,16 @@ class InPlace:
         mujoco.mj_camlight(model, data)
         model.opt.enableflags |= sleeps
 
-    def wake(self) -> None:
-        """Wakes all bodies, because what keeps them at rest may have changed."""
+    def wake(self, *, changes_model: bool = True) -> None:
+        """Wakes all bodies, because what keeps them at rest may have changed.
+
+        Args:
+            changes_model: Whether more than the places of models has changed.
+        """
         # The engine wakes trees that are marked as both awake and asleep.
         self._engine.data.tree_awake[:] = 1
-        self._engine.revisions += 1
+        self._engine.revisions += changes_model
         self._engine.note_change()
-
-
-def _roots(description: RobotDescription) -> Iterator[Link]:
-    """The links without a parent link."""
-    inbound: dict[str, Joint] = {}
-    for joint in description.joints:
-        inbound.setdefault(joint.child, joint)
-    for link in description.links:
-        if link.name not in inbound or inbound[link.name].parent == "world":
-            yield link
 
 
 def _geoms(pair: Pair) -> tuple[str, str]:

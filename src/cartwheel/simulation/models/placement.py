@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
+import mujoco
 import numpy as np
 
-from cartwheel.description.model import RobotDescription
-from cartwheel.geometry import Pose, Vec3, cross
+from cartwheel.description.model import Joint, Link, RobotDescription
+from cartwheel.geometry import Pose, Vec3, cross, to_wxyz
 from cartwheel.simulation.engine import Engine
 from cartwheel.world.entry import ModelEntry
 
@@ -35,6 +36,37 @@ def place_model(engine: Engine, entry: ModelEntry, pose: Pose, linear: Vec3, ang
     for link, place in places.items():
         carried = _carried(place, pose, linear, angular)
         engine.place(engine.free_joint(entry.name, link), place, carried, angular)
+
+
+def put_fixed(engine: Engine, entry: ModelEntry) -> list[int]:
+    """Writes a pose to the model, without the places in the data that depend on it.
+
+    Args:
+        engine: The engine with the model.
+        entry: A model that is fixed to the world, with its new pose.
+
+    Returns:
+        The bodies of its links without a parent link.
+    """
+    model = engine.model
+    bodies = fixed_roots(engine, entry)
+    for link, body in zip(_roots(entry.description), bodies, strict=True):
+        pose = entry.pose @ link.pose
+        turn = np.array(to_wxyz(pose.orientation))
+        mujoco.mju_normalize4(turn)
+        model.body_pos[body], model.body_quat[body] = pose.position, turn
+        free = engine.free_joint(entry.name, link.name)
+        if free >= 0:
+            # Where it is after a reset.
+            start = int(model.jnt_qposadr[free])
+            model.qpos0[start : start + 7] = (*pose.position, *turn)
+            model.qpos_spring[start : start + 7] = model.qpos0[start : start + 7]
+    return bodies
+
+
+def fixed_roots(engine: Engine, entry: ModelEntry) -> list[int]:
+    """The bodies of a model's links without a parent link."""
+    return [engine.body_id(entry.name, link.name) for link in _roots(entry.description)]
 
 
 def push_off(engine: Engine, entry: ModelEntry, linear: Vec3, angular: Vec3) -> None:
@@ -88,3 +120,13 @@ def _stop(engine: Engine, entry: ModelEntry) -> None:
         start, count = engine.model.body_dofadr[body], engine.model.body_dofnum[body]
         if count:
             engine.data.qvel[start : start + count] = 0.0
+
+
+def _roots(description: RobotDescription) -> Iterator[Link]:
+    """The links without a parent link."""
+    inbound: dict[str, Joint] = {}
+    for joint in description.joints:
+        inbound.setdefault(joint.child, joint)
+    for link in description.links:
+        if link.name not in inbound or inbound[link.name].parent == "world":
+            yield link

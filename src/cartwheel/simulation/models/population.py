@@ -20,6 +20,7 @@ from cartwheel.simulation.handles import JointHandle
 from cartwheel.simulation.models.compilations import Compiler
 from cartwheel.simulation.models.forces import Forces
 from cartwheel.simulation.models.in_place import InPlace
+from cartwheel.simulation.models.motions import Motions
 from cartwheel.simulation.models.placement import with_mimics
 from cartwheel.simulation.models.resident import Attach, Resident, unknown_model, world_resident
 from cartwheel.simulation.models.rotors import Rotors
@@ -67,6 +68,7 @@ class Population:
         self._added: tuple[Added, ...] = ()
         """What was added to the descriptions of the compiled models."""
         self._in_place = InPlace(engine)
+        self.motions = Motions(engine, self._in_place)
 
     def start(self, attach_world: Attach, descriptions: Sequence[RobotDescription]) -> None:
         """Creates the world's plugins and spawns its models, with one compilation.
@@ -215,6 +217,7 @@ class Population:
         self.residents = residents
         engine.entries = entries
         self._in_place.bind(built, entries)
+        self.motions.gather()
         self.watch.bind(engine.model, engine.data)
         self._forces.bind()
         for resident in self.everyone():
@@ -265,6 +268,7 @@ class Population:
         resident = self.resident(name)
         entry, before = resident.entry, resident.entry.pose
         entry.pose = pose
+        self.motions.set(entry, None)
         if self._in_place.place(entry, self._engine.world.joints):
             self._refresh_handles(resident)
             self._engine.refresh()
@@ -318,7 +322,7 @@ class Population:
     def return_to_start(self) -> None:
         """Moves models that are fixed to the world back to their spawn poses."""
         for name, resident in self.residents.items():
-            if resident.entry.pose != resident.start:
+            if resident.entry.pose != resident.start or resident.entry.motion is not None:
                 self.place(name, resident.start)
 
     def rewind_servos(self) -> None:
