@@ -1,12 +1,13 @@
 """Where packages, models and files are looked for, and what is told when they are not there."""
 
 import tempfile
+import time
 
 import pytest
 from tests.coded import named, raises
 
 from cartwheel.codes import files
-from cartwheel.description.files import package_folders
+from cartwheel.description.files import package_folders, package_search
 from cartwheel.description.files.package_folders import share
 from cartwheel.description.files.packages import Packages
 from cartwheel.errors import DescriptionError, Origin
@@ -282,6 +283,34 @@ def test_large_trees_are_not_walked(tmp_path, monkeypatch):
         packages(robot(own)).find("nowhere")
     walked = [each for each in looked if each.parent == tmp_path / "ws"]
     assert 0 < len(walked) <= package_folders.MAX_ENTRIES
+
+
+def test_folders_are_looked_at_once_for_many_names(tmp_path, monkeypatch):
+    own = package(tmp_path / "ws" / "src" / "a")
+    for number in range(40):
+        package(tmp_path / "ws" / "src" / "deep" / "er" / f"p{number}")
+    looked = []
+    name_of = package_folders.package_name
+
+    def counted(folder):
+        looked.extend([folder] if folder.parent.name == "er" else [])
+        return name_of(folder)
+
+    monkeypatch.setattr(package_folders, "package_name", counted)
+    search = packages(robot(own))
+    assert search.all_named("none") == search.all_named("neither") == []
+    assert search.find("p39") == tmp_path / "ws" / "src" / "deep" / "er" / "p39"
+    assert len(looked) == len(set(looked)) == 40
+
+
+def test_a_package_that_is_made_later_is_found(tmp_path, monkeypatch):
+    own = package(tmp_path / "ws" / "src" / "a")
+    search = packages(robot(own))
+    assert search.all_named("none") == []
+    made = package(tmp_path / "ws" / "src" / "deep" / "er" / "b")
+    now = time.monotonic()
+    monkeypatch.setattr(package_search.time, "monotonic", lambda: now + 2)
+    assert search.find("b") == made
 
 
 @pytest.mark.parametrize(

@@ -77,18 +77,47 @@ def package_above(folder: Path) -> Path | None:
     return next((each for each in near if package_name(each) is not None), None)
 
 
-def package_in(root: Path, name: str) -> Path | None:
-    """The first package with this name in the workspace at `root`."""
-    return next(packages_in(root, name), None)
+class PackagesByName:
+    """Packages by name. Each folder is looked at once, and only if its package may be meant.
+
+    Args:
+        packages: Names and folders of packages, nearest first.
+    """
+
+    def __init__(self, packages: Iterator[tuple[str, Path]]) -> None:
+        self._left = packages
+        self._folders: dict[str, list[Path]] = {}
+
+    def first(self, name: str) -> Path | None:
+        """The nearest package with a name; None if there is none."""
+        while name not in self._folders and self._look():
+            pass
+        return next(iter(self._folders.get(name, ())), None)
+
+    def all(self, name: str) -> list[Path]:
+        """All packages with a name, nearest first."""
+        while self._look():
+            pass
+        return self._folders.get(name, [])
+
+    def _look(self) -> bool:
+        """Looks at the next package; returns whether there was one."""
+        for name, folder in self._left:
+            self._folders.setdefault(name, []).append(folder)
+            return True
+        return False
 
 
-def packages_in(root: Path, name: str) -> Iterator[Path]:
-    """All packages with this name in the workspace at `root`, nearest first."""
-    return (folder for folder in chain((root,), _nested(root)) if package_name(folder) == name)
+def packages_in(root: Path) -> Iterator[tuple[str, Path]]:
+    """Names and folders of the packages of the workspace at `root`, nearest first."""
+    for folder in chain((root,), _nested(root)):
+        name = package_name(folder)
+        if name is not None:
+            yield name, folder
 
 
-def package_below(root: Path, name: str) -> Path | None:
-    """The package with this name at any depth; packages do not contain other packages."""
+def packages_below(root: Path) -> Iterator[tuple[str, Path]]:
+    """Those at any depth below `root`; packages do not contain other packages."""
     level = [root]
     looked = 0
     while level and looked < MAX_CRAWLED:
@@ -96,13 +125,12 @@ def package_below(root: Path, name: str) -> Path | None:
         for folder in level:
             for each in folders_in(folder):
                 looked += 1
-                declared = package_name(each)
-                if declared == name:
-                    return each
-                if declared is None:
+                name = package_name(each)
+                if name is None:
                     below.append(each)
+                else:
+                    yield name, each
         level = below
-    return None
 
 
 def _nested(root: Path) -> Iterator[Path]:
@@ -119,14 +147,6 @@ def _nested(root: Path) -> Iterator[Path]:
                 if package_name(inner) is None:
                     yield from folders_in(inner)
                     yield from folders_in(inner / "share")
-
-
-def names_in(root: Path) -> Iterator[str]:
-    """The names of the packages in the workspace at `root`."""
-    for folder in (root, *_nested(root)):
-        found = package_name(folder)
-        if found is not None:
-            yield found
 
 
 def belongs_to(path: Path, home: Path) -> bool:

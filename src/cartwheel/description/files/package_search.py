@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -11,13 +12,12 @@ from cartwheel.description.elements import numbers
 from cartwheel.description.files import fuel
 from cartwheel.description.files.missing_packages import Advice, how_to_install
 from cartwheel.description.files.package_folders import (
+    PackagesByName,
     around,
     folders_in,
     is_dir,
-    names_in,
-    package_below,
-    package_in,
     package_name,
+    packages_below,
     packages_in,
     share,
     stand_ins,
@@ -31,6 +31,10 @@ _MODELS = ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PAT
 
 _OF_REPOSITORIES = (".git", ".gitignore", ".gitmodules", ".gitattributes", ".github")
 """Entries of the root of a repository. An archive that was downloaded contains no ``.git``."""
+
+
+_FRESH = 1.0
+"""Time for which the packages in a folder are remembered, s: until a description has been read."""
 
 
 class PackageSearch:
@@ -49,6 +53,7 @@ class PackageSearch:
         self.package_path = tuple(package_path)
         self.environment = environment
         self._packages: dict[str, Path | None] = {}
+        self._searched: dict[tuple[Path, bool], tuple[float, PackagesByName]] = {}
         self._package_advice: dict[str, Advice] = {}
         self._model_advice: dict[str, Advice] = {}
         """By model name: a world may refer to a model many times."""
@@ -72,7 +77,7 @@ class PackageSearch:
         found = [first]
         for roots in (self.package_path, self._ancestors(), self.environment_roots()):
             for root in roots:
-                found += packages_in(root, name)
+                found += self._in(root).all(name)
         return list(dict.fromkeys(found))
 
     def model(self, name: str) -> Path | None:
@@ -143,11 +148,11 @@ class PackageSearch:
             if index == 1 and (own := self._own_folder(name)) is not None:
                 return own
             for root in roots():
-                found = package_in(root, name)
+                found = self._in(root).first(name)
                 if found is not None:
                     return found
         for root in self._crawled():
-            found = package_below(root, name)
+            found = self._in(root, crawled=True).first(name)
             if found is not None:
                 return found
         # A folder with the right name but without package.xml may be a description copied out of
@@ -157,7 +162,16 @@ class PackageSearch:
                 for bare in (root, root / name):
                     if bare.name == name and is_dir(bare):
                         return bare
-        return package_in(stand_ins(), name)
+        return self._in(stand_ins()).first(name)
+
+    def _in(self, root: Path, *, crawled: bool = False) -> PackagesByName:
+        """The packages of the workspace at `root`, or all below it if it is crawled."""
+        now = time.monotonic()
+        began, found = self._searched.get((root, crawled), (-_FRESH, None))
+        if found is None or now > began + _FRESH:
+            found = PackagesByName(packages_below(root) if crawled else packages_in(root))
+            self._searched[root, crawled] = (now, found)
+        return found
 
     def _own_folder(self, name: str) -> Path | None:
         """The folder with this name that contains the file but no manifest, if the file is in no
@@ -167,7 +181,7 @@ class PackageSearch:
             if package_name(folder) is not None:
                 return None
             if folder.name == name:
-                return package_below(folder, name) or folder
+                return self._in(folder, crawled=True).first(name) or folder
         return None
 
     def _crawled(self) -> Iterator[Path]:
@@ -186,7 +200,7 @@ class PackageSearch:
 
     def _advise_on_package(self, name: str) -> Advice:
         roots = [*self.package_path, *self._ancestors(), *self.environment_roots()]
-        known = {found for root in (*roots, share() / "robots") for found in names_in(root)}
+        known = {found for root in (*roots, share() / "robots") for found, _ in packages_in(root)}
         near = numbers.likely(name, known, 0.85)
         hint = f'Did you mean "{near}"? ' if near else ""
         text = (
