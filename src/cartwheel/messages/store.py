@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextvars import ContextVar, Token
 from pathlib import Path
 from typing import Any, Protocol
@@ -19,6 +19,7 @@ from typing import Any, Protocol
 from cartwheel.codes.graph import MESSAGE_TYPE_UNKNOWN
 from cartwheel.errors import UnknownNameError
 from cartwheel.messages.classes import Classes
+from cartwheel.options import PACKAGE_PATH
 
 DEFINITIONS = Path(__file__).parent / "definitions"
 """Contains ``<package>/msg/<Name>.msg`` and ``<package>/srv/<Name>.srv``."""
@@ -243,8 +244,30 @@ def message_class(name: str) -> Any:
     full = type_name(name)
     types = loaded().types
     if full not in types and not _learn(full) and not _find(full):
-        raise UnknownNameError("message type", name, type_names(), code=MESSAGE_TYPE_UNKNOWN)
+        raise unknown_type("message type", name, type_names())
     return types[full]
+
+
+def unknown_type(kind: str, name: str, known: Iterable[str]) -> UnknownNameError:
+    """The error for a type that does not exist, which may be in a package that was not found.
+
+    Args:
+        kind: Such as ``service type``.
+        name: Name of the type, or of a part of it.
+        known: Names of types of this kind.
+    """
+    known = list(known)
+    whole, _, part = name.rpartition("_")
+    if "/action/" in name and part in ("Goal", "Result", "Feedback"):
+        kind, name = "action type", whole
+    error = UnknownNameError(kind, name, known, code=MESSAGE_TYPE_UNKNOWN)
+    package = name.partition("/")[0]
+    if not error.values["meant"] and package not in {each.partition("/")[0] for each in known}:
+        error.hint = (
+            f'If the package "{package}" is in your workspace, source the workspace, or add the '
+            f"folder of the package: {PACKAGE_PATH.given('FOLDER')}."
+        )
+    return error
 
 
 def __getattr__(name: str) -> Any:
@@ -269,5 +292,5 @@ def service_classes(name: str) -> tuple[Any, Any]:
     full = service_name(name)
     if not _learn(f"{full}_Request") and not _find(f"{full}_Request"):
         known = [key.removesuffix("_Request") for key in type_names() if key.endswith("_Request")]
-        raise UnknownNameError("service type", name, known, code=MESSAGE_TYPE_UNKNOWN)
+        raise unknown_type("service type", name, known)
     return message_class(f"{full}_Request"), message_class(f"{full}_Response")
