@@ -26,6 +26,7 @@ from cartwheel.codes.graph import (
     FIELD_UNKNOWN,
     FIELD_VALUE_INVALID,
     SERVICE_UNKNOWN,
+    TOPIC_UNKNOWN,
 )
 from cartwheel.codes.world import (
     NUMBER_OUT_OF_RANGE,
@@ -357,3 +358,18 @@ def test_gazebo_s_services_without_ros(make: Any, rosbots: Path) -> None:
     assert "crate" in world.models
     assert world.call("/gazebo/reset_simulation") is not None
     assert world.time == 0.0
+
+
+def test_a_topic_of_controllers_that_do_not_run_names_the_cause(tmp_path: Path) -> None:
+    """A misspelt topic that exists is more likely meant."""
+    text = robot(beam("a", "world") + transmission("a_joint", "Position"), ROS1)
+    with cw.World("empty") as world:
+        model = spawn(world, tmp_path, text, {})
+        for use in (world.publish, world.topic, world.mailbox, model.topic):
+            with raises(TOPIC_UNKNOWN, UnknownNameError, idle=(model.name,)):
+                use("/cmd_vel")
+        with raises(TOPIC_UNKNOWN, UnknownNameError, idle=(model.name,)):
+            world.subscribe("/cmd_vel", print)
+        with raises(TOPIC_UNKNOWN, UnknownNameError, meant="/clock") as caught:
+            world.publish("/clokc")
+        assert "idle" not in caught.value.values

@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Any, overload
 from cartwheel.api.arguments import refused, several, text
 from cartwheel.api.timing import TimedWorld
 from cartwheel.api.topics import Topic
+from cartwheel.codes.graph import TOPIC_UNKNOWN
+from cartwheel.codes.running import CONTROLLERS_NOT_NAMED
+from cartwheel.errors import UnknownNameError
 from cartwheel.graph import CheckedPublisher, Graph, Mailbox, Subscription, made_message
 from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation.limits import check_size
@@ -49,7 +52,8 @@ class MessagingWorld(TimedWorld):
                 the topic's type, or both a message and fields are given.
         """
         self._check_open()
-        kind = self.graph.topic(text(topic, "topic")).type
+        with self._looking_up():
+            kind = self.graph.topic(text(topic, "topic")).type
         self.graph.publish(topic, kind, made_message(topic, kind, message, fields))
 
     @property
@@ -99,7 +103,8 @@ class MessagingWorld(TimedWorld):
         with self._used():
             found = self._known_topics.get(name)
             if found is None:
-                found = Topic(self, name, full, keep)
+                with self._looking_up():
+                    found = Topic(self, name, full, keep)
                 self._known_topics[name] = self._known_topics[found.name] = found
             elif full is not None and full != found.type:
                 # The graph refuses it, and names both types.
@@ -207,7 +212,8 @@ class MessagingWorld(TimedWorld):
 
         full = self._full_name(topic, type)
         self._describe(topic)
-        return self.graph.subscribe(topic, guarded, type_name=full)
+        with self._looking_up():
+            return self.graph.subscribe(topic, guarded, type_name=full)
 
     @overload
     def advertise(self, topic: str, type: type[M]) -> CheckedPublisher[M]: ...
@@ -274,7 +280,27 @@ class MessagingWorld(TimedWorld):
         check_size(size)
         full = self._full_name(topic, type)
         self._describe(text(topic, "topic"))
-        return self.graph.mailbox(topic, size=size, type_name=full, can_come=self._run_by_another)
+        foreign = self._run_by_another
+        with self._looking_up():
+            return self.graph.mailbox(topic, size=size, type_name=full, can_come=foreign)
+
+    @contextlib.contextmanager
+    def _looking_up(self) -> Iterator[None]:
+        """Adds to the error for an unknown topic which robots lack their controllers."""
+        try:
+            yield
+        except UnknownNameError as error:
+            reports = (
+                each for each in self.session.diagnostics if each.code is CONTROLLERS_NOT_NAMED
+            )
+            idle = tuple(dict.fromkeys(str(each.values["model"]) for each in reports))
+            if error.code is TOPIC_UNKNOWN and idle and not error.values["meant"]:
+                error.hint = (
+                    f"{error.hint or ''} No controllers run for {', '.join(idle)}: see "
+                    f"{CONTROLLERS_NOT_NAMED.number} in World.diagnostics."
+                ).lstrip()
+                error.values = {**error.values, "idle": idle}
+            raise
 
     def _run_by_another(self) -> bool:
         """Whether a different thread ran the world last and is still alive."""
