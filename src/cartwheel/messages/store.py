@@ -267,6 +267,7 @@ def unknown_type(kind: str, name: str, known: Iterable[str]) -> UnknownNameError
             f'If the package "{package}" is in your workspace, source the workspace, or add the '
             f"folder of the package: {PACKAGE_PATH.given('FOLDER')}."
         )
+        error.values = {**error.values, "package": package}
     return error
 
 
