@@ -167,12 +167,31 @@ def test_poses_velocities_and_lasers_follow_it() -> None:
         assert place.yaw == pytest.approx(0.2)
         assert ship.link("link").pose == place
         assert ship.velocity == cw.Twist((0.5, 0.0, 0.0), (0.0, 0.0, 0.1))
-        assert ship.link("link").velocity == ship.velocity
+        link = ship.link("link").velocity
+        assert link.linear == pytest.approx(ship.velocity.linear)
+        assert link.angular == pytest.approx(ship.velocity.angular)
+        world.serve_gazebo()
+        twist = world.call("/gazebo/get_model_state", model_name="moving").twist
+        assert (twist.linear.x, twist.angular.z) == pytest.approx((0.5, 0.1))
         assert scan.latest.ranges[0] == pytest.approx(1.9 / math.cos(0.2), abs=1e-3)
         ship.pose = cw.Pose((0.0, 0.0, 1.0))
         world.run(1.0)
         assert (ship.velocity, ship.pose.x) == (cw.Twist(), 0.0)
         assert scan.latest.ranges[0] == pytest.approx(3.9, abs=1e-3)
+
+
+def test_what_it_squeezes_is_not_shot_away() -> None:
+    """It is at most 0.5 m/s faster than the obstacle, as models that overlap."""
+    with cw.World() as world:
+        wall = world.spawn(fixed((0.1, 1.0, 1.0)), x=-0.6, z=0.5)
+        world.spawn(fixed((0.2, 1.0, 1.0)).replace("moving", "stop"), x=0.6, z=0.5)
+        box = world.spawn(loose(1.0, (0.3, 0.3, 0.3), mu=0.5), z=0.15)
+        wall.velocity = cw.Twist((0.3, 0.0, 0.0))
+        speeds: list[float] = []
+        for _ in range(800):
+            world.step()
+            speeds.append(math.hypot(*box.velocity.linear))
+        assert max(speeds) < 1.0
 
 
 def scene(world: cw.World) -> Callable[[], tuple[object, ...]]:

@@ -70,7 +70,9 @@ class Link(LinkProperties):
         """
         with self._world.lock:
             truth = self._world.session.simulation.truth
-            return Twist(*truth.link_velocity(self.model, self.name))
+            handle = truth.link(self.model, self.name)
+            truth.locate()
+            return Twist(*handle.motion(local=False))
 
     @property
     def acceleration(self) -> Acceleration:

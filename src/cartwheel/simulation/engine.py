@@ -264,6 +264,8 @@ class Engine:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_comVel(self.model, self.data)
+        if self.stepping.moved is not None:
+            self.stepping.moved.set_velocities(self.data)
 
     def advance(self, count: int, forwarded: bool) -> None:
         """Runs simulation steps.

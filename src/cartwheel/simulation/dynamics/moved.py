@@ -17,9 +17,12 @@ from numpy.typing import NDArray
 
 from cartwheel.geometry import Array, Vec3
 from cartwheel.simulation.dynamics.carried import Carried
+from cartwheel.simulation.dynamics.separation import DEEP
 
 _TURNING = 0.02
 """rad/s; a body on a model that turns more slowly creeps less than a micrometre per second."""
+_IMPACT = 0.02
+"""s; an impact goes less deep than the speed in this time; see docs/physics.md, kp and kd."""
 _TORSION = 4
 """Dimensions of a contact with torsional friction; see MuJoCo's ``condim``."""
 _ROLLING = 6
@@ -38,25 +41,54 @@ class Moved:
     def __init__(
         self, model: Any, roots: Sequence[Sequence[int]], velocities: Sequence[tuple[Vec3, Vec3]]
     ) -> None:
-        self._owners: Ints = np.full(model.ngeom, -1)
+        owners: Ints = np.full(model.nbody, -1)
         for number, bodies in enumerate(roots):
-            mine = np.isin(model.body_rootid[model.geom_bodyid], list(bodies))
-            self._owners[mine] = number
+            owners[np.isin(model.body_rootid, list(bodies))] = number
+        self._owners = owners[model.geom_bodyid]
+        self._bodies = np.flatnonzero(owners >= 0)
+        self._of_bodies = owners[self._bodies]
+        self._centres = model.body_rootid[self._bodies]
         self._linear, self._angular = (
             np.array([each[part] for each in velocities]).reshape(-1, 3) for part in (0, 1)
         )
         self._turns = bool((np.abs(self._angular) > _TURNING).any())
+        fastest = float(np.linalg.norm(self._linear, axis=1).max(initial=0.0))
+        self._deepest = DEEP + _IMPACT * fastest
         self.origins = np.zeros((len(roots), 3))
         """Positions of the models' frames now, m."""
         self._carried = Carried(model)
 
+    def set_velocities(self, data: Any) -> None:
+        """Gives the bodies their velocities, which MuJoCo has set to zero.
+
+        Args:
+            data: The MuJoCo data after its velocities were computed.
+        """
+        of = self._of_bodies
+        # MuJoCo stores a body's velocity at the centre of mass of its kinematic tree.
+        arms = data.subtree_com[self._centres] - self.origins[of]
+        data.cvel[self._bodies, :3] = self._angular[of]
+        data.cvel[self._bodies, 3:] = self._linear[of] + np.cross(self._angular[of], arms)
+
+    def deep(self, data: Any) -> bool:
+        """Whether one of the models is so deep in another one that it squeezes it.
+
+        Args:
+            data: The MuJoCo data after a forward pass.
+        """
+        if not data.ncon:
+            return False
+        owned = (self._owners[data.contact.geom] >= 0).any(axis=1)
+        return bool((data.contact.dist[owned] < -self._deepest).any())
+
     def apply(self, model: Any, data: Any) -> None:
-        """Solves a forward pass again, with the velocities at the contacts.
+        """Completes a forward pass, with the velocities of the bodies and at the contacts.
 
         Args:
             model: The MuJoCo model.
             data: The MuJoCo data after a forward pass.
         """
+        self.set_velocities(data)
         if not data.ncon:
             return
         contacts = data.contact

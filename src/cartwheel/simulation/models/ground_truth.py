@@ -118,21 +118,6 @@ class GroundTruth:
         self.locate()
         return handle.motion_at(self._engine.model_pose(entry).position)
 
-    def link_velocity(self, model: str, link: str) -> tuple[Vec3, Vec3]:
-        """Linear and angular velocity of a link's frame, m/s and rad/s, in world axes.
-
-        Raises:
-            UnknownNameError: The model or link does not exist.
-        """
-        handle = self.link(model, link)
-        self.locate()
-        entry = self._population.resident(model).entry
-        if entry.motion is None:
-            return handle.motion(local=False)
-        arm = np.subtract(handle.place()[0], entry.pose.position)
-        x, y, z = (entry.motion.linear + cross(np.array(entry.motion.angular), arm)).tolist()
-        return (x, y, z), entry.motion.angular
-
     def set_velocity(self, model: str, linear: Vec3, angular: Vec3) -> None:
         """Sets the velocity of a model as a rigid body; its joints stop.
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from cartwheel.simulation.dynamics.moved import Moved
+from cartwheel.simulation.dynamics.separation import Separation
 from cartwheel.simulation.engine import Engine
 from cartwheel.simulation.models.in_place import InPlace
 from cartwheel.simulation.models.placement import fixed_roots, put_fixed
@@ -18,10 +21,12 @@ class Motions:
     Args:
         engine: The engine.
         in_place: Computes the places of fixed links in its model.
+        separation: Limits the speed of models that overlap others.
     """
 
-    def __init__(self, engine: Engine, in_place: InPlace) -> None:
+    def __init__(self, engine: Engine, in_place: InPlace, separation: Separation) -> None:
         self._engine = engine
+        self._separation = separation
         self._in_place = in_place
         self.moving: list[tuple[ModelEntry, Motion]] = []
         """The models that move."""
@@ -64,9 +69,20 @@ class Motions:
         for entry, motion in self.moving:
             entry.pose = motion.at(self._engine.time_ns)
             put_fixed(self._engine, entry)
+        moved = self._engine.stepping.moved
+        if moved is not None and moved.deep(self._engine.data):
+            self._separate()
         self._in_place.locate_fixed()
         self._in_place.wake(changes_model=False)
         self._locate()
+
+    def _separate(self) -> None:
+        """Limits the speed of what the models squeeze."""
+        engine = self._engine
+        for entry, motion in self.moving:
+            speeds = math.hypot(*motion.linear), math.hypot(*motion.angular)
+            roots = set(fixed_roots(engine, entry))
+            self._separation.begin(engine.model, engine.data, roots, speeds)
 
     def _locate(self) -> None:
         moved = self._engine.stepping.moved

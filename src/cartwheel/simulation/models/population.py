@@ -68,7 +68,7 @@ class Population:
         self._added: tuple[Added, ...] = ()
         """What was added to the descriptions of the compiled models."""
         self._in_place = InPlace(engine)
-        self.motions = Motions(engine, self._in_place)
+        self.motions = Motions(engine, self._in_place, self.separation)
 
     def start(self, attach_world: Attach, descriptions: Sequence[RobotDescription]) -> None:
         """Creates the world's plugins and spawns its models, with one compilation.
