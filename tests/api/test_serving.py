@@ -224,3 +224,12 @@ def test_the_type_of_an_action_is_not_that_of_a_service():
     with cw.World() as world, raises(MESSAGE_TYPE_UNKNOWN) as caught:
         world.serve("/go", "control_msgs/action/FollowJointTrajectory", print)
     assert "action" in str(caught.value) and "Did you mean" not in str(caught.value)
+
+
+@pytest.mark.wording
+def test_a_value_that_is_no_request_is_that_of_a_service() -> None:
+    with cw.World() as world:
+        world.serve("/enable", SetBool_Request, lambda _: {"success": True})
+        with raises(FIELD_VALUE_INVALID) as caught:
+            world.call("/enable", True)
+        assert 'service "/enable" requires' in caught.value.message

@@ -298,6 +298,13 @@ def test_a_position_of_almost_zero_has_no_sign(cart):
     assert "x = 0.000, y = 0.000" in raised.value.actual
 
 
+@pytest.mark.wording
+def test_a_distance_in_millimetres_is_written_out(cart):
+    with pytest.raises(UnmetError) as raised:
+        reaches(cart, (3000, 0), timeout=0.1)
+    assert "the closest approach was 3000 m" in raised.value.actual
+
+
 CAMERA = "/rosbots/camera1/image_raw"
 
 

@@ -276,12 +276,13 @@ def checked_message(topic: str, kind: str, message: Any) -> Any:
     """
     given = getattr(type(message), "__msgtype__", type(message).__name__)
     if given not in (kind, type_name(kind)):
+        role = "service" if "/srv/" in kind else "action" if "/action/" in kind else "topic"
         raise GraphError(
-            f'topic "{topic}" requires a message of type {kind}, not {given}',
+            f'{role} "{topic}" requires a message of type {kind}, not {given}',
             code=FIELD_VALUE_INVALID,
             values={"topic": topic, "type": kind, "given": given},
-            hint="Pass a message, or use World.publish with the values of its fields. The classes "
-            "of messages are in cartwheel.msgs.",
+            hint="Pass a message, or the values of its fields. The classes of messages are in "
+            "cartwheel.msgs.",
         )
     return checked(message)
 

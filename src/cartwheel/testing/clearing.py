@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from cartwheel.errors import UnknownNameError
-from cartwheel.testing.conditions import Condition
+from cartwheel.testing.conditions import Condition, shown
 from cartwheel.testing.subjects import matching
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class KeepsClear(Condition):
             f"{model}::{link}"
             for model, link in zip(self._nearest.models, self._nearest.links, strict=True)
         )
-        return f"{one} was {self.closest:.3g} m from {other} at {self.closest_time:.3f} s"
+        return f"{one} was {shown(self.closest)} m from {other} at {self.closest_time:.3f} s"
 
     @property
     def values(self) -> Mapping[str, float | str | None]:

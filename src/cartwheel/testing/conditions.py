@@ -20,6 +20,11 @@ Range = tuple[float, float]
 _AXES = ("x", "y", "z")
 
 
+def shown(value: float) -> str:
+    """A number with three digits, without an exponent for what is far away."""
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+
+
 class Condition(ABC):
     """A condition on a world. `begin` starts it, and `holds` evaluates it at the current time."""
 
@@ -143,7 +148,7 @@ class Reaches(Condition):
             "" if self.yaw is None else f" with a yaw error of {self._closest_yaw or 0.0:.3g} rad"
         )
         return (
-            f"the closest approach was {self.closest:.3g} m{turn} at {self.closest_time:.3f} s; "
+            f"the closest approach was {shown(self.closest)} m{turn} at {self.closest_time:.3f} s; "
             f"the last pose was x = {x:z.3f}, y = {y:z.3f}, z = {z:z.3f} m, "
             f"yaw = {self._last.yaw:z.3f} rad"
         )
@@ -286,7 +291,7 @@ class Moves(Condition):
 
     @property
     def actual(self) -> str:
-        return f"it moved by {self.moved:.3g} m"
+        return f"it moved by {shown(self.moved)} m"
 
     @property
     def values(self) -> Mapping[str, float | str | None]:

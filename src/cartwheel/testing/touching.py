@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from cartwheel.testing.conditions import Condition
+from cartwheel.testing.conditions import Condition, shown
 from cartwheel.testing.subjects import matching
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ class Touches(Condition):
         if self.first is None:
             return "they did not touch"
         time, one, other, force = self.first
-        return f"{one} touched {other} at {time:.3f} s with {force:.3g} N"
+        return f"{one} touched {other} at {time:.3f} s with {shown(force)} N"
 
     @property
     def values(self) -> Mapping[str, float | str | None]:
