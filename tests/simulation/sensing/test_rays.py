@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from cartwheel import Twist
 from cartwheel.codes.world import EMBREE_MISSING
 from cartwheel.geometry import Pose, quat_from_rpy
-from cartwheel.simulation.sensing.embree_rays import SharedRayScenes
 from cartwheel.simulation.sensing.rays import RayHandle
 
 COLLISIONS = np.array([0, 0, 0, 0, 1, 0], dtype=np.uint8)
@@ -35,11 +35,11 @@ def way(request, monkeypatch):
 
 
 def handle(world, directions, *, maximum=50.0, minimum=0.0):
+    simulation = world.session.simulation
     made = RayHandle(
         "eye", "link", Pose(), directions, minimum=minimum, maximum=maximum,
-        scenes=SharedRayScenes(),
+        scenes=simulation.engine.ray_scenes,
     )  # fmt: skip
-    simulation = world.session.simulation
     made.bind(simulation.model, simulation.data)
     return made
 
@@ -306,6 +306,31 @@ def test_changes_of_the_model_are_seen(make):
     assert ahead.cast()[0].tolist() == [math.inf]
     model.geom_rgba[model.body_geomadr[body], 3] = 1.0
     assert ahead.cast()[0] == pytest.approx([2.9])
+
+
+@pytest.mark.parametrize("eye", [False, True], ids=["a standing eye", "a moving eye"])
+def test_models_that_move_at_a_velocity_are_seen(make, eye):
+    """While they move, after they have stopped, and beside others that stand."""
+    random = np.random.default_rng(7)
+    world = make.world(*clutter(make, random, 25), make.sdf(EYE.format(x=0.5, y=0.2)), gravity=0.0)
+    found, rays = handle(world, around(15, 80)), around(15, 80)
+    scenes = world.session.simulation.engine.ray_scenes._scenes
+    for moves in (True, False):
+        for index in range(1, 25, 4):
+            turn = (0.2, 0.1 * index, 0.5) if moves else (0.0, 0.0, 0.0)
+            velocity = Twist((0.3, -0.1 * index, 0.1) if moves else (0.0, 0.0, 0.0), turn)
+            world.model(f"m{index}").velocity = velocity
+        if eye:
+            world.model("eye").velocity = Twist((0.2, 0.1, 0.0) if moves else (0.0, 0.0, 0.0))
+        versions = set()
+        for _ in range(3):
+            world.run(0.1)
+            place = world.model("eye").pose.position
+            read, _ = found.cast()
+            assert read == pytest.approx(single(world, place, rays, 50.0), abs=1e-9)
+            versions |= {each.version for each in scenes.values()}
+        # The shapes of what stands are not prepared again.
+        assert len(versions) == len(scenes)
 
 
 def test_far_from_the_origin_rays_are_as_exact(make):

@@ -56,10 +56,12 @@ class Motions:
             (entry, entry.motion) for entry in engine.entries if entry.motion is not None
         ]
         engine.stepping.moved = None
+        roots = [fixed_roots(engine, entry) for entry, _ in self.moving]
+        engine.ray_scenes.moved = frozenset(body for bodies in roots for body in bodies)
         if self.moving:
             engine.stepping.moved = Moved(
                 engine.model,
-                [fixed_roots(engine, entry) for entry, _ in self.moving],
+                roots,
                 [(motion.linear, motion.angular) for _, motion in self.moving],
             )
             self._locate()

@@ -22,13 +22,15 @@ class SharedRayScenes:
 
     def __init__(self) -> None:
         self._scenes: dict[int, RayScenes] = {}
+        self.moved: frozenset[int] = frozenset()
+        """Bodies that are fixed to the world and move at a velocity."""
         self._told = AVAILABLE
 
     def of(self, model: Any, data: Any, group: int) -> RayScenes:
         """The shapes of a group of geoms."""
         found = self._scenes.get(group)
         if found is None or found.model is not model or found.data is not data:
-            found = self._scenes[group] = RayScenes(model, data, group)
+            found = self._scenes[group] = RayScenes(model, data, group, lambda: self.moved)
         return found
 
     def missing(self) -> Diagnostic | None:

@@ -6,6 +6,7 @@ together. Other shapes that move are few, and are tested directly.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -24,29 +25,36 @@ class RayScenes:
         model: The model.
         data: Its data.
         group: The geoms of this group are hit, except invisible ones.
+        moved: Returns the bodies that are fixed to the world and move at a velocity.
     """
 
-    def __init__(self, model: Any, data: Any, group: int) -> None:
+    def __init__(
+        self,
+        model: Any,
+        data: Any,
+        group: int,
+        moved: Callable[[], frozenset[int]] = frozenset,
+    ) -> None:
         self.model, self.data, self._group = model, data, group
-        self._roots = np.asarray(model.body_weldid).copy()
-        # Bodies that programs move are welded to the world by name only.
-        for body in range(1, model.nbody):
-            if model.body_mocapid[body] >= 0:
-                self._roots[body] = body
-            elif self._roots[body] == 0:
-                self._roots[body] = self._roots[model.body_parentid[body]]
-        self._watched = (
-            model.body_pos, model.body_quat, model.geom_group, model.geom_rgba, model.geom_matid,
-            model.mat_rgba,
-        )  # fmt: skip
+        self._find_moved = moved
         self._state: list[bytes] = []
+        self._roots: Any = None
+        self._follow(frozenset())
+        self._watched = (model.geom_group, model.geom_rgba, model.geom_matid, model.mat_rgba)
         self.version = 0
         """Changes when the shapes have changed."""
 
     def refresh(self) -> None:
         """Follows changes of the model: what is invisible, and where it stands."""
         model = self.model
-        state = [each.tobytes() for each in self._watched]
+        moved = self._find_moved()
+        if moved != self._moved:
+            self._follow(moved)
+        places = (model.body_pos, model.body_quat)
+        if moved:
+            # Their own places change in each step.
+            places = tuple(np.delete(each, list(moved), axis=0) for each in places)
+        state = [each.tobytes() for each in (*places, *self._watched)]
         if state == self._state:
             return
         self._state = state
@@ -78,6 +86,18 @@ class RayScenes:
         ]
         self._with: dict[int, RigidShapes] = {}
         self._without: dict[int, MovingShapes] = {}
+
+    def _follow(self, moved: frozenset[int]) -> None:
+        """Finds the body that each body moves with."""
+        model, self._moved, self._state = self.model, moved, []
+        roots = np.asarray(model.body_weldid).copy()
+        # Bodies that programs move are welded to the world by name only.
+        for body in range(1, model.nbody):
+            if model.body_mocapid[body] >= 0 or body in moved:
+                roots[body] = body
+            elif roots[body] == 0:
+                roots[body] = roots[model.body_parentid[body]]
+        self._roots = roots
 
     def root_of(self, body: int) -> int:
         """The body that a body moves with; 0 is the world."""
