@@ -74,6 +74,8 @@ def pytest_configure(config: pytest.Config) -> None:
     if config.pluginmanager.has_plugin("cartwheel"):
         config.pluginmanager.unregister(name="cartwheel")
     launching.replace_starts()
+    if hasattr(config, "workerinput"):
+        launching.share(config.workerinput["launcher"])
     # A shell starts background jobs with this signal ignored, and programs that tests start and
     # interrupt would inherit that.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -84,6 +86,12 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["PYTHONPATH"] = os.pathsep.join(
             filter(None, (folder, os.environ.get("PYTHONPATH", "")))
         )
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Called for each worker of pytest-xdist. All of them share a launcher."""
+    node.workerinput["launcher"] = launching.shared()
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

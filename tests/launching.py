@@ -1,7 +1,7 @@
 """Starts the program and Python code without importing Cartwheel each time.
 
-Importing Cartwheel takes most of a short command's time, and the tests start hundreds. Each test
-process therefore has a launcher: a process that has imported Cartwheel, and forks for each start.
+Importing Cartwheel takes most of a short command's time, and the tests start hundreds. The test
+processes therefore have a launcher: a process that has imported Cartwheel and forks for each start.
 The fork gets the arguments, folder, environment and streams of the start, and then runs as the
 program would. `Popen` and `run` are those of `subprocess` in all that tests use of them.
 
@@ -301,8 +301,10 @@ BRIDGE = "bridge {}"
 _VARIABLES = _at_start(os.environ)
 """Of Cartwheel's launcher. Tests and libraries change those of this process."""
 _ros1_variables: set[frozenset[tuple[str, str]]] = set()
-_listening = ""
-"""Where the launcher that this process is or comes from listens; empty in other processes."""
+_addresses: dict[_Launcher, bytes] = {}
+"""Where the launchers of this process listen."""
+_listening = b""
+"""Where the launcher that this process is or comes from, or of the run of all tests, listens."""
 
 
 class _Launcher(NamedTuple):
@@ -315,23 +317,40 @@ class _Launcher(NamedTuple):
 @functools.cache
 def _started(launcher: _Launcher, _process: int) -> socket.socket:
     """The connection to a launcher of this process."""
-    if _listening:  # This process is from a launcher, which can start more.
+    if _listening and launcher.python == sys.executable:
         own = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         own.connect(_listening)
         return own
     own, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with theirs:
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    listener.bind(f"\0cartwheel-tests-{os.getpid()}-{len(_addresses)}")
+    listener.listen(64)
+    _addresses[launcher] = listener.getsockname()
+    with theirs, listener:
         # It ends when this process has ended, which closes the socket.
         others = {name: os.environ[name] for name in os.environ if not name.startswith(_AT_START)}
         process = subprocess.Popen(
-            [launcher.python, __file__, str(theirs.fileno())],
+            [launcher.python, __file__, str(theirs.fileno()), str(listener.fileno())],
             env={**others, **dict(launcher.variables)},
-            pass_fds=[theirs.fileno()],
+            pass_fds=[theirs.fileno(), listener.fileno()],
             stdin=subprocess.DEVNULL,
             cwd="/",
         )
     atexit.register(_end, own, process, os.getpid())
     return own
+
+
+def shared() -> str:
+    """Where this process's launcher listens, for `share` in the processes of a run of tests."""
+    launcher = _Launcher(sys.executable, _VARIABLES)
+    _started(launcher, os.getpid())
+    return _addresses[launcher].hex()
+
+
+def share(address: str) -> None:
+    """Uses the launcher of another process, which has the same environment."""
+    global _listening
+    _listening = bytes.fromhex(address)
 
 
 def _end(connection: socket.socket, process: subprocess.Popen[bytes], owner: int) -> None:
@@ -343,12 +362,9 @@ def _end(connection: socket.socket, process: subprocess.Popen[bytes], owner: int
 # From here on, in the launcher.
 
 
-def _serve(control: socket.socket) -> Callable[[], None]:
+def _serve(control: socket.socket, listener: socket.socket) -> Callable[[], None]:
     """Forks for each request; returns only in a fork, with what it is to run."""
     running: dict[int, tuple[int, socket.socket]] = {}
-    listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    listener.bind(_listening)
-    listener.listen(64)
     asking = {control.fileno(): control}
     poll = select.poll()
     poll.register(control, select.POLLIN)
@@ -514,14 +530,15 @@ def _main() -> Callable[[], None]:
             importlib.import_module(name)
     if sys.executable != ROS1_PYTHON:
         replace_starts()
+    control, listener = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
     global _listening
-    _listening = f"\0cartwheel-tests-{os.getpid()}"
+    _listening = listener.getsockname()
     gc.collect()
     # Otherwise a collection in a fork copies all pages.
     gc.freeze()
     gc.set_threshold(*RARE_COLLECTIONS)
     gc.enable()
-    return _serve(socket.socket(fileno=int(sys.argv[1])))
+    return _serve(control, listener)
 
 
 if __name__ == "__main__":
