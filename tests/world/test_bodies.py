@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import cartwheel as cw
+from cartwheel.codes.world import LOOP_WITHOUT_ROOT
 from cartwheel.description import load_text
+from cartwheel.errors import WorldError
 
 PLANAR = """<robot name="r">
   <link name="base">
@@ -87,7 +89,22 @@ def test_a_mimic_joint_follows_its_leader() -> None:
         assert max(turned) - min(turned) > 0.05
 
 
-def test_a_loop_of_links_stays_closed() -> None:
+STAND = '<joint name="stand" type="fixed"><parent>world</parent><child>ground</child></joint>'
+RIGHT = "<parent>ground</parent><child>rocker</child>"
+BACK = '<pose relative_to="rocker"/><parent>rocker</parent><child>ground</child>'
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        FOUR_BARS,
+        # Each link is the child of a joint, so the first one is the root. The model falls freely.
+        FOUR_BARS.replace(STAND, "").replace(RIGHT, BACK),
+        # The joint to the world is the second one above its link.
+        FOUR_BARS.replace(STAND, "").replace(RIGHT, BACK).replace("</model>", STAND + "</model>"),
+    ],
+)
+def test_a_loop_of_links_stays_closed(model: str) -> None:
     """A parallelogram of bars: its coupler stays level however it swings."""
     places = {"ground": "0 0 2", "crank": "0 0 2", "coupler": "0 0 2.5", "rocker": "1 0 2"}
     links = "".join(
@@ -97,10 +114,13 @@ def test_a_loop_of_links_stays_closed() -> None:
         for name, place in places.items()
     )
     with cw.World("empty") as world:
-        world.spawn(load_text(FOUR_BARS.format(links=links), file="linkage.sdf"))
+        world.spawn(load_text(model.format(links=links), file="linkage.sdf"), z=50.0)
         simulation = world.session.simulation
         simulation.data.joint("linkage::left").qvel = 1.0
-        simulation.data.joint("linkage::right").qvel = 1.0
+        if RIGHT in model:
+            simulation.data.joint("linkage::right").qvel = 1.0
+        else:
+            simulation.data.joint("linkage::loop").qvel = 1.0
         simulation.data.joint("linkage::top").qvel = -1.0
         swung = []
         for _ in range(20):
@@ -109,6 +129,29 @@ def test_a_loop_of_links_stays_closed() -> None:
             swung.append(abs(left))
             assert left + top == pytest.approx(0.0, abs=0.02)
         assert max(swung) > 0.5
+
+
+PAIRS = ["ab", "ba", "cd", "dc", "ac"]
+
+
+@pytest.mark.parametrize("pairs", [PAIRS, [*PAIRS, "ca"]])
+def test_loops_that_joints_connect_in_both_directions_have_no_root(pairs: list[str]) -> None:
+    links = "".join(f'<link name="{name}"/>' for name in "abcd")
+    ends = "".join(
+        f'<joint name="{a}{b}" type="fixed"><parent>{a}</parent><child>{b}</child></joint>'
+        for a, b in pairs
+    )
+    robot = load_text(
+        f'<sdf version="1.7"><model name="m">{links}{ends}</model></sdf>', file="m.sdf"
+    )
+    with cw.World("empty") as world:
+        if "ca" not in pairs:
+            world.spawn(robot)
+            return
+        with pytest.raises(WorldError) as caught:
+            world.spawn(robot)
+        assert caught.value.code is LOOP_WITHOUT_ROOT
+        assert caught.value.values["link"] == "a"
 
 
 def test_a_thin_plate_beyond_the_edge_by_rounding_is_built() -> None:

@@ -51,7 +51,7 @@ CHAIN_TOO_LONG = Code(
     "CW616", "chain-too-long", "error", "a chain of links is too long to simulate"
 )
 LOOP_WITHOUT_ROOT = Code(
-    "CW617", "loop-without-root", "error", "a link is part of an isolated loop of joints"
+    "CW617", "loop-without-root", "error", "a link is part of a loop of joints without a root"
 )
 PLANE_NOT_STATIC = Code(
     "CW618", "plane-not-static", "error", "an infinite plane is part of a model that moves"

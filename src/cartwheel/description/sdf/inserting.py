@@ -14,6 +14,7 @@ from cartwheel.description.sdf.frames import Frames
 from cartwheel.description.sdf.gearbox import mesh_gears
 from cartwheel.description.sdf.joint import GEARBOX, add_joint, read_joint, read_joint_sensors
 from cartwheel.description.sdf.links.link import read_link
+from cartwheel.description.sdf.loops import with_roots
 from cartwheel.description.sdf.parts import (
     add_frame,
     attach,
@@ -76,6 +77,7 @@ def insert(
             kept.remove(failed.node)
             left_out(failed.node, failed.error, refused)
             continue
+        linked = [*with_roots(found, linked, canonical_link)]
         return found, linked, [*refused.diagnostics, *ctx.diagnostics]
 
 

@@ -10,6 +10,7 @@ from cartwheel.codes.tags import NAME_TAKEN
 from cartwheel.description.model import Element, Joint, Link, PluginTag, RobotDescription
 from cartwheel.description.sdf.context import Context
 from cartwheel.description.sdf.frames import Frames
+from cartwheel.description.sdf.loops import with_roots
 from cartwheel.description.sdf.parts import judge
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
@@ -43,15 +44,16 @@ class Model:
             DescriptionError: A movable link has an impossible inertia.
         """
         self.links = judge(self.links, self.joints, ctx, static=self.static)
+        canonical = self.frames.link_of("", self.origin) if self.links else ""
         return RobotDescription(
             name=self.name,
             links=tuple(self.links),
-            joints=tuple(self.joints),
+            joints=with_roots(self.links, self.joints, canonical),
             plugins=tuple(self.plugins),
             static=self.static,
             self_collide=self.self_collide,
             pose=pose,
-            canonical_link=self.frames.link_of("", self.origin) if self.links else "",
+            canonical_link=canonical,
             transmissions=self.transmissions,
             ros2_control=self.ros2_control,
             text=text or self.text,
