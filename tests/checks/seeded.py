@@ -257,6 +257,9 @@ WITH_ADVICE: dict[str, Case] = {
         '<inertia ixx="0.00104"'),
     "mass 0": ("mass-not-positive", [('<mass value="0.3"/>', '<mass value="0"/>')],
         'mass value="0"', 'value="0.289"'),  # 0.00208 kg m² of all axes, by 0.0072 a kilogram
+    "mass too small for a sum": ("mass-not-positive",
+        [('<mass value="0.3"/>', '<mass value="1e-109"/>')],
+        'mass value="1e-109"', 'value="0.289"'),
     "mass below 0": ("mass-not-positive", [('<mass value="0.3"/>', '<mass value="-0.3"/>')],
         'mass value="-0.3"', 'value="0.3"'),
     "inertia large": ("inertia-geometry-mismatch", [('ixx="0.001" iyy="0.001" izz="0.00008"',

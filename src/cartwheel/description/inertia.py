@@ -11,6 +11,9 @@ from cartwheel.geometry import Array, Vec3
 TOLERANCE = 1e-3
 """Relative tolerance: files contain three or four digits, and thin plates are exactly at the limit.
 """
+LIGHTEST = 1e-12
+"""Minimum mass of a link with an inertia, kg; the engine rejects smaller masses, and Gazebo ignores
+links in a URDF with less than 1e-6 kg."""
 HEAVIEST = 1e12
 """Maximum mass of a link, kg; the square of a larger mass overflows."""
 _THINNEST = 1e-6

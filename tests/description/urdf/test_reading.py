@@ -427,6 +427,10 @@ WARNINGS = [
         "robot.urdf:2 warning mass-not-positive",
     ),
     (
+        urdf('<link name="a"><inertial><mass value="1e-109"/></inertial></link>'),
+        "robot.urdf:2 warning mass-not-positive",
+    ),
+    (
         urdf(link("a"), '<link name="b"/>', joint("j", "a", "b", kind="continuous")),
         "robot.urdf:3 warning inertia-missing",
     ),

@@ -13,6 +13,7 @@ from cartwheel.codes import files, robot
 from cartwheel.codes import tags as tag_codes
 from cartwheel.description.elements.xml import Node, to_element, unread
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.inertia import LIGHTEST
 from cartwheel.description.model import Inertial, Link, RobotDescription
 from cartwheel.description.sdf.harmless import HARMLESS as HARMLESS_IN_SDF
 from cartwheel.description.sdf.inserting import insert
@@ -178,12 +179,12 @@ def _judged(part: ReadLink, tree: Tree, ctx: UrdfContext) -> Inertial | None:
         return None
     holder = tree.inbound.get(name)
     fixed = holder is not None and holder.type == "fixed"
-    if inertial.mass <= 0:
+    if inertial.mass < LIGHTEST:
         ctx.warn(
             robot.MASS_NOT_POSITIVE,
             f'link "{name}" has a mass of {inertial.mass:g} kg, so it is simulated without a mass',
             origin=inertial.origin,
-            severity="info" if fixed and inertial.mass == 0 else "warning",
+            severity="info" if fixed and inertial.mass >= 0 else "warning",
             values={"link": name, "stated": inertial.mass},
         )
         return None

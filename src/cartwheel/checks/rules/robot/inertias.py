@@ -25,7 +25,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.inertia import impossibility
+from cartwheel.description.inertia import LIGHTEST, impossibility
 from cartwheel.description.model import MOMENTS, Inertial, Link
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic, Origin
@@ -91,7 +91,7 @@ def inertia_impossible(subject: Subject) -> Iterator[Diagnostic]:
         tensor = nodes.child(inertial, "inertia")
         moments = moments_of(inertial)
         mass = nodes.number(nodes.text_of(nodes.child(inertial, "mass"), "value"))
-        if moments is None or mass is None or mass <= 0:
+        if moments is None or mass is None or mass < LIGHTEST:
             continue
         wrong = impossibility(moments)
         name = nodes.name_of(link)

@@ -21,6 +21,7 @@ from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.elements.node import Node
+from cartwheel.description.inertia import LIGHTEST
 from cartwheel.description.model import Inertial, Link
 from cartwheel.description.solids import bounds
 from cartwheel.errors import Diagnostic
@@ -39,9 +40,9 @@ def mass_not_positive(subject: Subject) -> Iterator[Diagnostic]:
     for link, inertial in inertials(subject):
         place = nodes.child(inertial, "mass")
         mass = nodes.number(nodes.text_of(place, "value"))
-        if place is None or mass is None or mass > 0:
+        if place is None or mass is None or mass >= LIGHTEST:
             continue
-        if mass == 0 and nodes.name_of(link) in held:
+        if mass >= 0 and nodes.name_of(link) in held:
             continue  # a frame without geometry, which Gazebo merges into its parent
         yield robot_codes.MASS_NOT_POSITIVE.diagnostic(
             message=f'link "{nodes.name_of(link)}" has a mass of {mass:g} kg, so Gazebo ignores '

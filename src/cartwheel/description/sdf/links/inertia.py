@@ -10,7 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cartwheel.codes.robot import INERTIA_IMPOSSIBLE, MASS_NOT_POSITIVE
-from cartwheel.description.inertia import HEAVIEST, impossibility, made_possible, principal_moments
+from cartwheel.description.inertia import (
+    HEAVIEST,
+    LIGHTEST,
+    impossibility,
+    made_possible,
+    principal_moments,
+)
 from cartwheel.description.meshes import convex_hull_input, load_mesh
 from cartwheel.description.model import (
     Box,
@@ -60,10 +66,10 @@ def judged_inertia(link: Link, *, rigid: bool, ctx: Context) -> Inertial | None:
             values={"link": link.name, "stated": 0.0},
         )
         return None
-    if not 0 < i.mass <= HEAVIEST:
+    if not 0 < i.mass <= HEAVIEST or (i.mass < LIGHTEST and not rigid):
         raise DescriptionError(
-            f'the mass of link "{link.name}" must be above 0 and at most {HEAVIEST:g} kg '
-            f"(got {i.mass:g})",
+            f'the mass of link "{link.name}" must be between {LIGHTEST:g} and {HEAVIEST:g} '
+            f"kg (got {i.mass:g})",
             code=MASS_NOT_POSITIVE,
             origin=i.origin,
             values={"link": link.name, "stated": i.mass},
