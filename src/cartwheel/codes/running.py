@@ -21,7 +21,7 @@ JOINT_DRIVEN_TWICE = Code(
     "CW506", "joint-driven-twice", "warning", "two plugins drive the same joint or wheel"
 )
 JOINT_WITHOUT_STATE = Code(
-    "CW507", "joint-without-state", "info", "a fixed joint has no state to publish"
+    "CW507", "joint-without-state", "info", "a joint has no state to publish"
 )
 PLUGIN_LEFT_OUT = Code(
     "CW508", "plugin-left-out", "error", "a plugin or sensor has an error and is not loaded"

@@ -68,6 +68,14 @@ def test_a_fixed_joint_is_reported(make, read):
     assert coded(world, running.JOINT_WITHOUT_STATE, joint="wrist")
 
 
+def test_a_joint_that_has_no_single_position_is_reported_and_the_others_are_published(make, read):
+    plugin = joint_states("<jointName>turn,wrist</jointName>")
+    world = make.world(make.sdf(arm(plugin, "ball")), ground=None)
+    assert read(world, "/arm/joint_states", 0.1)[0].name == ["turn"]
+    (told,) = coded(world, running.JOINT_WITHOUT_STATE, joint="wrist")
+    assert told.severity == "warning"
+
+
 def test_a_negative_rate_is_reported_at_its_tag(make):
     with pytest.raises(PluginError) as caught:
         make.world(make.sdf(arm(joint_states("<updateRate>-1</updateRate>"))), ground=None)

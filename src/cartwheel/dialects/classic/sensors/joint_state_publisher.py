@@ -21,11 +21,13 @@ def _joints(plugin: Plugin[Any], names: list[str]) -> tuple[str, ...]:
     moving = []
     for name in names:
         joint = description.joint(name)
-        if joint is not None and joint.type == "fixed":
+        if joint is not None and not joint.drivable:
+            fixed = joint.type == "fixed"
+            kind = "is fixed" if fixed else f"has the type {joint.type}"
             plugin.warn(
                 running.JOINT_WITHOUT_STATE,
-                f'joint "{name}" is fixed, so it has no state to publish',
-                severity="info",
+                f'joint "{name}" {kind}, so it has no state to publish',
+                severity="info" if fixed else "warning",
                 values={"joint": name},
             )
         else:
