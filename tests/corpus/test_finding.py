@@ -245,3 +245,18 @@ def test_a_model_s_older_files_and_moveit_s_are_none(folder):
         arm_dot_srdf_dot_xacro='<robot name="arm"><link name="a"/></robot>',
     )
     assert found == ["box/model.sdf"]
+
+
+def test_the_models_of_a_folder_of_worlds_are_robots_and_its_other_files_are_not(folder):
+    model = (
+        '<sdf version="1.6"><model name="car"><link name="a"/>'
+        '<plugin name="p" filename="p"/></model></sdf>'
+    )
+    config = '<model><name>car</name><sdf version="1.6">car.sdf</sdf></model>'
+    found = folder(
+        worlds__track__car__model_dot_config=config,
+        worlds__track__car__car_dot_sdf=model,
+        worlds__track__parked_dot_sdf=model,
+        worlds__wall_dot_urdf=f'<robot name="wall">{LINK.format("a")}</robot>',
+    )
+    assert found == ["worlds/track/car/car.sdf"]

@@ -19,7 +19,7 @@ from cartwheel.errors import DescriptionError
 
 _SEMANTICS = (".srdf", ".srdf.xacro")
 """MoveIt's files, which begin like a robot."""
-_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__", "worlds"})
+_SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
 _INCLUDE = re.compile(
@@ -222,6 +222,8 @@ def _files(folder: Path) -> Iterator[Path]:
         folders[:] = sorted(
             name for name in folders if not name.startswith(".") and name not in _SKIPPED
         )
+        if "worlds" in Path(root).relative_to(folder).parts and "model.config" not in names:
+            continue  # of the files of worlds, only their models can be robots
         for name in sorted(names):
             if name.endswith(SUFFIXES) and not name.endswith(_SEMANTICS):
                 yield Path(root, name)
