@@ -341,6 +341,12 @@ def test_a_wrong_separation_is_why_a_robot_with_sliding_wheels_turns_too_fast():
     assert cause_of_drive([slow, apart], 0.7, turning=True) is slow
 
 
+def test_wheels_that_slide_explain_why_a_robot_that_should_hardly_turn_does_not_turn():
+    skids = SKID_STEERING.diagnostic("slide", values={"ratio": 0.04, "stated": 0.4, "rolling": 1.0})
+    assert cause_of_drive([skids], -0.01, turning=True) is skids
+    assert cause_of_drive([skids], -0.5, turning=True) is None
+
+
 def test_swapped_wheels_explain_a_turn_to_the_wrong_side_and_not_a_standstill(tried):
     swapped = cart(0.1).replace("left_joint</", "x</").replace("right_joint</", "left_joint</")
     swapped = swapped.replace("x</", "right_joint</")
@@ -1198,6 +1204,35 @@ def test_a_part_that_hangs_down_to_the_ground_explains_why_a_base_is_slow(tried)
     assert (drive.test, drive.code) == ("drive", BODY_ON_GROUND)
     assert drive.reason.values["link"] == "flap"
     assert drive.reason.values["joint"] == "flap_joint"
+
+
+def test_the_wheels_of_a_train_explain_how_it_drives_and_turns(tmp_path):
+    """SDF's wheels have revolute joints. The rear ones roll freely, so they do not hang down."""
+    ball = "<inertia><ixx>{i}</ixx><iyy>{i}</iyy><izz>{i}</izz></inertia>"
+    light = ball.format(i=0.005)
+    wheels = "".join(
+        f"""<link name="{name}"><pose>{x} {y} 0.1 0 1.5707963 0</pose><inertial><mass>1</mass>
+        {light}</inertial><collision name="c"><geometry><cylinder><radius>0.1</radius>
+        <length>0.04</length></cylinder></geometry></collision></link><joint name="{name}_joint"
+        type="revolute"><parent>base</parent><child>{name}</child><axis>
+        <xyz expressed_in="base">-1 0 0</xyz></axis></joint>"""
+        for name, x, y in (("a", -0.2, 0.3), ("b", 0.2, 0.3), ("c", -0.2, -0.3), ("d", 0.2, -0.3))
+    )
+    path = tmp_path / "train.sdf"
+    path.write_text(
+        f"""<sdf version="1.8"><model name="train"><link name="base"><pose>0 0 0.2 0 0 0</pose>
+        <inertial><mass>8</mass>{ball.format(i=0.2)}</inertial></link>{wheels}
+        <plugin name="d" filename="libgazebo_ros_diff_drive.so"><left_joint>a_joint</left_joint>
+        <right_joint>b_joint</right_joint><wheel_separation>0.4</wheel_separation>
+        <wheel_diameter>0.1</wheel_diameter></plugin></model></sdf>"""
+    )
+    verdict = try_robot(path)
+    (drive,) = verdict.drives
+    assert abs(drive.measured / drive.commanded) == pytest.approx(2.0, rel=0.03)
+    assert {fault.test: fault.code for fault in verdict.faults} == {
+        "drive": WHEEL_DIAMETER_MISMATCH,
+        "turn": SKID_STEERING,
+    }
 
 
 def test_a_joint_that_gives_way_explains_why_a_robot_sinks(tmp_path, tried):

@@ -171,7 +171,7 @@ def _touching(robot: Robot, bottom: float) -> set[str]:
 
 def rolls_only_forward(robot: Robot, holder: Joint, driven: Sequence[Joint]) -> bool:
     """Whether a wheel's axle is parallel to the driven ones, but not above them or on a swivel."""
-    if holder.type != "continuous":
+    if not holder.turns:
         return False
     axis = wheel_axis(robot, holder)
     for each in driven:

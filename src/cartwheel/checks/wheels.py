@@ -122,7 +122,7 @@ def is_across(robot: Robot, joint: Joint) -> bool:
 def _rolling(robot: Robot) -> list[Joint]:
     """All joints that turn without limits."""
     joints = robot.joints.values()
-    return [each for each in joints if each.type == "continuous" and each.child in robot.placed]
+    return [each for each in joints if each.turns and each.child in robot.placed]
 
 
 def passive_axle(robot: Robot, steering: Sequence[str]) -> tuple[str, ...]:

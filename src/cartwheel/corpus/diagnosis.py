@@ -126,7 +126,7 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
     if verdict.failure is not None and verdict.controllers:
         # The simulation stopped before the controllers were tested.
         return
-    wheels = any(joint.type == "continuous" for joint in description.joints)
+    wheels = any(joint.turns for joint in description.joints)
     lost = _coded(said, frozenset({files.INCLUDE_ABSENT}))
     if lost is not None and wheels and not verdict.movers:
         yield Fault(test="plugin", subject=str(lost.values.get("file", "")), reason=lost)

@@ -22,6 +22,8 @@ _BRAKED = 0.15
 """Largest part of the speed that a sliding caster takes while the base drives straight ahead."""
 _PULLED = 0.5
 """Largest part of the turn rate for which wheels that point to one side account."""
+_STUCK = 0.1
+"""Predicted part of the turn rate up to which a robot may as well not turn at all."""
 _FLYWHEEL = 20.0
 """Ratio of a wheel's inertia to the largest that it can have, beyond which it may tip a robot."""
 _DRIVING = frozenset(
@@ -86,6 +88,8 @@ def _cause(
     skids, slowest = factors.get(robot.SKID_STEERING, (None, 1.0))
     if skids is not None and slowest < ratio < max(1.0, _rolling(skids)):
         # Fewer wheels than predicted carry the robot, or the friction depends on the direction.
+        return skids
+    if skids is not None and abs(ratio) < slowest <= _STUCK:
         return skids
     product = math.prod(factor for _, factor in factors.values())
     legacy = next((each for each in found if _reverses(each)), None) if turning else None

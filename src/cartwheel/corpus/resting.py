@@ -130,7 +130,7 @@ def blocked(world: World, model: Model, robot: Robot) -> set[str]:
     found: set[str] = set()
     for contact in world.contacts(model.name):
         joint = robot.inbound.get(robot.rigid_root(contact.links[0]))
-        if contact.models[1] == model.name or joint is None or joint.type == "continuous":
+        if contact.models[1] == model.name or joint is None or joint.turns:
             continue
         while joint is not None and joint.name not in found:
             found.add(joint.name)
@@ -158,7 +158,7 @@ def _driven(world: World, model: Model) -> set[str]:
 def _holder(robot: Robot, link: str) -> Joint | None:
     """The joint without a spring that lifts a link; None if it is fixed to the body."""
     joint = robot.inbound.get(robot.rigid_root(link))
-    while joint is not None and joint.type == "continuous":
+    while joint is not None and joint.turns:
         joint = robot.inbound.get(robot.rigid_root(joint.parent))
     if joint is None or joint.axis.spring_stiffness or joint.child not in robot.placed:
         return None
@@ -170,7 +170,7 @@ def _rolls(world: World, robot: Robot, link: str) -> bool:
     """Whether a link is a round wheel that nothing drives."""
     joint = robot.inbound.get(robot.rigid_root(link))
     motors = {name for entry in world.session.simulation.engine.entries for name in entry.motors}
-    if joint is None or joint.type != "continuous" or joint.name in motors:
+    if joint is None or not joint.turns or joint.name in motors:
         return False
     widths = wheel_widths(robot, joint, robot.collisions)
     return widths is None or bool(widths.min() >= ROUND * widths.max())

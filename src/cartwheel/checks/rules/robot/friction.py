@@ -169,7 +169,7 @@ def _ground(robot: Robot, wheels: set[str]) -> float | None:
 
 def _rolls(robot: Robot, holder: Joint) -> bool:
     """Whether a joint holds a round wheel."""
-    if holder.type != "continuous":
+    if not holder.turns:
         return False
     widths = wheel_widths(robot, holder, robot.collisions)
     return widths is None or bool(widths.min() >= ROUND * widths.max())

@@ -152,7 +152,7 @@ def _held(robot: Robot, steering: str) -> list[Joint]:
     return [
         each
         for each in robot.joints.values()
-        if each.type == "continuous"
+        if each.turns
         and each.parent in carried
         and each.child in robot.placed
         and abs(wheel_axis(robot, each)[2]) < CAMBER
