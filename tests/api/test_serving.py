@@ -220,6 +220,7 @@ def test_cameras_have_the_names_that_a_dataset_takes(tmp_path: Path) -> None:
         Dataset(tmp_path / "data", world, cameras=world.cameras).close()
 
 
+@pytest.mark.wording
 def test_the_type_of_an_action_is_not_that_of_a_service():
     with cw.World() as world, raises(MESSAGE_TYPE_UNKNOWN) as caught:
         world.serve("/go", "control_msgs/action/FollowJointTrajectory", print)

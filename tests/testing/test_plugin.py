@@ -380,6 +380,7 @@ def test_fixtures_of_a_project_replace_those_of_the_plugin(pytester_run):
     assert "cartwheel:" not in done.stdout and done.returncode == 1
 
 
+@pytest.mark.wording
 def test_a_condition_that_is_not_met_shows_the_test_and_not_cartwheel(pytester_run):
     done = pytester_run(
         """
@@ -413,6 +414,7 @@ def test_the_fixture_of_the_page(pytester_run):
     assert done.returncode == 0 and "1 passed" in done.stdout, done.stdout
 
 
+@pytest.mark.wording
 def test_an_unknown_option_of_a_mark_is_an_error(pytester_run):
     done = pytester_run(
         'import pytest\n@pytest.mark.cartwheel(worl="walls")\ndef test_it(world): pass'
