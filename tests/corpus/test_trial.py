@@ -10,6 +10,7 @@ from tests.dialects.ros_control.arms import ROS1, transmission
 from tests.dialects.ros_control.cars import BASE, TRACK, car, four_wheels
 
 from cartwheel.api import World
+from cartwheel.api.motion import Twist
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import (
     CONTROLLER_GAINS_MISSING,
@@ -20,6 +21,7 @@ from cartwheel.codes.devices import (
 from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, LINK_RECONNECTED
 from cartwheel.codes.robot import (
     BODY_ON_GROUND,
+    DRIVES_APART,
     DUPLICATE_NAME,
     INERTIA_GEOMETRY_MISMATCH,
     JOINTS_UNDRIVEN,
@@ -40,6 +42,8 @@ from cartwheel.codes.world import SIMULATION_DIVERGED
 from cartwheel.corpus import trial, try_robot
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.drive_causes import cause_of_drive
+from cartwheel.corpus.motion import positions
+from cartwheel.corpus.resting import gave_way
 from cartwheel.corpus.trial import _listened
 from cartwheel.corpus.verdict import Drive, Reach, Stand, Verdict
 from cartwheel.description import load_robot, load_text
@@ -1233,6 +1237,48 @@ def test_the_wheels_of_a_train_explain_how_it_drives_and_turns(tmp_path):
         "drive": WHEEL_DIAMETER_MISMATCH,
         "turn": SKID_STEERING,
     }
+
+
+@pytest.mark.parametrize("same", [False, True])
+def test_a_drive_without_a_command_explains_why_another_one_is_slow(tried, same):
+    """Two pairs of equal wheels, of which one stands still, slide at half the speed."""
+    parts = [BOX.format(name="base", at="0 0 0", size="0.3 0.1 0.04")]
+    for name, x in (("front", 0.1), ("rear", -0.1)):
+        for side, y in (("left", 0.1), ("right", -0.1)):
+            wheel = WHEEL.format(name=f"{name}_{side}", y=y)
+            parts.append(wheel.replace('xyz="0 ', f'xyz="{x} '))
+        topic = "cmd_vel" if same else f"{name}/cmd_vel"
+        plugin = DRIVE.format(diameter=0.1).replace("left_joint", f"{name}_left_joint")
+        plugin = plugin.replace("right_joint", f"{name}_right_joint").replace(
+            '"drive"', f'"{name}"'
+        )
+        command = f"<commandTopic>{topic}</commandTopic></plugin>"
+        parts.append(plugin.replace("</plugin>", command))
+    verdict = tried(*parts)
+    found = [each for each in verdict.observed if each.code is DRIVES_APART]
+    if same:
+        assert verdict.drives[0].follows
+        assert not found
+        return
+    assert [each.values["topics"] for each in found] == [("/front/cmd_vel", "/rear/cmd_vel")]
+    assert [drive.follows for drive in verdict.drives] == [False, False]
+    assert {fault.code for fault in verdict.faults if fault.test == "drive"} == {DRIVES_APART}
+
+
+@pytest.mark.parametrize("moving", [True, False])
+def test_wheels_without_motors_explain_why_a_robot_rolls(moving):
+    parts = [BOX.format(name="base", at="0 0 0", size="0.2 0.1 0.04"), CASTER.format(x=0.1)]
+    parts += [WHEEL.format(name=name, y=y) for name, y in (("left", 0.1), ("right", -0.1))]
+    robot = load_text(f'<robot name="robot">{"".join(parts)}</robot>', file="r.urdf")
+    with World() as one:
+        model = one.spawn(robot, z=0.07)
+        before = positions(one, model)
+        model.velocity = Twist(linear=(0.2, 0.0, 0.0))
+        one.run(2.0)
+        found = [*gave_way(one, model, Robot(robot, None), before, (), moving=moving)]
+    rolling = [("left_joint", "right_joint")] if moving else []
+    assert [each.values["joints"] for each in found] == rolling
+    assert {each.code for each in found} <= {JOINTS_UNDRIVEN}
 
 
 def test_a_joint_that_gives_way_explains_why_a_robot_sinks(tmp_path, tried):

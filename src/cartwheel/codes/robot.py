@@ -207,3 +207,9 @@ WHEELS_TOED = Code(
 ROOT_NOT_HELD = Code(
     "CW250", "root-not-held", "warning", "motors push against a light root link that nothing holds"
 )
+DRIVES_APART = Code(
+    "CW251",
+    "drives-apart",
+    "info",
+    "drives with topics of their own move the same robot, and brake each other",
+)

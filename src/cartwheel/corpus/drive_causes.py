@@ -36,6 +36,7 @@ _DRIVING = frozenset(
         robot.WHEEL_WITHOUT_COLLISION,
         robot.WHEELS_OFF_GROUND,
         robot.BODY_ON_GROUND,
+        robot.DRIVES_APART,
         robot.UNBALANCED,
         robot.EFFORT_ZERO,
         robot.OVERLAPPING_COLLISIONS,

@@ -11,6 +11,7 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import ROUND, wheel_axis, wheel_joints, wheel_links, wheel_widths
 from cartwheel.codes import robot as robot_codes
 from cartwheel.corpus.loads import held_by
+from cartwheel.corpus.verdict import Drive
 from cartwheel.description.model import Joint
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.errors import Diagnostic
@@ -74,12 +75,30 @@ def dragging(
         )
 
 
+def drives_apart(robot: Robot, drives: Sequence[Drive]) -> Iterator[Diagnostic]:
+    """Drives of different wheels that were commanded one after the other."""
+    topics = sorted({drive.topic for drive in drives})
+    wheels = {frozenset((*left, *right)) for left, right in robot.sides}
+    if len(topics) < 2 or len(wheels) < 2 or len(frozenset.union(*wheels)) < sum(map(len, wheels)):
+        return
+    names = " and ".join(f'"{topic}"' for topic in topics)
+    yield robot_codes.DRIVES_APART.diagnostic(
+        f"the drives that receive {names} turn different wheels, so a drive without a command "
+        "brakes the robot",
+        values={"topics": tuple(topics)},
+        origin=robot.description.origin,
+        hint="Command all drives at the same time, for example on the same topic.",
+    )
+
+
 def gave_way(
     world: World,
     model: Model,
     robot: Robot,
     before: Mapping[str, float],
     started: Sequence[Controller],
+    *,
+    moving: bool = False,
 ) -> Iterator[Diagnostic]:
     """Joints without motors, or with motors that wait for commands, that moved while it stood.
 
@@ -89,14 +108,16 @@ def gave_way(
         robot: Its description.
         before: Positions of the joints at the start, rad or m.
         started: The controllers that run.
+        moving: Whether the robot did not stand still. If it has no motors, its wheels may roll.
     """
     waiting = {name: each.name for each in started if not each.holds for name in each.interfaces}
     driven = _driven(world, model) - waiting.keys()
+    rolls = moving and not driven and not waiting
     found = {
         joint.name: abs(model.joint(joint.name) - _within(joint, before[joint.name]))
         for joint in robot.description.joints
         if joint.name in before
-        and joint.type in ("revolute", "prismatic")
+        and (joint.type in ("revolute", "prismatic") or (rolls and joint.turns))
         and joint.name not in driven
         and joint.mimic is None
         and joint.axis.spring_stiffness == 0
@@ -118,7 +139,9 @@ def gave_way(
             else f"no controller or plugin drives the joints {names}{more}"
         )
         yield robot_codes.JOINTS_UNDRIVEN.diagnostic(
-            f'{why}, so they give way: "{most}" moved by {found[most]:.2g}',
+            f"{why}, so the robot rolls"
+            if robot.joints[most].turns
+            else f'{why}, so they give way: "{most}" moved by {found[most]:.2g}',
             values={"joints": tuple(found)},
             origin=robot.joints[most].origin,
             hint=f'Command "{waiting[most]}" and the others at the start.' if wait else "",

@@ -20,7 +20,7 @@ from cartwheel.corpus.gains import weak_gains
 from cartwheel.corpus.limits import stated_limits
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
-from cartwheel.corpus.resting import blocked, dragging, gave_way
+from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
 from cartwheel.corpus.thrusters import has_thrusters, thrusts
 from cartwheel.corpus.verdict import Verdict
 from cartwheel.description import load_robot
@@ -225,7 +225,10 @@ def _moved(
     before = motion.positions(world, model)
     stood = motion.stand(world, model, robot, standing)
     started = _controllers(world).started
-    given_up = [] if stood.fixed else [*gave_way(world, model, Robot(robot, None), before, started)]
+    given_up: list[Diagnostic] = []
+    if not stood.fixed:
+        moving = stood.state == "moves"
+        given_up += gave_way(world, model, Robot(robot, None), before, started, moving=moving)
     verdict = replace(verdict, stand=stood, observed=(*verdict.observed, *given_up))
     yield verdict
     topics, silent = _listened(world)
@@ -245,7 +248,8 @@ def _moved(
         if any(not (drive.follows and drive.turns) for drive in verdict.drives):
             world.run(_LISTENING)
             found = dragging(world, model, Robot(robot, None), started)
-            verdict = replace(verdict, observed=(*verdict.observed, *found))
+            apart = drives_apart(Robot(robot, None), verdict.drives)
+            verdict = replace(verdict, observed=(*verdict.observed, *found, *apart))
         yield verdict
         verdict = replace(verdict, flights=tuple(flights(world, model, robot)))
         yield verdict
