@@ -474,6 +474,12 @@ def test_the_size_with_its_multiplier_is_compared(told, take, tmp_path, case):
     assert told(car(), controller_files=[path]) == []
 
 
+def test_a_negative_multiplier_of_a_side_does_not_change_the_radius(told, tmp_path):
+    path = tmp_path / "car.yaml"
+    path.write_text(ROS2_DIFF + "    right_wheel_radius_multiplier: -1.0\n")
+    assert told(car(), controller_files=[path]) == []
+
+
 def test_a_multiplier_without_a_size_is_that_of_the_measured_separation(told, take, tmp_path):
     path = tmp_path / "car.yaml"
     wrong = ROS2_DIFF.replace(f"wheel_separation: {TRACK}", "wheel_separation_multiplier: 1.5")

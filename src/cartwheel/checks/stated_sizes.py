@@ -251,7 +251,10 @@ def _of_controller(robot: Robot, controller: Controller) -> Iterator[Stated]:
             continue
         name = next((each for each in spellings if controller.has(each)), spellings[0])
         general = times.number if times is not None else None
-        factors = [one.number if one is not None else general for one in sided]
+        # A negative multiplier of a side turns its wheels in the other direction.
+        factors = [
+            general if one is None or one.number is None else abs(one.number) for one in sided
+        ]
         factor = sum(1.0 if one is None else one for one in factors) / len(factors)
         one = Stated(
             robot=robot,

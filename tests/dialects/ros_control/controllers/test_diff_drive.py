@@ -95,6 +95,28 @@ def test_swapped_wheels_are_reported(drive):
     assert made.model.pose.rpy[2] < -0.5
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_negative_multiplier_belongs_to_a_reversed_wheel(make, tmp_path, side):
+    urdf = cart(ROS1)
+    first, rest = urdf.split(f'<joint name="{side}_joint"', 1)
+    reversed_ = f'{first}<joint name="{side}_joint"' + rest.replace("0 1 0", "0 -1 0", 1)
+    base = {
+        "type": "diff_drive_controller/DiffDriveController",
+        "left_wheel": "left_joint",
+        "right_wheel": "right_joint",
+    }
+    factor = {f"{side}_wheel_radius_multiplier": -1.0}
+    wrong = Drive(make, tmp_path, reversed_, {"base": base})
+    assert coded(wrong.world, robot.WHEEL_AXIS_MISALIGNED, joint=f"{side}_joint", axis="-y")
+    wrong = Drive(make, tmp_path, urdf, {"base": base | factor})
+    assert coded(wrong.world, robot.WHEEL_AXIS_MISALIGNED, joint=f"{side}_joint", axis="y")
+    made = Drive(make, tmp_path, reversed_, {"base": base | factor})
+    assert not coded(made.world, robot.WHEEL_AXIS_MISALIGNED)
+    made.go(2.0, linear=0.5)
+    assert made.model.pose.x == pytest.approx(1.0, rel=0.05)
+    assert made.model.pose.rpy[2] == pytest.approx(0.0, abs=0.02)
+
+
 def test_a_circle_closes(drive):
     """v / w is its radius; after 2 pi / w it is where it began, by odometry and in truth."""
     made = drive()

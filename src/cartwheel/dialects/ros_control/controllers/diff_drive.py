@@ -23,6 +23,7 @@ from cartwheel.dialects.ros_control.controllers.odometry import (
 from cartwheel.dialects.ros_control.controllers.twist_command import TwistCommand
 from cartwheel.dialects.ros_control.controllers.wheels import (
     LEFT,
+    RIGHT,
     FramePrefixParameters,
     check_axis,
     frame_prefix,
@@ -134,8 +135,14 @@ class DiffDriveController(Controller):
             )
         pairs = list(zip(left, right, strict=True))
         claims = [self.claim(name, "velocity") for name in (*left, *right)]
-        for wheel in claims:
-            check_axis(self, wheel.joint, LEFT)
+        left_factor, right_factor = (
+            given.radius_factor if each is None else each
+            for each in (given.left_factor, given.right_factor)
+        )
+        for index, wheel in enumerate(claims):
+            # A negative multiplier turns the wheels of a side in the other direction.
+            reversed_ = (left_factor if index < len(left) else right_factor) < 0
+            check_axis(self, wheel.joint, RIGHT if reversed_ else LEFT)
         first_left, first_right = claims[0].joint, claims[len(left)].joint
         if are_swapped(self.part.description, first_left, first_right):
             self.warn(
@@ -146,10 +153,6 @@ class DiffDriveController(Controller):
             )
         separation = given.separation_factor * self._separation(given, first_left, first_right)
         radius = self._radius(given, first_left)
-        left_factor, right_factor = (
-            given.radius_factor if each is None else each
-            for each in (given.left_factor, given.right_factor)
-        )
         topic = "cmd_vel_unstamped" if ros2 and not given.stamped else "cmd_vel"
         self._command = TwistCommand(
             self, topic, timeout=given.timeout, stamped=ros2 and given.stamped

@@ -14,8 +14,8 @@ from cartwheel.dialects.ros_control.controllers.odometry import OdometryParamete
 from cartwheel.dialects.ros_control.parameters import ros2_parameter
 from cartwheel.geometry import Array, matrix_from_quat
 
-LEFT, UP = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-"""Rotation axes of wheels and of steering joints, in the robot's base frame."""
+LEFT, RIGHT, UP = (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
+"""Rotation axes of wheels, of reversed wheels and of steering joints, in the robot's base frame."""
 
 
 def joint_place(description: RobotDescription, joint: str) -> tuple[float, float, float]:
@@ -38,13 +38,14 @@ def check_axis(controller: Controller, joint: str, wanted: tuple[float, float, f
     described = controller.part.description.joint(joint)
     assert described is not None
     if float(joint_axis(controller.part.description, joint) @ np.array(wanted)) < -0.5:
-        name = "xyz"[max(range(3), key=lambda index: wanted[index])]
+        index = max(range(3), key=lambda each: abs(wanted[each]))
+        sign, name = "-" if wanted[index] > 0 else "", "xyz"[index]
         controller.warn(
             robot.WHEEL_AXIS_MISALIGNED,
-            f'the axis of joint "{joint}" points along the robot\'s -{name} axis, so '
+            f'the axis of joint "{joint}" points along the robot\'s {sign}{name} axis, so '
             "positive commands turn the wheel in the opposite direction",
             at=described.origin,
-            values={"joint": joint, "axis": f"-{name}"},
+            values={"joint": joint, "axis": f"{sign}{name}"},
         )
 
 
