@@ -334,6 +334,11 @@ def test_the_measured_turn_rate_of_sliding_wheels_is_stated_if_it_is_not_the_pre
     assert cause.code is SKID_STEERING
     assert cause.values["measured"] == pytest.approx(0.6)
     assert cause.hint and cause != skids
+    # The steering hardware whose wheels all turn at the same speed only estimates the rate.
+    estimate = SKID_STEERING.diagnostic("slide", values={"hardware": "steer", "estimate": 0.39})
+    cause = cause_of_drive([estimate], 0.23, turning=True, arc=True)
+    assert cause.values["measured"] == pytest.approx(0.23)
+    assert cause_of_drive([estimate], 0.4, turning=True, arc=True) is estimate
 
 
 def test_a_wrong_separation_is_why_a_robot_with_sliding_wheels_turns_too_fast():

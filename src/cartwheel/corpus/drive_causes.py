@@ -64,7 +64,8 @@ def cause_of_drive(
 
 def _as_measured(skids: Diagnostic, ratio: float) -> Diagnostic:
     """The finding that wheels slide, with the measured turn rate if it is not the predicted one."""
-    predicted, stated = (skids.values.get(name) for name in ("ratio", "stated"))
+    estimate, stated = (skids.values.get(name) for name in ("estimate", "stated"))
+    predicted = skids.values.get("ratio", estimate)
     if not isinstance(predicted, float) or abs(predicted - ratio) <= _DIFFERS:
         return skids
     hint = ""
