@@ -103,6 +103,37 @@ def test_cases_can_be_listed_and_selected(command, capsys):
     assert capsys.readouterr().out.split() == ["drive[v=0.5,seed=4]", "drive[v=0.5,seed=5]"]
 
 
+def test_other_yaml_files_in_a_folder_are_ignored(command, capsys):
+    write("controller_manager:\n  ros__parameters: {update_rate: 100}\n", "controllers.yaml")
+    write("{{ template }}: [\n", "template.yml")
+    write("- a list\n", "list.yaml")
+    for folder in (".github", "install"):
+        Path(folder).mkdir()
+        write(MIXED.replace("0.1", "0.2"), f"{folder}/drive.yaml")
+    assert command(".", "--list") == 2
+    assert "CW038" in capsys.readouterr().err
+    write(MIXED)
+    assert command(".", "--list") == 0
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 2
+    assert all(name in err for name in ("controllers.yaml", "template.yml", "list.yaml"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "expect: [{moves: cart}\nrobots: []\n",
+        f"{CART}{GO}expects: []\n",
+        CART,
+        "expect: []\nfoo: 1\n",
+    ],
+)
+def test_a_mistake_in_a_scenario_of_a_folder_is_reported(command, capsys, text):
+    write(text)
+    assert command(".") == 2
+    assert "CW036" in capsys.readouterr().err
+
+
 def test_the_schema_is_printed(command, capsys):
     assert command("--schema") == 0
     assert json.loads(capsys.readouterr().out) == json.loads(schema_text())

@@ -1,6 +1,7 @@
 """Scenarios: tests of robots in files, for `cartwheel test`."""
 
 from cartwheel.scenarios.cases import Case, Scenario, cases_of, digests, load_scenario
+from cartwheel.scenarios.finding import find_scenarios
 from cartwheel.scenarios.junit import as_junit
 from cartwheel.scenarios.outcome import Outcome
 from cartwheel.scenarios.page import as_page
@@ -21,6 +22,7 @@ __all__ = [
     "as_page",
     "cases_of",
     "digests",
+    "find_scenarios",
     "load_scenario",
     "schema_text",
 ]

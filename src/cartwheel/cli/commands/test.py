@@ -32,18 +32,20 @@ from cartwheel.scenarios import (
     as_page,
     cases_of,
     digests,
+    find_scenarios,
     load_scenario,
     schema_text,
 )
 
 SCHEMA = 1
 _KEPT = ("failures", "all", "none")
-_SUFFIXES = (".yaml", ".yml")
 _REPORT = "report.html"
 _INTERVAL = 10.0
 """Wall time between two lines about the progress, s."""
 _MOST_LINES = 10
 """Maximum number of lines of a program's output for a case that failed."""
+_MOST_NAMES = 5
+"""Maximum number of ignored files whose names are shown."""
 _MOST_SHOWN = 20
 """Maximum number of failed cases that are shown at the end."""
 
@@ -124,7 +126,7 @@ def test(request: Request) -> int:
 
 
 def _found(files: Sequence[Path]) -> list[Path]:
-    """The scenario files, sorted within each folder.
+    """The scenario files, sorted within each folder. Other YAML files in folders are reported.
 
     Raises:
         CartwheelError: A folder contains no scenario.
@@ -134,12 +136,16 @@ def _found(files: Sequence[Path]) -> list[Path]:
         if not file.is_dir():
             found.append(file)
             continue
-        inside = sorted(each for each in file.rglob("*") if each.suffix in _SUFFIXES)
+        inside, others = find_scenarios(file)
+        if others:
+            names = ", ".join(str(each) for each in others[:_MOST_NAMES])
+            more = ", …" if len(others) > _MOST_NAMES else ""
+            note(f"ignored files that are not scenarios: {names}{more}")
         if not inside:
             raise CartwheelError(
                 f"{file} contains no scenario files",
                 code=NO_CASES,
-                hint="Scenario files end with .yaml.",
+                hint='Scenario files end with .yaml, and contain the key "expect".',
                 values={"path": str(file)},
             )
         found += inside
