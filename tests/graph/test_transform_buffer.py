@@ -127,6 +127,15 @@ def test_unknown_frames_have_a_suggestion(buffer):
     assert buffer.lookup("/odom", "/base").x == 1.0
 
 
+@pytest.mark.wording
+def test_a_frame_that_a_drive_does_not_publish_has_a_hint():
+    buffer = TransformBuffer(SECOND // 2)
+    mount(buffer, "laser", 1.0, parent="base")
+    with raises(FRAME_UNKNOWN, UnknownNameError, name="odom", since=0.5) as caught:
+        buffer.lookup("odom", "laser")
+    assert "<publish_odom_tf>" in caught.value.hint
+
+
 @pytest.mark.parametrize(
     "parent, child, pose",
     [

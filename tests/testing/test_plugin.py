@@ -106,6 +106,8 @@ def test_a_summary_of_a_message() -> None:
     found = summary(scan)
     assert "ranges: 11 numbers, 0 to 9" in found and "intensities: [1, 2.5]" in found
     assert "range_max: 0.1" in found and not any("header" in each for each in found)
+    nothing = summary(LaserScan(ranges=[math.inf] * 11))
+    assert "ranges: 11 numbers, none of them finite" in nothing
     odometry = Odometry(child_frame_id="x" * 300)
     odometry.pose.pose.position.x = 1.25
     text = "\n".join(summary(odometry))
@@ -400,6 +402,38 @@ def test_a_condition_that_is_not_met_shows_the_test_and_not_cartwheel(pytester_r
     assert "within 0.1 s" in done.stdout
     for part in ("timing.py", "topics.py", "def run_until", "def wait"):
         assert part not in done.stdout, done.stdout
+
+
+def test_an_error_in_a_callback_shows_the_test_and_not_cartwheel(pytester_run):
+    done = pytester_run(
+        """
+        import json
+
+        def test_callback(world):
+            def check(message):
+                json.loads("{")  # my mistake
+
+            world.subscribe("/clock", check)
+            world.run(0.1)
+        """
+    )
+    assert done.returncode == 1 and "# my mistake" in done.stdout
+    assert "world.run(0.1)" in done.stdout and "JSONDecodeError" in done.stdout
+    assert "src/cartwheel" not in done.stdout, done.stdout
+
+
+def test_an_error_in_a_library_that_cartwheel_calls_shows_cartwheel(pytester_run):
+    done = pytester_run(
+        """
+        import json
+
+        def test_it(world):
+            world.subscribe("/clock", json.loads)
+            world.run(0.1)
+        """
+    )
+    assert done.returncode == 1 and "TypeError" in done.stdout
+    assert "messaging.py" in done.stdout
 
 
 def test_the_fixture_of_the_page(pytester_run):

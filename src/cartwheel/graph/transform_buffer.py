@@ -203,9 +203,13 @@ class TransformBuffer:
             error.values = {**error.values, "ignored": self._ignored[frame]}
             error.hint = f"Its transforms are ignored: {self._ignored[frame]}."
         elif self._began_ns is not None and not error.values["meant"]:
+            since = self._began_ns / SECOND
+            error.values = {**error.values, "since": since}
             error.hint = (
-                f"{error.hint or ''} Transforms are stored since {self._began_ns / SECOND:.9g} s, "
-                f"and drives publish theirs during a run: call World.keep_transforms before it."
+                f"{error.hint or ''} No transform of it has been published since {since:.9g} s. "
+                f"Drives publish theirs during a run: call World.keep_transforms before it. In the "
+                f"description, a tag of the drive such as <publish_odom_tf> or <publishOdomTF> can "
+                f"disable them."
             )
         return error
 

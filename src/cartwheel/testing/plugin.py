@@ -6,6 +6,7 @@ simulation.
 
 from __future__ import annotations
 
+import sysconfig
 from collections.abc import Generator, Iterator
 from pathlib import Path
 from types import TracebackType
@@ -31,6 +32,7 @@ _MARKS = (
     "`record` selects topics, such as `record='/odom'`.",
 )
 _SOURCE = Path(__file__).parents[1]
+_LIBRARIES = frozenset({"site-packages", "dist-packages"})
 _BENCH: pytest.StashKey[Bench] = pytest.StashKey()
 _ITEM: pytest.StashKey[pytest.Item | None] = pytest.StashKey()
 """The current test."""
@@ -143,12 +145,13 @@ def pytest_runtest_makereport(
 ) -> Generator[None, Any, None]:
     """Adds what is known about the worlds of a failed test to its report.
 
-    An error of Cartwheel shows the lines of the test, but not those of Cartwheel.
+    An error of Cartwheel, or of a function of the test that Cartwheel has called, shows the lines
+    of the test, but not those of Cartwheel.
     """
     excinfo = call.excinfo
     if (
         excinfo is None
-        or not isinstance(excinfo.value, CartwheelError)
+        or not (isinstance(excinfo.value, CartwheelError) or _is_of_callback(excinfo.value))
         or item.config.getoption("fulltrace")
     ):
         outcome = yield
@@ -165,6 +168,24 @@ def pytest_runtest_makereport(
         report = outcome.get_result()
         if report.failed:
             witnesses.complete(report, item)
+
+
+def _is_of_callback(error: BaseException) -> bool:
+    """Whether a function of the test that Cartwheel has called raised an error."""
+    after: Path | None = None
+    entry = error.__traceback__
+    while entry is not None:
+        file = Path(entry.tb_frame.f_code.co_filename)
+        if _SOURCE in file.parents:
+            after = _SOURCE
+        elif after is _SOURCE:
+            after = file
+        entry = entry.tb_next
+    if after is None or after is _SOURCE or not after.is_absolute():
+        return False
+    # Libraries that Cartwheel itself calls are no functions of the test.
+    library = Path(sysconfig.get_paths()["stdlib"])
+    return library not in after.parents and _LIBRARIES.isdisjoint(after.parts)
 
 
 def _own(trace: TracebackType | None) -> TracebackType | None:

@@ -59,8 +59,9 @@ def _value(field: Field, value: Any) -> str:
         return f"{len(value)} texts"
     numbers = np.asarray(value)
     known = numbers[np.isfinite(numbers)]
-    span = f", {_one(known.min().item())} to {_one(known.max().item())}" if known.size else ""
-    return f"{len(value)} numbers{span}"
+    if not known.size:
+        return f"{len(value)} numbers, none of them finite"
+    return f"{len(value)} numbers, {_one(known.min().item())} to {_one(known.max().item())}"
 
 
 def _one(value: Any) -> str:
