@@ -11,8 +11,8 @@ those of programs that it started.
 
 What differs: the parent is the launcher, ``/proc/PID/cmdline`` and ``/proc/PID/environ`` are the
 launcher's (`tests.processes` finds the bridges of a program nevertheless), all modules are imported
-already, hashes of strings have the same seed, and at the end no objects are freed. Tests that look
-at these, at the start-up or at the usage of children use `subprocess`.
+already, OpenBLAS has one thread, hashes of strings have the same seed, and at the end no objects
+are freed. Tests that look at these, at the start-up or at the usage of children use `subprocess`.
 """
 
 from __future__ import annotations
@@ -331,7 +331,7 @@ def _started(launcher: _Launcher, _process: int) -> socket.socket:
         others = {name: os.environ[name] for name in os.environ if not name.startswith(_AT_START)}
         process = subprocess.Popen(
             [launcher.python, __file__, str(theirs.fileno()), str(listener.fileno())],
-            env={**others, **dict(launcher.variables)},
+            env={**others, **dict(launcher.variables), "OPENBLAS_NUM_THREADS": "1"},
             pass_fds=[theirs.fileno(), listener.fileno()],
             stdin=subprocess.DEVNULL,
             cwd="/",

@@ -12,6 +12,7 @@ import os
 import sys
 import traceback
 
+from cartwheel import blas
 from cartwheel.cli import gazebo, interrupts
 from cartwheel.codes.command import FILE_TOO_DEEP, INTERNAL_FAULT, SYSTEM_LIMIT
 from cartwheel.errors import CartwheelError, Diagnostic
@@ -22,6 +23,7 @@ def main() -> None:
     """The entry point of ``cartwheel``."""
     # With Python's own thresholds, looking for garbage takes a tenth of a short command's time.
     gc.set_threshold(10_000, 20, 10)
+    blas.use_one_thread()
     _open_streams()
     set_caller(Caller.COMMAND_LINE)
     interrupts.install()

@@ -16,6 +16,7 @@ from types import TracebackType
 from typing import IO, Self
 from xmlrpc.client import ServerProxy
 
+from cartwheel.blas import environment_for_others
 from cartwheel.codes.command import LAUNCH_FAILED
 from cartwheel.errors import CartwheelError
 from cartwheel.watchers import announce
@@ -55,13 +56,18 @@ class Launched:
         self.command = list(command)
         self.reported = False
         """Whether an error contains the last output."""
-        self._mark = f"{_MARK}={secrets.token_hex(16)}"
+        mark = secrets.token_hex(16)
+        self._mark = f"{_MARK}={mark}"
         self._output: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         try:
             self._process = subprocess.Popen(  # noqa: S603 - the user allowed it
                 self.command,
                 cwd=folder,
-                env={**os.environ, **environment, _MARK: self._mark.partition("=")[2]},
+                env={
+                    **environment_for_others(),
+                    **environment,
+                    _MARK: self._mark.partition("=")[2],
+                },
                 stdin=subprocess.DEVNULL,
                 stdout=self._output,
                 stderr=subprocess.STDOUT,
