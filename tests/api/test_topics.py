@@ -23,6 +23,27 @@ from cartwheel.errors import GraphError, UnknownNameError
 CMD = "/part2_cmr/cmd_vel"
 
 
+def test_names_without_a_slash_are_in_the_root_namespace() -> None:
+    with cw.World("empty") as world:
+        world.spawn("rosbots.xacro")
+        odometry = world.topic("/odom")
+        assert world.topic("odom") is odometry and odometry.name == "/odom"
+        box = world.mailbox("odom")
+        world.subscribe("odom", lambda message: None)
+        world.publish(CMD[1:], linear_x=0.3)
+        assert world.topic(CMD[1:]).latest is None
+        world.serve("lamp/switch", "std_srvs/srv/SetBool", lambda request: {"success": True})
+        assert world.call("lamp/switch", data=True).success
+        world.run(1.0)
+        assert len(box.drain()) == 101 and odometry.latest.twist.twist.linear.x > 0.29
+        with world.fault("odom", drop=1.0) as fault:
+            assert fault.topics == ("/odom",)
+            world.run(0.5)
+        assert odometry.count == 101
+        with raises(TOPIC_UNKNOWN, meant="/odom"):
+            world.topic("odm")
+
+
 def test_a_topic_has_the_newest_messages() -> None:
     with cw.World("empty") as world:
         world.spawn("rosbots.xacro")

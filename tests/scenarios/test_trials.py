@@ -131,6 +131,28 @@ expect:
     assert outcome.status == "passed", outcome.findings[0].text
 
 
+def test_names_in_steps_and_conditions_need_no_slash(run):
+    outcome = run(
+        CART
+        + f"""
+steps:
+  - hold: {DRIVE[1:]}
+    message: {{linear: {{x: 0.4}}}}
+  - fault: odom
+    drop: 1
+  - wait: 1
+  - end_fault: /odom
+  - wait: 1
+  - release: {DRIVE}
+expect:
+  - publishes: odom
+  - expression: count('odom') > 50 and field('odom', 'twist.twist.linear.x') > 0.3
+  - moves: cart
+"""
+    )
+    assert outcome.status == "passed", outcome
+
+
 @pytest.mark.parametrize("step", ["publish", "hold"])
 def test_messages_of_steps_have_the_values_of_yaml(run, step):
     # YAML 1.1 reads 4e-1 as a text, and a value that is not given as null.

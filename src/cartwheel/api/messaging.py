@@ -16,7 +16,14 @@ from cartwheel.api.topics import Topic
 from cartwheel.codes.graph import TOPIC_UNKNOWN
 from cartwheel.codes.running import CONTROLLERS_NOT_NAMED
 from cartwheel.errors import UnknownNameError
-from cartwheel.graph import CheckedPublisher, Graph, Mailbox, Subscription, made_message
+from cartwheel.graph import (
+    CheckedPublisher,
+    Graph,
+    Mailbox,
+    Subscription,
+    absolute_name,
+    made_message,
+)
 from cartwheel.messages.typed import Kind, M, name_of
 from cartwheel.simulation.limits import check_size
 
@@ -101,7 +108,7 @@ class MessagingWorld(TimedWorld):
             check_size(keep)
         self._describe(name)
         with self._used():
-            found = self._known_topics.get(name)
+            found = self._known_topics.get(absolute_name(name))
             if found is None:
                 with self._looking_up():
                     found = Topic(self, name, full, keep)

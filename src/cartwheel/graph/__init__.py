@@ -5,7 +5,7 @@ from cartwheel.graph.actionlib import ActionTopics
 from cartwheel.graph.graph import Graph
 from cartwheel.graph.joint_inputs import JointInput
 from cartwheel.graph.mailbox import Mailbox
-from cartwheel.graph.names import check_prefix, resolve_frame, resolve_name
+from cartwheel.graph.names import absolute_name, check_prefix, resolve_frame, resolve_name
 from cartwheel.graph.parameters import ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
 from cartwheel.graph.renaming import TopicRenaming
@@ -45,6 +45,7 @@ __all__ = [
     "TakeValues",
     "TopicInfo",
     "TopicRenaming",
+    "absolute_name",
     "check_prefix",
     "checked_handler",
     "choices",

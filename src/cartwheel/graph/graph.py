@@ -27,7 +27,7 @@ from cartwheel.errors import GraphError, UnknownNameError
 from cartwheel.graph.action import Action
 from cartwheel.graph.joint_inputs import JointInputs
 from cartwheel.graph.mailbox import Mailbox
-from cartwheel.graph.names import resolve_name
+from cartwheel.graph.names import absolute_name, resolve_name
 from cartwheel.graph.parameters import Parameters
 from cartwheel.graph.topic import (
     Callback,
@@ -173,9 +173,10 @@ class Graph:
             self.types.note(type_name)
         with self._lock:
             if type_name is None:
-                if name not in self._topics:
+                known = self._topics.get(absolute_name(name))
+                if known is None:
                     raise UnknownNameError("topic", name, self._topics, code=TOPIC_UNKNOWN)
-                type_name = self._topics[name].type
+                type_name = known.type
             topic = self._topic(name, type_name)
             subscription = Subscription(self, topic, callback, node=node, take_values=take_values)
             topic.subscriptions += (subscription,)
@@ -288,9 +289,10 @@ class Graph:
             UnknownNameError: The service does not exist.
         """
         with self._lock:
-            if name not in self._services:
+            service = self._services.get(absolute_name(name))
+            if service is None:
                 raise UnknownNameError("service", name, self._services, code=SERVICE_UNKNOWN)
-            return self._services[name]
+            return service
 
     def call(self, name: str, request: Any) -> Future[Any]:
         """Calls a service. Callable on any thread except the owner's, which would deadlock.
@@ -338,9 +340,10 @@ class Graph:
         """
         with self._lock:
             live = {topic.name: topic for topic in self._live()}
-            if name not in live:
+            topic = live.get(absolute_name(name))
+            if topic is None:
                 raise UnknownNameError("topic", name, live, code=TOPIC_UNKNOWN)
-            return live[name].info()
+            return topic.info()
 
     def subscriptions(self, node: str) -> tuple[Subscription, ...]:
         """The subscriptions of a node, by the names of their topics."""
@@ -378,9 +381,10 @@ class Graph:
             UnknownNameError: The action does not exist.
         """
         with self._lock:
-            if name not in self._actions:
+            action = self._actions.get(absolute_name(name))
+            if action is None:
                 raise UnknownNameError("action", name, self._actions, code=ACTION_UNKNOWN)
-            return self._actions[name]
+            return action
 
     def _live(self) -> Iterator[Topic]:
         """The topics with a publisher or a subscriber, sorted by name."""

@@ -28,6 +28,11 @@ def resolve_name(name: str, namespace: str = "") -> str:
     return full
 
 
+def absolute_name(name: str) -> str:
+    """A name for a look-up: without a leading ``/``, it is in the root namespace, as in ROS."""
+    return name if name.startswith("/") or not name else f"/{name}"
+
+
 def resolve_frame(frame: str, prefix: str = "") -> str:
     """Frame name with a robot's tf_prefix. A leading ``/`` marks a global name and is removed.
 

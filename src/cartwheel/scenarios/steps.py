@@ -9,6 +9,7 @@ from cartwheel.codes.command import SCENARIO_INVALID
 from cartwheel.codes.graph import SERVICE_UNKNOWN
 from cartwheel.errors import CartwheelError, UnknownNameError
 from cartwheel.geometry import Pose
+from cartwheel.graph import absolute_name
 from cartwheel.graph.action import GoalState
 from cartwheel.messages import from_dict, to_dict
 from cartwheel.scenarios.trial import UNTIL, StepFailedError, Trial
@@ -65,7 +66,7 @@ class Steps:
         trial.world.publish(name, from_dict(kind, step.get("message") or {}))
 
     def _hold(self, trial: Trial, step: Mapping[str, Any]) -> None:
-        topic = step["hold"]
+        topic = absolute_name(step["hold"])
         self._end_hold(topic)
         held = trial.world.topic(topic)
         message = from_dict(held.type, step.get("message") or {})
@@ -77,13 +78,13 @@ class Steps:
         self._held.pop(topic, lambda: None)()
 
     def _release(self, trial: Trial, step: Mapping[str, Any]) -> None:  # noqa: ARG002
-        topic = step["release"]
+        topic = absolute_name(step["release"])
         if topic not in self._held:
             raise UnknownNameError("hold", topic, self._held, code=SCENARIO_INVALID)
         self._end_hold(topic)
 
     def _fault(self, trial: Trial, step: Mapping[str, Any]) -> None:
-        topic = step["fault"]
+        topic = absolute_name(step["fault"])
         self._end_fault_of(topic)
         names = ("drop", "delay", "frozen", "noise", "bias")
         fault = trial.world.fault(topic, **{name: step[name] for name in names if name in step})
@@ -94,7 +95,7 @@ class Steps:
         self._faults.pop(topic, lambda: None)()
 
     def _end_fault(self, trial: Trial, step: Mapping[str, Any]) -> None:  # noqa: ARG002
-        topic = step["end_fault"]
+        topic = absolute_name(step["end_fault"])
         if topic not in self._faults:
             raise UnknownNameError("fault", topic, self._faults, code=SCENARIO_INVALID)
         self._end_fault_of(topic)
@@ -120,7 +121,7 @@ class Steps:
                 )
 
     def _send_goal(self, trial: Trial, step: Mapping[str, Any]) -> None:
-        name = step["send_goal"]
+        name = absolute_name(step["send_goal"])
         actions = {each.name: each for each in trial.world.graph.actions()}
         if name not in actions:
             raise UnknownNameError("action", name, actions, code=SERVICE_UNKNOWN)

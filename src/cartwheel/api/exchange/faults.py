@@ -81,11 +81,11 @@ class FaultyWorld(FramedWorld):
             CartwheelError: A number is out of range.
             SimulationError: The world is closed.
         """
-        names = several(topics, "topics")
         with self._used() as simulation:
+            found = [self.graph.topic(name) for name in several(topics, "topics")]
             made = Fault(
                 simulation,
-                [(name, self.graph.topic(name).type) for name in names],
+                [(each.name, each.type) for each in found],
                 drop=drop,
                 delay=delay,
                 frozen=frozen,
@@ -93,7 +93,9 @@ class FaultyWorld(FramedWorld):
                 bias=bias or {},
                 change=change,
             )
-            made.begin([Interception(self.graph, name, made.receiver(name)) for name in names])
+            made.begin(
+                [Interception(self.graph, each.name, made.receiver(each.name)) for each in found]
+            )
             self._faults = (*self.faults, made)
             return made
 

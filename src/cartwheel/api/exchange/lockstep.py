@@ -142,6 +142,7 @@ class Lockstep:
         self._period, self._wall_timeout = period, wall_timeout
         self._start_timeout, self._check = start_timeout, check or _nothing
         self._lock = threading.Lock()
+        commands = [world.graph.topic(name).name for name in commands]
         self._boxes: dict[str, deque[Any]] = {name: deque(maxlen=_MOST) for name in commands}
         self._deliver: dict[str, Callable[[Any], None]] = {}
         self._due = self._now
