@@ -120,12 +120,13 @@ BAD_PLANE = (
     '<model name="bad"><link name="l"><collision name="c"><geometry><plane/></geometry>'
     "</collision></link></model>"
 )
+_LOOPS = "".join(
+    f'<joint name="{a}{b}" type="fixed"><parent>{a}</parent><child>{b}</child></joint>'
+    for a, b in ("ab", "ba", "cd", "dc", "ac", "ca")
+)
 BAD_LOOP = (
-    '<model name="bad"><link name="a"/><link name="b"/>'
-    '<joint name="ab" type="revolute"><parent>a</parent><child>b</child>'
-    "<axis><xyz>0 0 1</xyz></axis></joint>"
-    '<joint name="ba" type="revolute"><parent>b</parent><child>a</child>'
-    "<axis><xyz>0 0 1</xyz></axis></joint></model>"
+    f'<model name="bad"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>{_LOOPS}'
+    "</model>"
 )
 
 
