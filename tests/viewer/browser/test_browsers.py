@@ -123,15 +123,16 @@ def test_selection_toggles_and_choices_are_each_browsers_own(fresh):
         change(one, "Echo", "/imu/data")
         change(one, "Show the image", False)
         one.hear(lambda m: str(m.get("name", "")).startswith("/models/post/collision_"))
-        settle(fresh)
+        # The page hears of each change at its own time.
         eventually(lambda: desk.panel(WorldPanel, first).selected == "post", what="it selected")
+        eventually(lambda: desk.panel(TopicsPanel, first)._tap is not None, what="the echo")
+        eventually(lambda: desk.panel(CameraPanel, first)._tap is None, what="no image")
+        settle(fresh)
         assert desk.panel(WorldPanel, second).selected is None
         seats = desk.stage.seats
         assert (seats[first].display.collision, seats[second].display.collision) == (True, False)
         assert (seats[first].display.visual, seats[second].display.visual) == (False, True)
-        assert desk.panel(TopicsPanel, first)._tap is not None
         assert desk.panel(TopicsPanel, second)._tap is None
-        assert desk.panel(CameraPanel, first)._tap is None
         assert desk.panel(CameraPanel, second)._tap is not None
         # What has been sent up to now: a last thing that only the second one does.
         change(two, "Link names", True)
