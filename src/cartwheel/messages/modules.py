@@ -45,5 +45,5 @@ def _type(package: str, name: str) -> str | None:
 
 def names(package: str) -> list[str]:
     """Names of the built-in messages of a package, and of parts of its services and actions."""
-    full = sorted(name for name in type_names() if name.startswith(f"{package}/"))
+    full = [name for name in type_names() if name.startswith(f"{package}/")]
     return [name.split("/")[2] for name in full if is_bundled(name)]

@@ -125,9 +125,9 @@ def exists(name: str) -> bool:
     return name in loaded().fielddefs or name in _texts()
 
 
-def type_names() -> set[str]:
-    """Names of all message types, and of all parts of services and actions."""
-    return {*loaded().fielddefs, *_texts()}
+def type_names() -> list[str]:
+    """Names of all message types, and of all parts of services and actions, sorted."""
+    return sorted({*loaded().fielddefs, *_texts()})
 
 
 def fields_of(name: str) -> Any:
