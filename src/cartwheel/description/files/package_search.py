@@ -34,7 +34,7 @@ _OF_REPOSITORIES = (".git", ".gitignore", ".gitmodules", ".gitattributes", ".git
 
 
 _FRESH = 1.0
-"""Time for which the packages in a folder are remembered, s: until a description has been read."""
+"""Time for which the list of packages in a folder is reused, s. Descriptions are read faster."""
 
 
 class PackageSearch:
