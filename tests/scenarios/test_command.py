@@ -16,7 +16,7 @@ import pytest
 from tests import launching
 
 from cartwheel.cli.main import run as run_command
-from cartwheel.scenarios import schema_text
+from cartwheel.scenarios import find_scenarios, schema_text
 
 from .conftest import CART, DRIVE
 
@@ -117,6 +117,16 @@ def test_other_yaml_files_in_a_folder_are_ignored(command, capsys):
     out, err = capsys.readouterr()
     assert len(out.splitlines()) == 2
     assert all(name in err for name in ("controllers.yaml", "template.yml", "list.yaml"))
+
+
+def test_a_hostile_yaml_file_takes_no_time_by_its_square(tmp_path):
+    (tmp_path / "empty.yaml").write_text("\n" * 100_000 + "[")
+    (tmp_path / "mistake.yaml").write_text("\n\n  expect: [")
+    start = time.process_time()
+    scenarios, others = find_scenarios(tmp_path)
+    assert time.process_time() - start < 5
+    assert [each.name for each in scenarios] == ["mistake.yaml"]
+    assert [each.name for each in others] == ["empty.yaml"]
 
 
 @pytest.mark.parametrize(

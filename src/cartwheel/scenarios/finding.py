@@ -10,9 +10,10 @@ from pathlib import Path
 from cartwheel import yaml_text
 from cartwheel.scenarios.schema import schema
 
-SUFFIXES = (".yaml", ".yml")
+_SUFFIXES = (".yaml", ".yml")
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
-_EXPECT = re.compile(r"""^\s*["']?expect["']?\s*:""", re.MULTILINE)
+# Blanks at the start of a line, not `\s`: many empty lines would take time by their square.
+_EXPECT = re.compile(r"""^[^\S\n]*["']?expect["']?\s*:""", re.MULTILINE)
 
 
 def find_scenarios(folder: Path) -> tuple[list[Path], list[Path]]:
@@ -32,7 +33,7 @@ def _files(folder: Path) -> Iterator[Path]:
     for root, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".") and name not in _SKIPPED]
         for name in names:
-            if name.endswith(SUFFIXES) and not name.startswith("."):
+            if name.endswith(_SUFFIXES) and not name.startswith("."):
                 yield Path(root, name)
 
 
