@@ -171,6 +171,22 @@ def test_triggers_that_multiply_are_bounded_and_reported(triggered):
     assert report.values["topic"] == "/a"
 
 
+def test_a_subscriber_may_reset_the_world(triggered):
+    """The reset clears the triggers that still wait, also those that are due in this step."""
+    plugin = '<input type="gz.msgs.Empty" topic="/in"/><output type="gz.msgs.Empty" topic="/out"/>'
+    world, got = triggered(KEYS[: KEYS.index("<input")] + plugin + "</plugin>", "/out")
+    subscription = world.subscribe("/out", lambda _: world.reset())
+    for _ in range(3):
+        world.publish("/in")
+    world.run(0.1)
+    assert len(got) == 1
+    assert not coded(world.session.simulation, running.PLUGIN_FAILED)
+    subscription.close()
+    world.publish("/in")
+    world.run(0.1)
+    assert len(got) == 2
+
+
 def test_integers_have_at_most_64_bits():
     assert parse_text_format("a: 0xFFFFFFFFFFFFFFFF b: -5") == {"a": 2**64 - 1, "b": -5}
     assert parse_text_format(f"a: {2**64}") == {"a": 2.0**64}

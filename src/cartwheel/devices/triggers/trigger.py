@@ -88,7 +88,8 @@ class Trigger(Component):
     def _publish(self) -> None:
         # Those that its own outputs trigger are due at the next step. Otherwise, a loop never ends.
         for _ in range(len(self._due)):
-            if self._due[0] > self.part.time_ns:
+            # A subscriber that resets the world clears the rest.
+            if not self._due or self._due[0] > self.part.time_ns:
                 break
             self._due.popleft()
             for publisher, message in self._outputs:
