@@ -107,20 +107,31 @@ class TransformBuffer:
             known |= {parent for _, parent, _ in samples}
         return sorted(known)
 
-    def lookup(self, target: str, source: str, time_ns: int | None = None) -> Pose:
+    def lookup(
+        self,
+        target: str,
+        source: str,
+        time_ns: int | None = None,
+        *,
+        named: Callable[[str], str] = str,
+    ) -> Pose:
         """Pose of a frame in another frame, interpolated between two transforms.
 
         Args:
             target: The frame in which the pose is given.
             source: The frame whose pose is given.
             time_ns: Time, ns; None for the newest time at which all transforms are known.
+            named: Returns the name here of a frame that is not known by its own name.
 
         Raises:
             UnknownNameError: A frame does not exist.
             GraphError: The frames are not connected, or not at this time.
         """
-        target, source = target.lstrip("/"), source.lstrip("/")
         frames = self.frames
+        target, source = (
+            frame if frame in frames else named(frame)
+            for frame in (target.lstrip("/"), source.lstrip("/"))
+        )
         for frame in (target, source):
             if frame not in frames:
                 raise self._unknown(frame, frames)

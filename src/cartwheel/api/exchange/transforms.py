@@ -59,9 +59,7 @@ class FramedWorld(MessagingWorld):
             frames = self._frame(target, "target"), self._frame(source, "source")
             stored = self._stored()
             try:
-                return stored.buffer.lookup(
-                    stored.known(frames[0]), stored.known(frames[1]), moment
-                )
+                return stored.buffer.lookup(*frames, moment, named=stored.named)
             except UnknownNameError as error:
                 if not error.values["meant"] and (elsewhere := self._unread_topics(stored)):
                     error.hint = (
@@ -168,11 +166,7 @@ class _Stored:
             for topic in sorted(resident.part.transformed - self.topics):
                 self._read(topic, self._on_odometry)
 
-    def known(self, frame: str) -> str:
-        """A frame that is stored, which may have a name of gz-sim; otherwise, the name itself."""
-        return frame if frame.lstrip("/") in self.buffer.frames else self._named(frame.lstrip("/"))
-
-    def _named(self, frame: str) -> str:
+    def named(self, frame: str) -> str:
         """The frame of a link on ``/tf``, for its name in gz-sim: ``model/link``."""
         name, _, link = frame.partition("/")
         resident = self._session.simulation.population.residents.get(name)
@@ -182,7 +176,7 @@ class _Stored:
 
     def _on_odometry(self, message: Any) -> None:
         self._forget()
-        self.buffer.add(message.transforms, static=False, named=self._named)
+        self.buffer.add(message.transforms, static=False, named=self.named)
 
     def _on_moving(self, message: Any) -> None:
         self._forget()
