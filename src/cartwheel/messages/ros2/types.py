@@ -14,6 +14,7 @@ from cartwheel.messages.ros2.hashes import rihs01
 from cartwheel.messages.store import (
     FIRST,
     TWIN,
+    exists,
     is_bundled,
     learning,
     loaded,
@@ -91,7 +92,7 @@ def ros2_type(name: str) -> Ros2Type:
         UnknownNameError: ROS 2 does not have this type.
     """
     full = type_name(name)
-    if not _exists(full) or is_ros1_only(full):
+    if not exists(full) or is_ros1_only(full):
         known = type_names()
         raise UnknownNameError("ROS 2 message type", full, known, code=MESSAGE_TYPE_UNKNOWN)
     real = ros2_name(full)
@@ -146,7 +147,7 @@ def fields_of(name: str) -> list[tuple[str, Any]]:
     if name not in known and "/msg/" not in name:
         service = _PART.sub("", name)
         twin = twin_name(service)
-        ros2_service(twin if _exists(f"{twin}_Request") else service)
+        ros2_service(twin if exists(f"{twin}_Request") else service)
     if name not in known:
         names = [ros2_name(each) for each in type_names() if not is_ros1_only(each)]
         raise UnknownNameError("ROS 2 type", name, names, code=MESSAGE_TYPE_UNKNOWN)
@@ -180,11 +181,6 @@ def dds_name(name: str) -> str:
     """``pkg/msg/Name`` as ``pkg::msg::dds_::Name_``."""
     package, kind, last = name.split("/")
     return f"{package}::{kind}::dds_::{last}_"
-
-
-def _exists(name: str) -> bool:
-    """Whether Cartwheel contains a message type, or has learnt it."""
-    return is_bundled(name) or name in loaded().fielddefs
 
 
 def _hashed_types(*, first: bool = False) -> _HashedTypes:
