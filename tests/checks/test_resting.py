@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import cartwheel
-from cartwheel.checks.resting import Surfaces, center_of_mass, rest_of, starting_poses
+from cartwheel.checks.resting import Surfaces, rest_of, starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.robot import UNBALANCED
 from cartwheel.description import load_text
+from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import RobotDescription
 
 RULE = "wheels-off-ground"
@@ -162,7 +163,7 @@ def test_the_plane_is_that_of_the_lower_hull(seed):
         parts.append(link(f"foot{number}", 0.2, f'<box size="{size}"/>'))
         parts.append(joint(f"foot{number}", "fixed", at, parent="body"))
     robot = as_robot(f'<robot name="r">{"".join(parts)}</robot>')
-    center = center_of_mass(robot, starting_poses(robot))
+    center = center_of_mass(robot.description, starting_poses(robot))
     rest = rest_of(robot, robot.links)
     assert center is not None and rest is not None
     cloud = np.unique(

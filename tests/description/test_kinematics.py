@@ -1,11 +1,12 @@
 """Forward kinematics against what a hand computes."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from cartwheel.description import load_robot, load_text
-from cartwheel.description.kinematics import joint_positions, link_poses
+from cartwheel.description.kinematics import center_of_mass, joint_positions, link_poses
 from cartwheel.description.model import Axis, Joint, Link, RobotDescription
 from cartwheel.errors import Origin
 from cartwheel.geometry import Pose
@@ -26,6 +27,16 @@ def arm(*extra):
 def test_zero_is_as_described():
     robot = arm()
     assert link_poses(robot, {}) == {link.name: link.pose for link in robot.links}
+
+
+def test_the_centre_of_mass_follows_the_joints():
+    robot = arm()
+    for angle in (0.0, 1.2):
+        place = center_of_mass(robot, link_poses(robot, {"shoulder": angle}))
+        wanted = (2 / 3 * math.cos(angle), 2 / 3 * math.sin(angle), 2 / 3)
+        assert place == pytest.approx(wanted, abs=1e-12)
+    massless = [replace(link, inertial=None) for link in robot.links]
+    assert center_of_mass(replace(robot, links=tuple(massless)), link_poses(robot, {})) is None
 
 
 def test_two_turns():

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cartwheel.checks.robot import Robot
-from cartwheel.description.kinematics import link_poses
+from cartwheel.description.kinematics import center_of_mass, link_poses
 from cartwheel.description.model import Capsule, Cylinder, Ellipsoid, Shape, Sphere
 from cartwheel.description.solids import Floats
 from cartwheel.geometry import Pose, matrix_from_quat
@@ -49,18 +49,6 @@ def starting_poses(robot: Robot) -> Mapping[str, Pose]:
     if not positions:
         return {link.name: link.pose for link in robot.description.links}
     return link_poses(robot.description, positions)
-
-
-def center_of_mass(robot: Robot, poses: Mapping[str, Pose]) -> Floats | None:
-    """The robot's centre of mass in its frame, m; None without masses."""
-    weighted, total = np.zeros(3), 0.0
-    for link in robot.description.links:
-        mass = link.inertial.mass if link.inertial is not None else None
-        if link.inertial is None or not mass:
-            continue
-        weighted += mass * np.array((poses[link.name] @ link.inertial.pose).position)
-        total += mass
-    return weighted / total if total > 0 else None
 
 
 class Surfaces:
@@ -132,7 +120,7 @@ def rest_of(robot: Robot, links: Iterable[str]) -> Rest | None:
     Returns:
         None if the robot has no mass, tips over, or if the plane is not found in `_STEPS` steps.
     """
-    center = center_of_mass(robot, starting_poses(robot))
+    center = center_of_mass(robot.description, starting_poses(robot))
     size = robot.size
     if center is None or size <= 0:
         return None

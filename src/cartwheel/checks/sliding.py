@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cartwheel.checks.resting import Surfaces, center_of_mass, starting_poses
+from cartwheel.checks.resting import Surfaces, starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_place, wheel_tread
+from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
 from cartwheel.geometry import rotate
@@ -102,7 +103,7 @@ def turn_ratio(
     Returns:
         None if no wheel has to slide in a turn, or if the contacts are unknown.
     """
-    center = center_of_mass(robot, starting_poses(robot))
+    center = center_of_mass(robot.description, starting_poses(robot))
     driven = [*left, *right]
     wheels = {name for joint in driven for name in wheel_links(robot, joint)}
     heights = [lowest(robot, *wheel_links(robot, joint)) for joint in driven]

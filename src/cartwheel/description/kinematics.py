@@ -1,12 +1,14 @@
-"""Computes link poses from joint positions without physics, for viewers."""
+"""Computes link poses from joint positions, and what follows from them, without physics."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from cartwheel.description.model import Joint, RobotDescription
-from cartwheel.geometry import Pose, quat_from_axis_angle
+from cartwheel.geometry import Array, Pose, quat_from_axis_angle
 
 
 def joint_positions(
@@ -41,6 +43,23 @@ def link_poses(description: RobotDescription, positions: Mapping[str, float]) ->
     for name in rest:
         _place(name, rest, inbound, angles, poses)
     return poses
+
+
+def center_of_mass(description: RobotDescription, poses: Mapping[str, Pose]) -> Array | None:
+    """The robot's centre of mass in the frame of the poses, m, shape (3,); None without masses.
+
+    Args:
+        description: The robot.
+        poses: Poses of its links, by name.
+    """
+    weighted, total = np.zeros(3), 0.0
+    for link in description.links:
+        if link.inertial is None or not link.inertial.mass:
+            continue
+        place = poses[link.name] @ link.inertial.pose
+        weighted += link.inertial.mass * np.array(place.position)
+        total += link.inertial.mass
+    return weighted / total if total > 0 else None
 
 
 def _place(

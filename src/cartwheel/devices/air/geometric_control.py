@@ -10,8 +10,7 @@ import numpy as np
 
 from cartwheel.codes.robot import UNBALANCED
 from cartwheel.component import Component, Scope
-from cartwheel.description.kinematics import link_poses
-from cartwheel.description.model import RobotDescription
+from cartwheel.description.kinematics import center_of_mass, link_poses
 from cartwheel.devices.air.propeller import GZ_ACTUATORS
 from cartwheel.geometry import Array, Vec3, cross, matrix_from_quat
 from cartwheel.messages import zero
@@ -28,6 +27,11 @@ _FAST_STEP = 0.001
 """Gazebo's default time step, s."""
 _DRIFTS = 0.05
 """Smallest error of the velocity that is reported, m/s."""
+_SIDES = (
+    (("in front of", "forward"), ("behind", "backward")),
+    (("to the left of", "to the left"), ("to the right of", "to the right")),
+)
+"""Where the centre of mass is, and to where the vehicle drifts: along x and -x, y and -y."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -93,7 +97,7 @@ class GeometricControl(Component):
         self._config = config
         self._link = part.link(config.link, origin=self.origin)
         self._allocation = np.linalg.pinv(allocation(config.rotors))
-        self._mass = total_mass(part.description)
+        self._mass = part.description.mass
         self._limit_step()
         self._examined = False
         self.reset()
@@ -124,24 +128,25 @@ class GeometricControl(Component):
     def _report_drift(self) -> None:
         """Reports a centre of mass beside the link about which the propellers turn the vehicle."""
         part, name = self.part, self._config.link
-        x, y = centre_of_mass(part.description, name)
-        size = float(np.linalg.norm(self._link.gravity))
-        drift = drift_of(self._config, weight=self._mass * size, centre=(x, y))
-        if max(map(abs, drift)) < _DRIFTS:
+        poses = link_poses(part.description, {})
+        place = center_of_mass(part.description, poses)
+        if place is None:
             return
-        along = abs(drift[0]) >= abs(drift[1])
-        near, far = (("in front of", "forward"), ("behind", "backward"))[drift[0] < 0]
-        if not along:
-            near, far = (
-                ("to the left of", "to the left"),
-                ("to the right of", "to the right"),
-            )[drift[1] < 0]
+        x, y, _ = poses[name].inverse().apply(place).tolist()
+        centre = (x, y)
+        size = float(np.linalg.norm(self._link.gravity))
+        drift = drift_of(self._config, weight=self._mass * size, centre=centre)
+        axis = 0 if abs(drift[0]) >= abs(drift[1]) else 1
+        speed = abs(drift[axis])
+        if speed < _DRIFTS:
+            return
+        near, far = _SIDES[axis][drift[axis] < 0]
         self.warn(
             UNBALANCED,
-            f"the centre of mass is {1000 * abs(x if along else y):.2g} mm {near} the origin of "
-            f'link "{name}", so the multicopter drifts {far} at {max(map(abs, drift)):.2g} m/s, '
+            f"the centre of mass is {1000 * abs(centre[axis]):.2g} mm {near} the origin of "
+            f'link "{name}", so the multicopter drifts {far} at {speed:.2g} m/s, '
             "because the controller has no integral part",
-            values={"link": name, "centre": (x, y), "drift": drift},
+            values={"link": name, "centre": centre, "drift": drift},
             hint="Move the masses so that the centre of mass is above the origin of the link.",
         )
 
@@ -210,24 +215,6 @@ class GeometricControl(Component):
         message.velocity = speeds
         for publisher in self._motors:
             publisher.publish(message)
-
-
-def total_mass(description: RobotDescription) -> float:
-    """Mass of all links, kg."""
-    return sum(each.inertial.mass for each in description.links if each.inertial is not None)
-
-
-def centre_of_mass(description: RobotDescription, link: str) -> tuple[float, float]:
-    """The vehicle's centre of mass in the xy plane of a link, with all joints at 0, m."""
-    poses = link_poses(description, {})
-    inward, total, weighted = poses[link].inverse(), 0.0, np.zeros(3)
-    for each in description.links:
-        if each.inertial is not None:
-            place = inward @ poses[each.name] @ each.inertial.pose
-            weighted += each.inertial.mass * np.array(place.position)
-            total += each.inertial.mass
-    x, y, _ = weighted / total if total > 0 else weighted
-    return float(x), float(y)
 
 
 def drift_of(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cartwheel.checks.resting import Rest, center_of_mass, rest_of, starting_poses
+from cartwheel.checks.resting import Rest, rest_of, starting_poses
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -19,6 +19,7 @@ from cartwheel.checks.wheels import (
     wheel_middle,
 )
 from cartwheel.codes import robot as robot_codes
+from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.solids import Floats
 from cartwheel.errors import Diagnostic
 
@@ -38,7 +39,7 @@ def balance(subject: Subject) -> Iterator[Diagnostic]:
         if robot.description.static or held or not robot.is_placed or robot.incomplete:
             continue
         poses = starting_poses(robot)
-        center = center_of_mass(robot, poses)
+        center = center_of_mass(robot.description, poses)
         clouds = [
             solid.placed(poses[link.name])
             for link in robot.description.links

@@ -218,5 +218,4 @@ def _softness(robot: Robot, bearing: Iterable[str]) -> float:
     """How far the robot sinks at most into contacts that are stated to be soft, m."""
     stated = [c.surface.kp for name in bearing for c in robot.links[name].collisions]
     softest = min((kp for kp in stated if kp is not None and kp > 0), default=_STIFF)
-    mass = sum(link.inertial.mass for link in robot.description.links if link.inertial is not None)
-    return mass * _GRAVITY / softest if softest < _STIFF else 0.0
+    return robot.description.mass * _GRAVITY / softest if softest < _STIFF else 0.0
