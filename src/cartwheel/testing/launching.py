@@ -63,11 +63,7 @@ class Launched:
             self._process = subprocess.Popen(  # noqa: S603 - the user allowed it
                 self.command,
                 cwd=folder,
-                env={
-                    **environment_for_others(),
-                    **environment,
-                    _MARK: self._mark.partition("=")[2],
-                },
+                env={**environment_for_others(), **environment, _MARK: mark},
                 stdin=subprocess.DEVNULL,
                 stdout=self._output,
                 stderr=subprocess.STDOUT,
