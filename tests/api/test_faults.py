@@ -71,6 +71,16 @@ def test_messages_are_late(world, cart, delay):
     )
 
 
+def test_a_topic_that_is_named_twice_has_the_fault_once(world):
+    publisher = world.advertise("/level", "std_msgs/msg/Float64")
+    level = world.topic("/level")
+    fault = world.fault(["/level", "level", "/level"], bias={"data": 2.0})
+    assert fault.topics == ("/level",)
+    publisher.publish(data=1.0)
+    world.run(0.1)
+    assert level.latest.data == 3.0
+
+
 def test_a_late_message_does_not_wait_for_the_next_task(make):
     """The laser measures at 10 Hz, and nothing else happens between two scans."""
     world = make.world(make.box("wall", (0.2, 4, 2), static=True, pose=cw.Pose((5, 0, 1))))

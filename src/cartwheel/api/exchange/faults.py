@@ -82,10 +82,11 @@ class FaultyWorld(FramedWorld):
             SimulationError: The world is closed.
         """
         with self._used() as simulation:
-            found = [self.graph.topic(name) for name in several(topics, "topics")]
+            infos = map(self.graph.topic, several(topics, "topics"))
+            types = {each.name: each.type for each in infos}
             made = Fault(
                 simulation,
-                [(each.name, each.type) for each in found],
+                list(types.items()),
                 drop=drop,
                 delay=delay,
                 frozen=frozen,
@@ -93,9 +94,7 @@ class FaultyWorld(FramedWorld):
                 bias=bias or {},
                 change=change,
             )
-            made.begin(
-                [Interception(self.graph, each.name, made.receiver(each.name)) for each in found]
-            )
+            made.begin([Interception(self.graph, name, made.receiver(name)) for name in types])
             self._faults = (*self.faults, made)
             return made
 
