@@ -11,7 +11,6 @@ from typing import Any
 from cartwheel.description.files.regular_files import read_regular_text
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.python_values import (
-    LONGEST,
     NOTHING,
     Unknown,
     combined,
@@ -19,10 +18,11 @@ from cartwheel.description.launches.python_values import (
     is_known,
     items,
     joined,
+    joined_path,
     loaded,
     text,
 )
-from cartwheel.description.launches.use import Facts
+from cartwheel.description.launches.use import LONGEST, Facts
 
 _JOINS = frozenset({"join", "joinpath", "PathJoinSubstitution"})
 _SHARES = frozenset(
@@ -90,7 +90,11 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
         return
     # Declared defaults may follow their use, so the file is read twice.
     defaults = _Reader(
-        path, {}, arguments, Facts(find=facts.find, read=_ignore, home=facts.home), depth
+        path,
+        {},
+        arguments,
+        Facts(find=facts.find, read=_ignore, home=facts.home, spent=facts.spent),
+        depth,
     )
     defaults.block(tree.body)
     _Reader(path, defaults.defaults, arguments, facts, depth).block(tree.body)
@@ -258,7 +262,7 @@ class _Reader:
             steps = [
                 step for each in parts for step in (each if isinstance(each, list) else [each])
             ]
-            return str(PurePosixPath(*map(joined, steps)))
+            return joined_path(steps)
         if name in ("append", "extend") and isinstance(holder, list):
             more = [first] if name == "append" else first
             if isinstance(more, list) and len(holder) + len(more) <= LONGEST:
@@ -325,7 +329,7 @@ class _Reader:
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""
-        value = evaluated(joined(words.get("expression", first)).strip(), {})
+        value = evaluated(joined(words.get("expression", first)).strip(), {}, self._facts.spent)
         return value if is_known(value) else NOTHING
 
     def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:

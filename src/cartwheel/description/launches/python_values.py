@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cartwheel import yaml_text
-from cartwheel.description.launches.use import UNKNOWN
+from cartwheel.description.launches.use import LONGEST, UNKNOWN
 
 
 class Unknown:
@@ -17,8 +17,6 @@ class Unknown:
 
 
 NOTHING = Unknown()
-LONGEST = 10_000
-"""Maximum length of a text or list that is computed."""
 _LARGEST = 1e9
 _NUMBERS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -39,8 +37,26 @@ def text(value: Any) -> str:
 
 
 def joined(value: Any) -> str:
-    """The text of substitutions, which launch concatenates."""
-    return "".join(text(each) for each in _flat([value]))
+    """The text of substitutions, which launch concatenates; `UNKNOWN` if it is too long."""
+    parts = _short(text(each) for each in _flat([value]))
+    return UNKNOWN if parts is None else "".join(parts)
+
+
+def joined_path(steps: Iterable[Any]) -> Any:
+    """The path of steps that may be substitutions; `NOTHING` if it is too long."""
+    parts = _short(map(joined, steps))
+    return NOTHING if parts is None else str(PurePosixPath(*parts))
+
+
+def _short(parts: Iterable[str]) -> list[str] | None:
+    """The parts of a text; None if it is too long, as texts that grow in each line are."""
+    found, length = [], 0
+    for part in parts:
+        found.append(part)
+        length += len(part)
+        if length > LONGEST:
+            return None
+    return found
 
 
 def _flat(values: Iterable[Any]) -> Iterator[Any]:
@@ -59,15 +75,15 @@ def _flat(values: Iterable[Any]) -> Iterator[Any]:
 
 
 def concatenated(parts: Iterable[Any]) -> Any:
-    """A text made of values; `NOTHING` if it is too long, as texts that grow in loops are."""
-    whole = "".join(text(each) for each in parts)
-    return whole if len(whole) <= LONGEST else NOTHING
+    """A text made of values; `NOTHING` if it is too long."""
+    found = _short(map(text, parts))
+    return NOTHING if found is None else "".join(found)
 
 
 def combined(sign: ast.operator, left: Any, right: Any) -> Any:
     """The value of a binary operation on paths, texts, lists or numbers."""
     if isinstance(sign, ast.Div):
-        return str(PurePosixPath(text(left), text(right)))
+        return joined_path((left, right))
     if type(sign) in _NUMBERS and _is_number(left) and _is_number(right):
         return _NUMBERS[type(sign)](left, right)
     if isinstance(sign, ast.Add):

@@ -11,7 +11,7 @@ from pathlib import Path
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
 from cartwheel.description.launches.python_launch import read_python
-from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse, beside
+from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse, Spent, beside
 from cartwheel.description.launches.xml_launch import read_xml
 
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
@@ -37,13 +37,14 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
     found: list[LaunchUse] = []
     # Which package is found depends on the folder of the launch file.
     packages: dict[Path, Packages] = {}
+    spent = Spent()
     for path in _files(folder):
         near = packages.setdefault(path.parent, Packages(path, package_path))
-        facts = _facts(path, near, {})
+        facts = _facts(path, near, {}, spent)
         found += _uses(path, facts)
         known = {description for description, _ in facts.descriptions}
         for given in _others(facts):
-            other = _facts(path, near, given)
+            other = _facts(path, near, given, spent)
             new = [each for each in other.descriptions if each[0] not in known]
             known |= {description for description, _ in new}
             other.descriptions = new
@@ -51,9 +52,10 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
     return tuple(found)
 
 
-def _facts(path: Path, packages: Packages, arguments: Mapping[str, str]) -> Facts:
+def _facts(path: Path, packages: Packages, arguments: Mapping[str, str], spent: Spent) -> Facts:
     """The contents of a launch file that is started with these arguments."""
-    facts = Facts(find=packages.found, read=_read, home=package_above(path.parent))
+    home = package_above(path.parent)
+    facts = Facts(find=packages.found, read=_read, home=home, spent=spent)
     _read(path, arguments, facts, 0)
     return facts
 

@@ -15,6 +15,8 @@ from cartwheel.errors import CartwheelError
 
 UNKNOWN = "\0"
 """A character in texts of which a part is unknown."""
+LONGEST = 10_000
+"""Maximum length of a text or list that is computed."""
 DEEPEST = 6
 """Maximum nesting of included launch files."""
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
@@ -81,6 +83,13 @@ def _is_single(file: Path) -> bool:
         return False
 
 
+@dataclass
+class Spent:
+    """The CPU time of the expressions of all launch files near a robot, s."""
+
+    seconds: float = 0.0
+
+
 @dataclass(kw_only=True)
 class Facts:
     """The contents of a launch file and its included files, collected while they are read."""
@@ -92,6 +101,7 @@ class Facts:
     files were copied from another package."""
     read: Callable[[Path, Mapping[str, str], Facts, int], None]
     """Reads an included launch file with arguments, at a depth."""
+    spent: Spent
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
     yamls: list[Path] = field(default_factory=list)
     spawned: list[str] = field(default_factory=list)

@@ -13,7 +13,7 @@ from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
 from cartwheel.description.launches.evaluation import evaluated
-from cartwheel.description.launches.use import UNKNOWN, Facts
+from cartwheel.description.launches.use import LONGEST, UNKNOWN, Facts
 
 _CALL = re.compile(r"\$\(\s*([\w-]+)\s*([^()]*)\)")
 _EVAL = re.compile(r"\$\(\s*eval\s(.*)\)\s*", re.DOTALL)
@@ -116,6 +116,8 @@ class _Reader:
                 break
             value = self._call(found[1], found[2].strip())
             text = text[: found.start()] + value + text[found.end() :]
+            if len(text) > LONGEST:
+                return UNKNOWN
         # What is left is an expression with parentheses within a text.
         return re.sub(r"\$\(.*\)", UNKNOWN, text)
 
@@ -153,7 +155,7 @@ class _Reader:
                 names[name] = _converted(value)
         for name, plain in functions.items():
             names[name] = Function(name, lambda _, *args, plain=plain: plain(*args))
-        return evaluated(text, names)
+        return evaluated(text, names, self._facts.spent)
 
     def _known(self, name: str) -> Any:
         return _converted(_certain(self._arguments.get(name, UNKNOWN)))
