@@ -278,16 +278,23 @@ def drives_in(subject: Subject) -> Iterator[tuple[Robot, Drive]]:
             yield robot, drive
 
 
+def placed_pair(robot: Robot, first: str, second: str) -> tuple[Joint, Joint] | None:
+    """Two different joints by their names; None if the place of one of them is unknown."""
+    left, right = robot.joints.get(first), robot.joints.get(second)
+    if left is None or right is None or left is right:
+        return None
+    return (left, right) if {left.child, right.child} <= robot.placed else None
+
+
 def wheel_pairs(subject: Subject) -> Iterator[tuple[Robot, Drive, Joint, Joint]]:
     """The first wheel pair of each drive, or every pair of a differential drive with several."""
     for robot, drive in drives_in(subject):
         if len(drive.left) != len(drive.right):
             continue
         for names in zip(drive.left, drive.right, strict=True):
-            left, right = (robot.joints.get(name) for name in names)
-            ends = {left.child, right.child} if left is not None and right is not None else set()
-            if left is None or right is None or left is right or not ends <= robot.placed:
+            pair = placed_pair(robot, *names)
+            if pair is None:
                 continue
-            yield robot, drive, left, right
+            yield robot, drive, *pair
             if len(drive.left) > 1:
                 break

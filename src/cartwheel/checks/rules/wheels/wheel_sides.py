@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Unpack
 
 from cartwheel.checks import controller_claims as claimed
 from cartwheel.checks import edits, nodes
+from cartwheel.checks.controller_files import Controller, Value
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
@@ -15,58 +17,50 @@ from cartwheel.checks.wheels import (
     faces_sideways,
     gap_between,
     is_legacy,
+    placed_pair,
     wheel_middle,
     wheel_pairs,
     wheel_place,
 )
 from cartwheel.codes import robot as robot_codes
 from cartwheel.description.model import Joint
-from cartwheel.errors import Diagnostic
-
-_HINT = "Swap the two names. Otherwise, the robot turns in the wrong direction."
+from cartwheel.errors import Diagnostic, Where
 
 
 @rule(robot_codes.WHEELS_SWAPPED)
 def wheels_swapped(subject: Subject) -> Iterator[Diagnostic]:
-    yield from _of_plugins(subject)
-    yield from _of_controllers(subject)
-
-
-def _of_plugins(subject: Subject) -> Iterator[Diagnostic]:
     for robot, drive, left, right in wheel_pairs(subject):
         element = drive.left_tag
-        if element is None or is_legacy(drive):
-            continue
-        why = _swapped(robot, left, right)
-        if why:
-            yield robot_codes.WHEELS_SWAPPED.diagnostic(
-                message=f'the left wheel joint "{left.name}" is to the right of "{right.name}", '
-                f"{why}",
-                values={"left": left.name, "right": right.name},
-                **edits.whole(element, nodes.written(element.tag, {}, right.name), mark=left.name),
-                hint=_HINT,
-            )
+        if element is not None and not is_legacy(drive):
+            swap = edits.whole(element, nodes.written(element.tag, {}, right.name), mark=left.name)
+            yield from _judged(robot, left, right, "", **swap)
+    for robot, controller, name, left, right in _of_controllers(subject):
+        owner = f'controller "{controller.name}": '
+        yield from _judged(robot, left, right, owner, origin=name.origin, mark=left.name)
 
 
-def _of_controllers(subject: Subject) -> Iterator[Diagnostic]:
+def _of_controllers(subject: Subject) -> Iterator[tuple[Robot, Controller, Value, Joint, Joint]]:
+    """The first wheels of the controllers, with the value that names the left one."""
     for robot, file in subject.control:
         for controller in file.controllers:
             sides = claimed.wheel_sides(controller)
-            names = [side[0].text.strip() for side in sides if side]
-            left, right = (*(robot.joints.get(name) for name in names), None, None)[:2]
-            ends = {left.child, right.child} if left is not None and right is not None else set()
-            if left is None or right is None or left is right or not ends <= robot.placed:
-                continue
-            why = _swapped(robot, left, right)
-            if why:
-                yield robot_codes.WHEELS_SWAPPED.diagnostic(
-                    message=f'controller "{controller.name}": the left wheel joint "{left.name}" '
-                    f'is to the right of "{right.name}", {why}',
-                    values={"left": left.name, "right": right.name},
-                    origin=sides[0][0].origin,
-                    mark=left.name,
-                    hint=_HINT,
-                )
+            pair = placed_pair(robot, *(side[0].text.strip() for side in sides)) if sides else None
+            if pair is not None:
+                yield robot, controller, sides[0][0], *pair
+
+
+def _judged(
+    robot: Robot, left: Joint, right: Joint, owner: str, **where: Unpack[Where]
+) -> Iterator[Diagnostic]:
+    why = _swapped(robot, left, right)
+    if why:
+        where["hint"] = "Swap the two names. Otherwise, the robot turns in the wrong direction."
+        yield robot_codes.WHEELS_SWAPPED.diagnostic(
+            message=f'{owner}the left wheel joint "{left.name}" is to the right of '
+            f'"{right.name}", {why}',
+            values={"left": left.name, "right": right.name},
+            **where,
+        )
 
 
 def _swapped(robot: Robot, left: Joint, right: Joint) -> str:
