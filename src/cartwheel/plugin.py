@@ -6,7 +6,7 @@ A plugin is a subclass of `Plugin` with a dataclass of `tag` fields, found by th
 
 from cartwheel.component import Component, Scope
 from cartwheel.description.model import CameraIntrinsics
-from cartwheel.dialects.plugin import Plugin
+from cartwheel.dialects.plugin import NoTags, Plugin
 from cartwheel.dialects.tags import tag
 
-__all__ = ["CameraIntrinsics", "Component", "Plugin", "Scope", "tag"]
+__all__ = ["CameraIntrinsics", "Component", "NoTags", "Plugin", "Scope", "tag"]

@@ -203,19 +203,13 @@ def test_a_wind_pushes_a_body(tmp_path: Path) -> None:
 
 
 ALL = """
-from dataclasses import dataclass
 import numpy as np
 import cartwheel as cw
-from cartwheel.plugin import CameraIntrinsics, Plugin
+from cartwheel.plugin import CameraIntrinsics, NoTags, Plugin
 
-@dataclass(frozen=True, kw_only=True)
-class Parameters:
-    pass
-
-class All(Plugin[Parameters]):
+class All(Plugin[NoTags]):
     \"\"\"Uses all that the guide lists.\"\"\"
     filenames = ("liball.so",)
-    parameters = Parameters
 
     def configure(self):
         part = self.part
@@ -313,14 +307,9 @@ def test_contacts_of_collisions_by_their_names_in_a_urdf(tmp_path: Path) -> None
 
 
 SERVER = """
-from dataclasses import dataclass
-from cartwheel.plugin import Plugin
+from cartwheel.plugin import NoTags, Plugin
 
-@dataclass(frozen=True)
-class Parameters:
-    pass
-
-class Server(Plugin[Parameters]):
+class Server(Plugin[NoTags]):
     filenames = ("libserver.so",)
 
     def configure(self):

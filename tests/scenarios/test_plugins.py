@@ -12,17 +12,11 @@ from cartwheel.scenarios.workers import Workers
 from .test_command import command, results, write  # noqa: F401
 
 PLUGIN = """
-from dataclasses import dataclass
-from cartwheel.plugin import Plugin
+from cartwheel.plugin import NoTags, Plugin
 from cartwheel.msgs.std_msgs import Float64
 
 
-@dataclass(frozen=True, kw_only=True)
-class LampParameters:
-    pass
-
-
-class Lamp(Plugin[LampParameters]):
+class Lamp(Plugin[NoTags]):
     filenames = ("libtest_lamp.so",)
 
     def configure(self):

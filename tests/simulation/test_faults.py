@@ -368,16 +368,10 @@ def test_a_broken_package_fails_only_who_names_it(make, cart, installed, rosbots
 
 
 _PACKAGE = """
-from cartwheel.dialects.plugin import Plugin
-from dataclasses import dataclass
+from cartwheel.plugin import NoTags, Plugin
 
-@dataclass(frozen=True)
-class Nothing:
-    pass
-
-class Faulty(Plugin[Nothing]):
+class Faulty(Plugin[NoTags]):
     filenames = ("libfaulty.so",)
-    parameters = Nothing
 
     def configure(self):
         self.part.schedule(10, after=self._fail)
