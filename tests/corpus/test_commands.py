@@ -146,7 +146,8 @@ WHEEL = (
 )
 
 
-def test_wheels_that_are_mounted_in_opposite_directions_roll_forward_together(tmp_path):
+@pytest.mark.parametrize("limit", ["", '<limit lower="-1e4" upper="1e4"/>'])
+def test_wheels_that_are_mounted_in_opposite_directions_roll_forward_together(tmp_path, limit):
     """At equal speeds they would turn the robot, and weak motors cannot let its tyres slide.
 
     Each wheel carries 40 N. To turn the robot, it must slide with a torque of up to 40 N x 0.08 m,
@@ -156,7 +157,12 @@ def test_wheels_that_are_mounted_in_opposite_directions_roll_forward_together(tm
     for end, x in (("front", 0.3), ("rear", -0.3)):
         for side, y, axis in (("left", 0.18, 1), ("right", -0.18, -1)):
             name = f"{end}_{side}"
-            parts += WHEEL.format(name=name, x=x, y=y, axis=axis) + TRANSMISSION.format(name=name)
+            wheel = WHEEL.format(name=name, x=x, y=y, axis=axis)
+            if limit:
+                wheel = wheel.replace("continuous", "revolute").replace(
+                    "</joint>", f"{limit}</joint>"
+                )
+            parts += wheel + TRANSMISSION.format(name=name)
             content += (
                 f"{name}: {{type: effort_controllers/JointVelocityController, "
                 f"joint: {name}_joint, pid: {{p: 1, i: 0, d: 0}}}}\n"

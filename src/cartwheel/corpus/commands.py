@@ -158,8 +158,7 @@ def _spinning(
 
     def speed_of(name: str) -> float:
         joint = robot.joint(name)
-        endless = joint is not None and joint.type == "continuous"
-        sign = signs.get(name, 1.0) if endless else 1.0
+        sign = signs.get(name, 1.0) if joint is not None and joint.turns else 1.0
         speeds[name] = sign * _velocity(joint, model.joint(name), velocity)
         return speeds[name]
 
@@ -226,7 +225,7 @@ def _velocity(joint: Joint | None, position: float, most: float) -> float:
         return most
     fastest = min(most, joint.axis.velocity or most)
     lower, upper = joint.axis.lower, joint.axis.upper
-    if joint.type == "continuous" or lower is None or upper is None:
+    if joint.turns or lower is None or upper is None:
         return fastest
     room, sign = max((upper - position, 1.0), (position - lower, -1.0))
     if upper <= lower or room <= 0:
