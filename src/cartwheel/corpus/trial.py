@@ -223,12 +223,13 @@ def _moved(
     The joints that do not arrive because what they move touches the ground are added to `held`.
     """
     before = motion.positions(world, model)
+    body = Robot(robot, None)
     stood = motion.stand(world, model, robot, standing)
     started = _controllers(world).started
     given_up: list[Diagnostic] = []
     if not stood.fixed:
         moving = stood.state == "moves"
-        given_up += gave_way(world, model, Robot(robot, None), before, started, moving=moving)
+        given_up += gave_way(world, model, body, before, started, moving=moving)
     verdict = replace(verdict, stand=stood, observed=(*verdict.observed, *given_up))
     yield verdict
     topics, silent = _listened(world)
@@ -238,7 +239,7 @@ def _moved(
         bases = motion.drives(
             world,
             model,
-            Robot(robot, None),
+            body,
             stated_limits(robot, started),
             started,
             idle=_idle(world),
@@ -247,8 +248,8 @@ def _moved(
         verdict = replace(verdict, drives=tuple(bases))
         if any(not (drive.follows and drive.turns) for drive in verdict.drives):
             world.run(_LISTENING)
-            found = dragging(world, model, Robot(robot, None), started)
-            apart = drives_apart(Robot(robot, None), verdict.drives)
+            found = dragging(world, model, body, started)
+            apart = drives_apart(body, verdict.drives)
             verdict = replace(verdict, observed=(*verdict.observed, *found, *apart))
         yield verdict
         verdict = replace(verdict, flights=tuple(flights(world, model, robot)))
