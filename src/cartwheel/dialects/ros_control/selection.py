@@ -146,8 +146,7 @@ def with_published_control(
         launches = () if folder is None else launches_near(folder, package_path)
     joints = {joint.name for joint in robot.joints if joint.type != "fixed"}
     seen: set[Path] = set()
-    candidates = ((path, given) for path, given in _candidates(robot, file, launches))
-    for path, arguments in itertools.islice(candidates, _MOST):
+    for path, arguments in itertools.islice(_candidates(robot, file, launches), _MOST):
         if path.resolve() in seen:
             continue
         seen.add(path.resolve())
