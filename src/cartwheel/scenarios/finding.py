@@ -12,8 +12,8 @@ from cartwheel.scenarios.schema import schema
 
 _SUFFIXES = (".yaml", ".yml")
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
-# Blanks at the start of a line, not `\s`: many empty lines would take time by their square.
-_EXPECT = re.compile(r"""^[^\S\n]*["']?expect["']?\s*:""", re.MULTILINE)
+# Blanks, not `\s`: many empty lines would take time by their square.
+_EXPECT = re.compile(r"""^[ \t]*["']?expect["']?[ \t]*:""", re.MULTILINE)
 
 
 def find_scenarios(folder: Path) -> tuple[list[Path], list[Path]]:

@@ -7,34 +7,36 @@ from collections.abc import Mapping
 from typing import Any
 
 from cartwheel.description.expressions import BUILTINS, MATH, Budget, Evaluator
-from cartwheel.description.launches.use import LONGEST, UNKNOWN, Spent
+from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError, limited
 
 _SECONDS = 0.2
 """Maximum CPU time of an expression, s."""
-_TOTAL = 2.0
-"""Maximum CPU time of all expressions, s; one takes less than a millisecond."""
 
 
 class _NoTable:
     """xacro's tables of names do not exist here."""
 
 
-def evaluated(text: str, names: Mapping[str, Any], spent: Spent) -> str:
+def evaluated(text: str, names: Mapping[str, Any], effort: Effort) -> str:
     """The value of an expression as text; `UNKNOWN` if it has none.
 
     Args:
         text: A Python expression.
         names: Values and functions that it may use beside Python's own and those of `math`.
-        spent: The time of earlier expressions, to which this one is added.
+        effort: The remaining effort.
+
+    Raises:
+        TooCostlyError: All expressions together took too long.
     """
-    if UNKNOWN in text or spent.seconds >= _TOTAL:
+    if UNKNOWN in text:
         return UNKNOWN
-    began = time.thread_time()
+    begin = time.thread_time()
     evaluator = Evaluator(Budget(_SECONDS), namespace=_NoTable, dotted=_NoTable)
     try:
-        value = str(evaluator.evaluate(text, {**BUILTINS, **MATH, **names}))
+        value = limited(str(evaluator.evaluate(text, {**BUILTINS, **MATH, **names})))
+    except TooCostlyError:
+        raise
     except Exception:  # noqa: BLE001 - whatever the operation of a stranger raises
-        return UNKNOWN
-    finally:
-        spent.seconds += time.thread_time() - began
-    return value if len(value) <= LONGEST else UNKNOWN
+        value = UNKNOWN
+    effort.spend_seconds(time.thread_time() - begin)
+    return value

@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cartwheel.description.files.regular_files import read_regular_text
+from cartwheel.description.launches.effort import LONGEST
 from cartwheel.description.launches.evaluation import evaluated
 from cartwheel.description.launches.python_values import (
     NOTHING,
@@ -18,11 +19,11 @@ from cartwheel.description.launches.python_values import (
     is_known,
     items,
     joined,
-    joined_path,
     loaded,
+    path_of,
     text,
 )
-from cartwheel.description.launches.use import LONGEST, Facts
+from cartwheel.description.launches.use import Facts
 
 _JOINS = frozenset({"join", "joinpath", "PathJoinSubstitution"})
 _SHARES = frozenset(
@@ -85,7 +86,9 @@ class _Description:
 def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: int) -> None:
     """Adds the contents of a launch file to `facts`."""
     try:
-        tree = ast.parse(read_regular_text(path))
+        content = read_regular_text(path)
+        facts.effort.spend(len(content))
+        tree = ast.parse(content)
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
         return
     # Declared defaults may follow their use, so the file is read twice.
@@ -93,7 +96,7 @@ def read_python(path: Path, arguments: Mapping[str, str], facts: Facts, depth: i
         path,
         {},
         arguments,
-        Facts(find=facts.find, read=_ignore, home=facts.home, spent=facts.spent),
+        Facts(find=facts.find, read=_ignore, home=facts.home, effort=facts.effort),
         depth,
     )
     defaults.block(tree.body)
@@ -126,6 +129,7 @@ class _Reader:
         The body of a loop is evaluated for each value, or once if the values are unknown.
         """
         for each in statements:
+            self._facts.effort.spend()
             if isinstance(each, ast.Assign):
                 value = self.value(each.value)
                 for target in each.targets:
@@ -195,6 +199,7 @@ class _Reader:
 
     def value(self, node: ast.expr) -> Any:
         """The value of an expression; `NOTHING` if it is unknown."""
+        self._facts.effort.spend()
         if isinstance(node, ast.Constant):
             return node.value
         if isinstance(node, ast.Name):
@@ -258,11 +263,7 @@ class _Reader:
         first = places[0] if places else next((words[w] for w in _FIRST if w in words), NOTHING)
         if name in _JOINS:
             parts = [*([] if isinstance(holder, Unknown) else [holder]), *places]
-            # A part may be a list of substitutions, as in [folder, [name, ".xacro"]].
-            steps = [
-                step for each in parts for step in (each if isinstance(each, list) else [each])
-            ]
-            return joined_path(steps)
+            return path_of(parts)
         if name in ("append", "extend") and isinstance(holder, list):
             more = [first] if name == "append" else first
             if isinstance(more, list) and len(holder) + len(more) <= LONGEST:
@@ -281,7 +282,7 @@ class _Reader:
             return self._processed(text(first), words.get("mappings", {}))
         if name in ("safe_load", "full_load", "load") and _is_module(node.func, "yaml"):
             # A file that was opened is its path.
-            return loaded(text(first))
+            return loaded(text(first), self._facts.effort)
         if name == "parse":
             return first if _is_module(node.func, "xacro") else NOTHING
         maker = _ACTIONS.get(name)
@@ -329,7 +330,7 @@ class _Reader:
 
     def expression(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:
         """The value of a Python expression, which consists of substitutions."""
-        value = evaluated(joined(words.get("expression", first)).strip(), {}, self._facts.spent)
+        value = evaluated(joined(words.get("expression", first)).strip(), {}, self._facts.effort)
         return value if is_known(value) else NOTHING
 
     def inclusion(self, first: Any, _: list[Any], words: dict[str, Any]) -> Any:

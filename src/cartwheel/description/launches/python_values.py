@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cartwheel import yaml_text
-from cartwheel.description.launches.use import LONGEST, UNKNOWN
+from cartwheel.description.launches.effort import LONGEST, UNKNOWN, Effort
 
 
 class Unknown:
@@ -38,25 +38,7 @@ def text(value: Any) -> str:
 
 def joined(value: Any) -> str:
     """The text of substitutions, which launch concatenates; `UNKNOWN` if it is too long."""
-    parts = _short(text(each) for each in _flat([value]))
-    return UNKNOWN if parts is None else "".join(parts)
-
-
-def joined_path(steps: Iterable[Any]) -> Any:
-    """The path of steps that may be substitutions; `NOTHING` if it is too long."""
-    parts = _short(map(joined, steps))
-    return NOTHING if parts is None else str(PurePosixPath(*parts))
-
-
-def _short(parts: Iterable[str]) -> list[str] | None:
-    """The parts of a text; None if it is too long, as texts that grow in each line are."""
-    found, length = [], 0
-    for part in parts:
-        found.append(part)
-        length += len(part)
-        if length > LONGEST:
-            return None
-    return found
+    return _short(text(each) for each in _flat([value]))
 
 
 def _flat(values: Iterable[Any]) -> Iterator[Any]:
@@ -74,16 +56,41 @@ def _flat(values: Iterable[Any]) -> Iterator[Any]:
             yield value
 
 
+def _short(parts: Iterable[str]) -> str:
+    """The parts as one text; `UNKNOWN` if it is too long, as texts that grow in loops are."""
+    length, found = 0, []
+    for each in parts:
+        length += len(each)
+        if length > LONGEST:
+            return UNKNOWN
+        found.append(each)
+    return "".join(found)
+
+
 def concatenated(parts: Iterable[Any]) -> Any:
-    """A text made of values; `NOTHING` if it is too long."""
-    found = _short(map(text, parts))
-    return NOTHING if found is None else "".join(found)
+    """A text made of values; unknown if it is too long."""
+    return _short(text(each) for each in parts)
+
+
+def path_of(parts: Iterable[Any]) -> str:
+    """The path that consists of values, of which one may be a list of substitutions, as in
+    ``[folder, [name, ".xacro"]]``; unknown if it is too long.
+    """
+    steps: list[str] = []
+    length = 0
+    for part in parts:
+        for step in part if isinstance(part, list) else [part]:
+            steps.append(joined(step))
+            length += 1 + len(steps[-1])
+            if length > LONGEST:
+                return UNKNOWN
+    return str(PurePosixPath(*steps))
 
 
 def combined(sign: ast.operator, left: Any, right: Any) -> Any:
     """The value of a binary operation on paths, texts, lists or numbers."""
     if isinstance(sign, ast.Div):
-        return joined_path((left, right))
+        return path_of((text(left), text(right)))
     if type(sign) in _NUMBERS and _is_number(left) and _is_number(right):
         return _NUMBERS[type(sign)](left, right)
     if isinstance(sign, ast.Add):
@@ -128,12 +135,14 @@ def items(kind: str, values: list[Any]) -> list[Any] | None:
     return list(first) if kind in ("", "list", "tuple", "sorted", "set") else None
 
 
-def loaded(path: str) -> Any:
+def loaded(path: str, effort: Effort) -> Any:
     """The contents of a YAML file; `NOTHING` if it cannot be read."""
     import yaml
 
     try:
-        return yaml_text.load(yaml_text.read(Path(path)))
+        content = yaml_text.read(Path(path))
+        effort.load(content)
+        return yaml_text.load(content)
     except (OSError, ValueError, yaml.YAMLError):
         return NOTHING
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
 import re
@@ -10,8 +11,9 @@ from pathlib import Path
 
 from cartwheel.description.files.package_folders import package_above
 from cartwheel.description.files.packages import Packages
+from cartwheel.description.launches.effort import UNKNOWN, Effort, TooCostlyError
 from cartwheel.description.launches.python_launch import read_python
-from cartwheel.description.launches.use import UNKNOWN, Facts, LaunchUse, Spent, beside
+from cartwheel.description.launches.use import Facts, LaunchUse, beside
 from cartwheel.description.launches.xml_launch import read_xml
 
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
@@ -32,30 +34,36 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
 
     A launch file that starts controllers for a robot of another launch file is one of them, without
     a description. Launch files are parsed, not executed. Texts that cannot be determined without
-    executing them are left out.
+    executing them are left out, and so are all further launch files once they cost too much.
     """
     found: list[LaunchUse] = []
-    # Which package is found depends on the folder of the launch file.
-    packages: dict[Path, Packages] = {}
-    spent = Spent()
-    for path in _files(folder):
-        near = packages.setdefault(path.parent, Packages(path, package_path))
-        facts = _facts(path, near, {}, spent)
-        found += _uses(path, facts)
-        known = {description for description, _ in facts.descriptions}
-        for given in _others(facts):
-            other = _facts(path, near, given, spent)
-            new = [each for each in other.descriptions if each[0] not in known]
-            known |= {description for description, _ in new}
-            other.descriptions = new
-            found += _uses(path, other, given.values()) if new else []
+    with contextlib.suppress(TooCostlyError):
+        for each in _near(folder, package_path, Effort()):
+            found.append(each)  # noqa: PERF402 - those before an error count
     return tuple(found)
 
 
-def _facts(path: Path, packages: Packages, arguments: Mapping[str, str], spent: Spent) -> Facts:
+def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterator[LaunchUse]:
+    # Which package is found depends on the folder of the launch file.
+    packages: dict[Path, Packages] = {}
+    for path in _files(folder):
+        near = packages.setdefault(path.parent, Packages(path, package_path))
+        facts = _facts(path, near, {}, effort)
+        yield from _uses(path, facts)
+        known = {description for description, _ in facts.descriptions}
+        for given in _others(facts):
+            other = _facts(path, near, given, effort)
+            new = [each for each in other.descriptions if each[0] not in known]
+            known |= {description for description, _ in new}
+            other.descriptions = new
+            if new:
+                yield from _uses(path, other, given.values())
+
+
+def _facts(path: Path, packages: Packages, arguments: Mapping[str, str], effort: Effort) -> Facts:
     """The contents of a launch file that is started with these arguments."""
     home = package_above(path.parent)
-    facts = Facts(find=packages.found, read=_read, home=home, spent=spent)
+    facts = Facts(find=packages.found, read=_read, home=home, effort=effort)
     _read(path, arguments, facts, 0)
     return facts
 

@@ -11,12 +11,11 @@ from pathlib import Path
 
 from cartwheel import yaml_text
 from cartwheel.description.files.package_folders import is_file
+from cartwheel.description.launches.effort import UNKNOWN, Effort
 from cartwheel.errors import CartwheelError
 
-UNKNOWN = "\0"
-"""A character in texts of which a part is unknown."""
-LONGEST = 10_000
-"""Maximum length of a text or list that is computed."""
+_LOOK = 100
+"""Steps of a look at a file or folder."""
 DEEPEST = 6
 """Maximum nesting of included launch files."""
 SUFFIXES = (".xacro", ".urdf", ".sdf", ".gazebo")
@@ -83,13 +82,6 @@ def _is_single(file: Path) -> bool:
         return False
 
 
-@dataclass
-class Spent:
-    """The CPU time of the expressions of all launch files near a robot, s."""
-
-    seconds: float = 0.0
-
-
 @dataclass(kw_only=True)
 class Facts:
     """The contents of a launch file and its included files, collected while they are read."""
@@ -101,7 +93,8 @@ class Facts:
     files were copied from another package."""
     read: Callable[[Path, Mapping[str, str], Facts, int], None]
     """Reads an included launch file with arguments, at a depth."""
-    spent: Spent
+    effort: Effort
+    """The remaining effort."""
     descriptions: list[tuple[Path, dict[str, str]]] = field(default_factory=list)
     yamls: list[Path] = field(default_factory=list)
     spawned: list[str] = field(default_factory=list)
@@ -113,6 +106,7 @@ class Facts:
 
     def package(self, name: str) -> str:
         """The folder of a package as text, with an unknown part if it is not found."""
+        self.effort.search(name.strip())
         folder = self.find(name.strip()) if UNKNOWN not in name else None
         folder = folder or self.home
         return str(folder) if folder is not None else f"{UNKNOWN}/{name}"
@@ -122,6 +116,7 @@ class Facts:
         if text.startswith("xacro/"):
             # Some launch files forget the space, as in ["xacro", file].
             text = "xacro " + text.removeprefix("xacro")
+        self.effort.spend(len(text))
         try:
             words = shlex.split(text)
         except ValueError:
@@ -149,6 +144,7 @@ class Facts:
         If a part of the file's name is unknown, as in ``robot_$(env MODEL).xacro``, it may be any
         of the files with such a name.
         """
+        self.effort.spend(_LOOK)
         if file is None or UNKNOWN in str(file.parent):
             return
         if UNKNOWN not in file.name:
@@ -189,6 +185,7 @@ class Facts:
             namespace: Namespace into which ROS 1 loads it. It is the name of the controller if the
                 file contains the parameters of a single one.
         """
+        self.effort.spend(_LOOK)
         path = Path(text.strip())
         if UNKNOWN not in text and path.suffix in (".yaml", ".yml") and is_file(path):
             name = namespace.strip("/ ").rpartition("/")[2]

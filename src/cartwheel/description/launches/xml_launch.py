@@ -12,10 +12,12 @@ from typing import Any
 from cartwheel.description.elements import xml
 from cartwheel.description.elements.node import Node
 from cartwheel.description.expressions import Function
+from cartwheel.description.launches.effort import UNKNOWN, limited
 from cartwheel.description.launches.evaluation import evaluated
-from cartwheel.description.launches.use import LONGEST, UNKNOWN, Facts
+from cartwheel.description.launches.use import Facts
 
-_CALL = re.compile(r"\$\(\s*([\w-]+)\s*([^()]*)\)")
+_CALL = re.compile(r"\$\(\s*+([\w-]++)\s*+([^()]*+)\)")
+"""Without backtracking, whose time would grow with the square of the length."""
 _EVAL = re.compile(r"\$\(\s*eval\s(.*)\)\s*", re.DOTALL)
 _FALSE = frozenset({"false", "0", "False"})
 
@@ -42,6 +44,7 @@ class _Reader:
     def group(self, node: Node) -> None:
         """Reads the elements of a launch file or of a ``<group>``."""
         for child in node.children:
+            self._facts.effort.spend()
             if self._holds(child):
                 self._element(child)
 
@@ -59,6 +62,7 @@ class _Reader:
                 if child.tag == "arg" and self._holds(child)
             }
             if node.attributes.get("pass_all_args") == "true":
+                self._facts.effort.spend(len(self._arguments))
                 given = {**self._arguments, **given}
             facts.include(self._value(node, "file"), given, self._depth)
         elif tag == "param":
@@ -105,7 +109,8 @@ class _Reader:
         return True
 
     def _value(self, node: Node, name: str) -> str:
-        text = node.attributes.get(name, "")
+        text = limited(node.attributes.get(name, ""))
+        self._facts.effort.spend(1 + len(text))
         # As in roslaunch, the parentheses of an expression end at the end of the attribute.
         expression = _EVAL.fullmatch(text)
         if expression is not None and "$(" not in expression[1]:
@@ -115,11 +120,10 @@ class _Reader:
             if found is None:
                 break
             value = self._call(found[1], found[2].strip())
-            text = text[: found.start()] + value + text[found.end() :]
-            if len(text) > LONGEST:
-                return UNKNOWN
+            text = limited(text[: found.start()] + value + text[found.end() :])
+            self._facts.effort.spend(len(text))
         # What is left is an expression with parentheses within a text.
-        return re.sub(r"\$\(.*\)", UNKNOWN, text)
+        return "\n".join(map(_without_calls, text.split("\n")))
 
     def _call(self, kind: str, rest: str) -> str:
         """The value of ``$(kind rest)``."""
@@ -149,16 +153,23 @@ class _Reader:
             "optenv": lambda name, default="": os.environ.get(name, default),
             "dirname": lambda: str(self._path.parent),
         }
+        self._facts.effort.spend(len(self._arguments))
         names: dict[str, Any] = {}
         for name, value in self._arguments.items():
             if UNKNOWN not in value:
                 names[name] = _converted(value)
         for name, plain in functions.items():
             names[name] = Function(name, lambda _, *args, plain=plain: plain(*args))
-        return evaluated(text, names, self._facts.spent)
+        return evaluated(text, names, self._facts.effort)
 
     def _known(self, name: str) -> Any:
         return _converted(_certain(self._arguments.get(name, UNKNOWN)))
+
+
+def _without_calls(line: str) -> str:
+    """A line in which the text from the first ``$(`` to the last ``)`` is unknown."""
+    begin, end = line.find("$("), line.rfind(")")
+    return f"{line[:begin]}{UNKNOWN}{line[end + 1 :]}" if 0 <= begin < end else line
 
 
 def _words(text: str) -> list[str]:
