@@ -1,5 +1,7 @@
 """Which files of a folder are robots."""
 
+import time
+
 import pytest
 
 from cartwheel.corpus import robots_in, survey
@@ -260,3 +262,40 @@ def test_the_models_of_a_folder_of_worlds_are_robots_and_its_other_files_are_not
         worlds__wall_dot_urdf=f'<robot name="wall">{LINK.format("a")}</robot>',
     )
     assert found == ["worlds/track/car/car.sdf"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<include " * 100_000,
+        "<xacro:include filename='" + "${" * 500_000 + "'/>",
+        "<xacro:include filename='" + "${a}X" * 30 + "b.xacro'/>",
+        "<link " * 100_000,
+    ],
+    ids=["elements", "variables", "wildcards", "links"],
+)
+def test_a_text_that_is_made_to_be_slow_is_not(folder, text):
+    begin = time.process_time()
+    missing = "".join(
+        f'<joint name="j{n}" type="fixed"><parent link="p{n}"/><child link="a"/></joint>'
+        for n in range(300)
+    )
+    found = folder(
+        a_dot_urdf=f'<robot name="a">{LINK.format("a")}{missing}</robot>',
+        b_dot_xacro=f"<robot>{text}",
+        **{"aXX" * 70 + "_dot_xacro": '<robot name="x"><link name="a"/></robot>'},
+    )
+    assert time.process_time() - begin < 5.0  # with the square of the length, minutes
+    assert found == ["a.urdf", "aXX" * 70 + ".xacro", "b.xacro"]
+
+
+def test_names_of_included_files_may_have_several_unknown_parts(folder):
+    robot = f'<robot name="a">{LINK.format("a")}</robot>'
+    found = folder(
+        whole_dot_xacro=XACRO.format(
+            ' name="w"', '<xacro:include filename="${x}_of_${y}_of_${z}.xacro"/>' + LINK.format("a")
+        ),
+        one_of_of_two_of_three_dot_xacro=XACRO.format("", LINK.format("p")),
+        one_of_two_dot_xacro=robot,
+    )
+    assert "one_of_two.xacro" in found and "one_of_of_two_of_three.xacro" not in found

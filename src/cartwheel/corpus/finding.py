@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -23,16 +24,19 @@ _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pyc
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _ROOT = re.compile(r"<(robot|sdf|gazebo)\b")
 _INCLUDE = re.compile(
-    r"""<(?:xacro:)?include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL
+    r"""<(?:xacro:)?include\b[^<>]*?\bfilename\s*=\s*["']([^"']+)["']""", re.DOTALL
 )
+_LINK = re.compile(r"""<link\s[^<>]*?\bname\s*=\s*["']([^"']*)["']""")
+_LONGEST = 4096
+"""Maximum length of a path in Linux."""
 _FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^\s()]+)\s*\)")
 _WORLDS = (".world", ".world.xacro", ".world.sdf")
 _ACTIVE = re.compile(r"<(?:plugin|sensor|include)\b")
 """Elements of an SDF model that is not scenery. An included model may contain the others."""
 _DEFINED = {
-    "property": r"""<(?:xacro:)?property\b[^>]*?\bname\s*=\s*["']{}["']""",
-    "macro": r"""<(?:xacro:)?macro\b[^>]*?\bname\s*=\s*["'](?:xacro:)?{}["']""",
-    "argument": r"""<(?:xacro:)?arg\b[^>]*?\bname\s*=\s*["']{}["']""",
+    "property": r"""<(?:xacro:)?property\b[^<>]*?\bname\s*=\s*["']{}["']""",
+    "macro": r"""<(?:xacro:)?macro\b[^<>]*?\bname\s*=\s*["'](?:xacro:)?{}["']""",
+    "argument": r"""<(?:xacro:)?arg\b[^<>]*?\bname\s*=\s*["']{}["']""",
 }
 """Definitions by the kind of name."""
 _MACRO, _MACRO_END = re.compile(r"<(?:xacro:)?macro\b"), re.compile(r"</(?:xacro:)?macro\s*>")
@@ -191,12 +195,12 @@ class _Folder:
     def _hangs(self, path: Path, root: Node) -> bool:
         """Whether a joint connects the file's links to a link that only another file contains."""
         parents = _missing_parents(root)
-        return any(
-            re.search(rf"""<link\s[^>]*?name\s*=\s*["']{re.escape(parent)}["']""", text)
-            for parent in parents
-            for other, text in self.texts.items()
-            if other != path
-        )
+        return any(parents & self._links[other] for other in self.texts if other != path)
+
+    @cached_property
+    def _links(self) -> Mapping[Path, frozenset[str]]:
+        """The names of the links in each text."""
+        return {path: frozenset(_LINK.findall(text)) for path, text in self.texts.items()}
 
 
 def _missing_parents(root: Node) -> set[str]:
@@ -240,12 +244,26 @@ def _text(path: Path) -> str | None:
 
 def _pattern(name: str) -> re.Pattern[str] | None:
     """A pattern for the end of an included file's path; None if nothing of the path is known."""
+    if len(name) > _LONGEST:
+        return None
     known = _VARIABLE.sub("*", _FIND.sub(r"\1", name.strip()))
     known = known.removeprefix("file://").removeprefix("package://").lstrip("./")
-    parts = [re.escape(part).replace(r"\*", "[^/]*") for part in known.split("/") if part]
+    parts = [_part(part) for part in known.split("/") if part]
     if not re.search(r"\w", known.removesuffix(".xacro").removesuffix(".urdf")):
         return None
     return re.compile("/" + "/".join(parts) + "$")
+
+
+def _part(name: str) -> str:
+    """A pattern for the name of a file or folder with unknown parts.
+
+    What precedes the last unknown part is found once. Otherwise, the time would grow exponentially.
+    """
+    first, *rest = (re.escape(piece) for piece in name.split("*"))
+    if not rest:
+        return first
+    *between, last = rest
+    return first + "".join(f"(?>[^/]*?{piece})" for piece in between) + f"[^/]*{last}"
 
 
 def _only_defines(text: str) -> bool:
