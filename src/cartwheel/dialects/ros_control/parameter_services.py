@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from cartwheel.messages import zero
+from cartwheel.messages import decode_cdr, encode_cdr, zero
 from cartwheel.messages.ros2.parameter_services import ParameterHandlers
 from cartwheel.messages.ros2.parameters import FIELDS, parameter_value
 
+_VALUE = "rcl_interfaces/msg/ParameterValue"
+_MOST_BYTES = 4 << 20
+"""Maximum size of all parameters that are set, with their names."""
 Serve = Callable[[str, str, Callable[[Any], Any]], Any]
 """Offers a service: name, type, handler."""
 
@@ -31,6 +34,9 @@ class ParameterServices(ParameterHandlers):
         self._open = open_
         self._set_values: dict[str, Any] = {}
         """``ParameterValue`` by name."""
+        self._sizes: dict[str, int] = {}
+        """Sizes of these values with their names, in bytes."""
+        self._total = 0
         self.offer(node, serve)
 
     def below(self, name: str) -> dict[str, Any]:
@@ -47,17 +53,32 @@ class ParameterServices(ParameterHandlers):
 
     def value(self, name: str) -> Any:
         value = self._set_values.get(name) or self._stated.get(name)
-        return zero("rcl_interfaces/msg/ParameterValue") if value is None else value
+        return zero(_VALUE) if value is None else value
 
     def describe(self, descriptor: Any) -> None:
         descriptor.read_only = not self._open
 
     def change(self, given: Sequence[Any]) -> str:
         refusal = next(filter(None, (self._refusal(each.name) for each in given)), "")
-        if not refusal:
-            for parameter in given:
-                self._take(parameter)
-        return refusal
+        if refusal:
+            return refusal
+        # A value in a request is a view of the whole request.
+        encoded = {
+            each.name: encode_cdr(each.value) if each.value.type in FIELDS else b""
+            for each in given
+        }
+        sizes = {name: len(name) + len(data) if data else 0 for name, data in encoded.items()}
+        grown = sum(size - self._sizes.get(name, 0) for name, size in sizes.items())
+        if grown > 0 and self._total + grown > _MOST_BYTES:
+            return f"the parameters would be larger than {_MOST_BYTES:,} bytes"
+        self._total += grown
+        for name, data in encoded.items():
+            self._set_values.pop(name, None)
+            self._sizes.pop(name, None)
+            if data:
+                self._set_values[name] = decode_cdr(data, _VALUE)
+                self._sizes[name] = sizes[name]
+        return ""
 
     def _refusal(self, name: str) -> str:
         """Returns why a parameter cannot be set; empty if it can."""
@@ -66,9 +87,3 @@ class ParameterServices(ParameterHandlers):
         if name in self._stated:
             return f'parameter "{name}" is read-only'
         return f'parameter "{name}" has not been declared'
-
-    def _take(self, parameter: Any) -> None:
-        if parameter.value.type in FIELDS:
-            self._set_values[parameter.name] = parameter.value
-        else:
-            self._set_values.pop(parameter.name, None)

@@ -8,10 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from cartwheel.codes.graph import FIELD_VALUE_INVALID
+from cartwheel.errors import GraphError
 from cartwheel.messages.convert import zero
 from cartwheel.messages.ros2.parameters import listed
 from cartwheel.messages.store import message_class, service_classes
 
+MOST = 10_000
+"""Maximum number of names, prefixes or parameters in a request. A response is much larger."""
 _PACKAGE = "rcl_interfaces"
 
 
@@ -33,7 +37,7 @@ class ParameterHandlers(ABC):
             ("set_parameters", "SetParameters", self._set),
             ("set_parameters_atomically", "SetParametersAtomically", self._set_atomically),
         ):
-            serve(f"{node}/{name}", f"{_PACKAGE}/srv/{kind}", handler)
+            serve(f"{node}/{name}", f"{_PACKAGE}/srv/{kind}", _limited(handler))
 
     @abstractmethod
     def names(self) -> Iterable[str]:
@@ -82,6 +86,23 @@ class ParameterHandlers(ABC):
         reason = self.change(given)
         result = message_class(f"{_PACKAGE}/msg/SetParametersResult")
         return result(successful=not reason, reason=reason)
+
+
+def _limited(handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """A handler that raises a GraphError if a request is too large."""
+
+    def handle(request: Any) -> Any:
+        for field in ("names", "parameters", "prefixes"):
+            count = len(getattr(request, field, ()))
+            if count > MOST:
+                raise GraphError(
+                    f"{field}: expected at most {MOST:,} elements, got {count:,}",
+                    code=FIELD_VALUE_INVALID,
+                    values={"field": field, "count": count},
+                )
+        return handler(request)
+
+    return handle
 
 
 def _response(kind: str, **fields: Any) -> Any:
