@@ -267,3 +267,9 @@ CONTROL_ELSEWHERE = Code(
     "info",
     "controllers use the joints that a model's URDF lists",
 )
+CONTROLLER_UNDEFINED = Code(
+    "CW485",
+    "controller-undefined",
+    "warning",
+    "a launch file starts a controller whose parameters no file contains",
+)

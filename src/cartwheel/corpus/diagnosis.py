@@ -139,15 +139,19 @@ def _missing(verdict: Verdict, description: RobotDescription) -> Iterator[Fault]
     # controllers do not move with any hardware.
     moves = any(joint.type != "fixed" for joint in description.joints)
     stopped = replaced if verdict.controller_files or not moves else []
+    undefined = [each for each in verdict.observed if each.code is devices.CONTROLLER_UNDEFINED]
+    for each in undefined:
+        yield Fault(test="controller", subject=str(each.values["controller"]), reason=each)
     for tag in managers(description, jointless=bool(replaced)):
-        reason = (
-            most_severe(stopped)
-            or most_severe(each for each in said if each.code in _CONTROL and _concerns(each, tag))
-            or devices.CONTROLLERS_NOT_FOUND.diagnostic(
+        reason = most_severe(stopped) or most_severe(
+            each for each in said if each.code in _CONTROL and _concerns(each, tag)
+        )
+        if reason is None and not undefined:
+            reason = devices.CONTROLLERS_NOT_FOUND.diagnostic(
                 "no file contains controllers for this controller manager", origin=tag.origin
             )
-        )
-        yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
+        if reason is not None:
+            yield Fault(test="controller", subject=short_name(tag.filename), reason=reason)
 
 
 def _contains(each: Diagnostic, controller: str) -> bool:

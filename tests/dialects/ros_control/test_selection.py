@@ -5,7 +5,11 @@ from tests.coded import coded
 from tests.dialects.ros_control.arms import beam, robot, ros2_joint, ros2_system, transmission
 
 import cartwheel as cw
-from cartwheel.codes.devices import CONTROL_ELSEWHERE, CONTROLLERS_FILE_UNREADABLE
+from cartwheel.codes.devices import (
+    CONTROL_ELSEWHERE,
+    CONTROLLER_UNDEFINED,
+    CONTROLLERS_FILE_UNREADABLE,
+)
 from cartwheel.corpus import try_robot
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.selection import with_published_control
@@ -149,3 +153,41 @@ def test_an_unreadable_controller_file_of_a_launch_file_is_reported(model, tmp_p
     (fault,) = verdict.faults
     assert (fault.test, fault.subject, fault.source) == ("controller", "bad", "file")
     assert fault.code is CONTROLLERS_FILE_UNREADABLE
+
+
+@pytest.mark.parametrize(
+    "tag", [ROS1, ROS1.replace("/>", "><parameters>{file}</parameters></plugin>")]
+)
+def test_a_controller_that_only_a_launch_file_names_is_reported(model, tmp_path, tag):
+    good = tmp_path / "arm/config/good.yaml"
+    model(
+        "",
+        launch__sim_dot_launch=STARTER,
+        robots__arm_dot_urdf=robot(
+            beam("beam", "world") + transmission("beam_joint", "Position"), tag.format(file=good)
+        ),
+        config__good_dot_yaml="good: {type: joint_state_controller/JointStateController, publish_rate: 50}",
+    )
+    path = tmp_path / "arm/robots/arm.urdf"
+    with cw.World("empty") as world:
+        world.spawn(path, controllers="auto")
+        (found,) = coded(world, CONTROLLER_UNDEFINED)
+        assert found.values == {"controller": "bad"}
+        assert found.origin.file.endswith("sim.launch")
+    verdict = try_robot(path, standing=1.0)
+    assert [(each.subject, each.code) for each in verdict.faults] == [("bad", CONTROLLER_UNDEFINED)]
+
+
+def test_a_controller_whose_parameters_are_in_a_launch_file_is_not_reported(model, tmp_path):
+    held = beam("beam", "world") + transmission("beam_joint", "Position")
+    model(
+        "",
+        launch__sim_dot_launch=STARTER.replace(
+            "</launch>", "<rosparam>bad: {}</rosparam></launch>"
+        ),
+        robots__arm_dot_urdf=robot(held, ROS1),
+        config__good_dot_yaml=ONE.format(name="good", joint="beam"),
+    )
+    with cw.World("empty") as world:
+        world.spawn(tmp_path / "arm/robots/arm.urdf", controllers="auto")
+        assert not coded(world, CONTROLLER_UNDEFINED)

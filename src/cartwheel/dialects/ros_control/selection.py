@@ -7,13 +7,16 @@ model, without these elements.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
+import os
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cartwheel import yaml_text
-from cartwheel.codes.devices import CONTROL_ELSEWHERE
+from cartwheel.codes.devices import CONTROL_ELSEWHERE, CONTROLLER_UNDEFINED
 from cartwheel.description import load_robot
 from cartwheel.description.launches import (
     LaunchUse,
@@ -25,9 +28,13 @@ from cartwheel.description.launches import (
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.ros_control.files import for_robot, name_and_file, read_parameters
 from cartwheel.dialects.ros_control.suggestion import commanding, is_controlled, suggested
-from cartwheel.errors import CartwheelError, Diagnostic, PluginError
+from cartwheel.errors import CartwheelError, Diagnostic, Origin, PluginError
 
 _SUFFIX = ".sdf"
+_TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", ".world")
+"""Ends of the names of files that may contain parameters of controllers, also within a tag."""
+_MOST_TEXTS = 2000
+"""Maximum number of such files that are read."""
 _MOST = 8
 """Maximum number of descriptions that are read."""
 _FOLDERS = (".", "urdf", "../urdf")
@@ -56,12 +63,15 @@ def selection_near(robot: RobotDescription, package_path: Sequence[Path] = ()) -
         robot: The robot.
         package_path: Folders to search for packages first.
     """
-    if not suggested(robot):
+    if not is_controlled(robot):
         return Selection(files=(), names=())
     file = Path(robot.origin.file)
     folder = root_of(file)
     launches = () if folder is None else launches_near(folder, package_path)
-    return selection(robot, chosen(file, launches), launches)
+    use = chosen(file, launches)
+    if not suggested(robot):
+        return Selection(files=(), names=(), problems=tuple(_undefined(robot, use, launches)))
+    return selection(robot, use, launches)
 
 
 def launched(robot: RobotDescription) -> tuple[str, ...]:
@@ -69,9 +79,13 @@ def launched(robot: RobotDescription) -> tuple[str, ...]:
     file = Path(robot.origin.file)
     folder = root_of(file)
     launches = () if folder is None else launches_near(folder)
-    use = chosen(file, launches)
-    starter = use if use is not None and use.spawned else controllers_for(file, use, launches)
+    starter = _starter(file, chosen(file, launches), launches)
     return () if starter is None else starter.spawned
+
+
+def _starter(file: Path, use: LaunchUse | None, launches: Sequence[LaunchUse]) -> LaunchUse | None:
+    """The launch file that starts a description's controllers."""
+    return use if use is not None and use.spawned else controllers_for(file, use, launches)
 
 
 def selection(
@@ -93,7 +107,8 @@ def selection(
         starter, named = None, []
     files = tuple(each for each in named or suggested(robot) if _is_complete(each, robot))
     names = starter.spawned if starter is not None and (named or not files) else ()
-    problems = tuple(_unreadable(starter.controllers, names)) if starter is not None else ()
+    unreadable = _unreadable(starter.controllers, names) if starter is not None else ()
+    problems = (*unreadable, *_undefined(robot, use, launches))
     return Selection(files=files, names=names, problems=problems)
 
 
@@ -111,6 +126,46 @@ def _unreadable(paths: Sequence[Path], names: Sequence[str]) -> Iterator[Diagnos
             except PluginError as error:
                 found = error.diagnostic()
                 yield replace(found, values={**found.values, "controllers": held})
+
+
+def _undefined(
+    robot: RobotDescription, use: LaunchUse | None, launches: Sequence[LaunchUse]
+) -> Iterator[Diagnostic]:
+    """Controllers that a robot's launch file starts, but that no file near it defines."""
+    file = Path(robot.origin.file)
+    starter, folder = _starter(file, use, launches), root_of(file)
+    if starter is None or folder is None or not is_controlled(robot):
+        return
+    undefined = set(starter.spawned)
+    for path in itertools.islice(_definitions(folder), _MOST_TEXTS):
+        if not undefined:
+            return
+        with contextlib.suppress(OSError, UnicodeDecodeError):
+            text = yaml_text.read(path)
+            undefined -= {name for name in undefined if _is_key(name, text)}
+    for name in starter.spawned:
+        if name in undefined:
+            undefined.discard(name)
+            yield CONTROLLER_UNDEFINED.diagnostic(
+                f'"{starter.file.name}" starts the controller "{name}", but no file near it '
+                "contains its parameters, so it cannot be loaded",
+                origin=Origin(file=str(starter.file)),
+                values={"controller": name},
+            )
+
+
+def _definitions(folder: Path) -> Iterator[Path]:
+    """Files in a folder that may contain parameters of controllers."""
+    for root, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        yield from (Path(root, name) for name in sorted(names) if name.endswith(_TEXTS))
+
+
+def _is_key(name: str, text: str) -> bool:
+    """Whether a text contains a name before a colon, also one that is quoted or has a prefix."""
+    return (
+        name in text and re.search(rf"{re.escape(name)}\s{{0,9}}[\"']?\s{{0,9}}:", text) is not None
+    )
 
 
 def _is_complete(path: Path, robot: RobotDescription) -> bool:
