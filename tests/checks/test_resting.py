@@ -319,3 +319,11 @@ def test_a_robot_on_two_wheels_that_no_drive_names_is_reported(tmp_path):
     assert finding.values["outside"] == 0.0
     ball = link("ball", 1.0, f'<sphere radius="{BALL}"/>') + joint("ball", "fixed", "0.15 0 -0.03")
     assert balanced(tmp_path, bare.replace("</robot>", f"{ball}</robot>")) == []
+
+
+@pytest.mark.parametrize("kind", ["visual", "collision"])
+def test_balance_depends_on_collisions_only(tmp_path, kind):
+    """A missing collision mesh may touch the ground, and a missing visual mesh does not."""
+    lost = f'<{kind}><geometry><mesh filename="lost.stl"/></geometry></{kind}>'
+    text = drive().replace("</link>", f"{lost}</link>", 1)
+    assert len(balanced(tmp_path, text)) == (kind == "visual")

@@ -273,7 +273,25 @@ def test_malformed_include_names_its_own_line(folder):
 def test_include_of_itself_ends(folder):
     write("robot.xacro", '<xacro:include filename="robot.xacro"/>')
     error = failure()
-    assert error.code is files.EXPANSION_TOO_LARGE and error.values["kind"] == "recursion"
+    assert error.code is files.INCLUDE_RECURSIVE
+    assert error.values == {"file": "robot.xacro", "length": 1}
+
+
+def test_files_that_include_each_other_end(folder):
+    write("robot.xacro", '<xacro:include filename="arm.xacro"/>')
+    write("arm.xacro", '<xacro:include filename="hand.xacro"/>')
+    write("hand.xacro", '<xacro:include filename="arm.xacro"/>')
+    error = failure()
+    assert error.code is files.INCLUDE_RECURSIVE and error.values["length"] == 2
+    assert {str(error.origin.file), error.values["file"]} <= {"arm.xacro", "hand.xacro"}
+
+
+def test_a_macro_that_calls_itself_ends(folder):
+    write(
+        "robot.xacro",
+        '<xacro:macro name="arm"><xacro:arm/></xacro:macro><xacro:arm/>',
+    )
+    assert failure().code is files.EXPANSION_TOO_LARGE
 
 
 def test_errors_within_macros_show_the_calls(folder):

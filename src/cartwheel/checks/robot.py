@@ -98,15 +98,33 @@ class Robot:
     @cached_property
     def incomplete(self) -> frozenset[str]:
         """Links with a missing mesh, whose remaining geometry is not representative."""
+        return self._lacking("visual", "collision")
+
+    @cached_property
+    def uncovered(self) -> frozenset[str]:
+        """Links with a missing collision mesh, which may touch the ground with it."""
+        return self._lacking("collision")
+
+    def _lacking(self, *kinds: str) -> frozenset[str]:
+        """Links with a missing mesh in elements of these kinds."""
         found = set(self.cut)
         for node in nodes.children(self.root, "link"):
             link = self.links.get(nodes.name_of(node))
-            if link is not None:
-                written = sum(each.tag == "mesh" for each in nodes.walk(node))
-                parts: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
-                read = sum(isinstance(part.shape, Mesh) for part in parts)
-                if read < written:
-                    found.add(link.name)
+            if link is None:
+                continue
+            written = [
+                each
+                for kind in kinds
+                for part in nodes.children(node, kind)
+                for each in nodes.walk(part)
+                if each.tag == "mesh"
+            ]
+            parts: list[Visual | Collision] = [
+                *(link.visuals if "visual" in kinds else ()),
+                *(link.collisions if "collision" in kinds else ()),
+            ]
+            if sum(isinstance(part.shape, Mesh) for part in parts) < len(written):
+                found.add(link.name)
         return frozenset(found)
 
     @cached_property

@@ -69,7 +69,7 @@ XACRO_PREFIX = Code("CW122", "xacro-prefix", "warning", "a xacro element has no 
 ARGUMENT_UNKNOWN = Code(
     "CW123", "argument-unknown", "warning", "the description does not declare an argument"
 )
-INCLUDE_RECURSIVE = Code("CW124", "include-recursive", "error", "a model includes itself")
+INCLUDE_RECURSIVE = Code("CW124", "include-recursive", "error", "a model or file includes itself")
 SDF_VERSION = Code(
     "CW125", "sdf-version", "error", "the SDF version is missing, invalid, too old or too new"
 )

@@ -5,7 +5,13 @@ from cartwheel.graph.actionlib import ActionTopics
 from cartwheel.graph.graph import Graph
 from cartwheel.graph.joint_inputs import JointInput
 from cartwheel.graph.mailbox import Mailbox
-from cartwheel.graph.names import absolute_name, check_prefix, resolve_frame, resolve_name
+from cartwheel.graph.names import (
+    absolute_name,
+    check_prefix,
+    is_name,
+    resolve_frame,
+    resolve_name,
+)
 from cartwheel.graph.parameters import ParameterServer
 from cartwheel.graph.reconfigure import ReconfigureParameter, ReconfigureServer, choices
 from cartwheel.graph.renaming import TopicRenaming
@@ -49,6 +55,7 @@ __all__ = [
     "check_prefix",
     "checked_handler",
     "choices",
+    "is_name",
     "made_message",
     "made_response",
     "resolve_frame",

@@ -16,8 +16,7 @@ def resolve_name(name: str, namespace: str = "") -> str:
     Raises:
         GraphError: The result is not a valid ROS name.
     """
-    full = name if name.startswith("/") else f"/{namespace.strip('/')}/{name}"
-    full = "/" + "/".join(part for part in full.split("/") if part)
+    full = _full(name, namespace)
     if not _NAME.match(full):
         raise GraphError(
             f'"{name}" is not a valid name',
@@ -26,6 +25,16 @@ def resolve_name(name: str, namespace: str = "") -> str:
             values={"name": name},
         )
     return full
+
+
+def is_name(name: str) -> bool:
+    """Whether a name is valid for topics, services, parameters and nodes in ROS."""
+    return bool(_NAME.match(_full(name)))
+
+
+def _full(name: str, namespace: str = "") -> str:
+    full = name if name.startswith("/") else f"/{namespace.strip('/')}/{name}"
+    return "/" + "/".join(part for part in full.split("/") if part)
 
 
 def absolute_name(name: str) -> str:

@@ -7,7 +7,7 @@ from tests.dialects.ros_control.arms import ROS1, beam, robot, ros2_joint, ros2_
 from tests.dialects.ros_control.arms import ros2_system as system
 
 import cartwheel as cw
-from cartwheel.codes import devices, files
+from cartwheel.codes import devices, files, graph, running
 from cartwheel.description import load_robot
 from cartwheel.dialects.ros_control.files import ControllerFiles, read_parameters, ros2_file
 from cartwheel.dialects.ros_control.substitution import substitute
@@ -281,3 +281,25 @@ def test_everything_that_can_be_replaced(tmp_path, monkeypatch):
         with pytest.raises(PluginError) as caught:
             substitute(text, Path(file), {})
         assert caught.value.code is devices.CONTROLLERS_FILE_ARGUMENT
+
+
+def test_a_name_with_a_space_costs_its_controller_only(tmp_path):
+    """ROS refuses such a name when the controller is loaded; the others start."""
+    (tmp_path / "arm.urdf").write_text(
+        robot(beam("beam", "world") + transmission("beam_joint", "Effort"), ROS1)
+    )
+    (tmp_path / "arm.yaml").write_text("""
+Revolute 2_controller:
+  type: effort_controllers/JointEffortController
+  joint: beam_joint
+held:
+  type: effort_controllers/JointEffortController
+  joint: beam_joint
+""")
+    with cw.World("empty") as world:
+        world.spawn(tmp_path / "arm.urdf", controllers=[tmp_path / "arm.yaml"])
+        world.run(0.1)
+        assert started(world) == ["held"]
+        (refused,) = [d for d in world.diagnostics if d.code is running.CONTROLLER_NOT_STARTED]
+        assert refused.values["controller"] == "Revolute 2_controller"
+        assert refused.values["cause"] == graph.GRAPH_NAME_INVALID.number

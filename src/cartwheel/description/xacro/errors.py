@@ -6,7 +6,7 @@ Only this module parses the package's messages.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,6 +51,8 @@ class ArgumentError(Exception):
 _LONGEST = 4000
 """Maximum characters of an error message to examine."""
 
+_LONGEST_CYCLE, _TURNS = 16, 4
+"""Most files that include each other, and how often they must do so at the end of the list."""
 _UNDEFINED = re.compile(r"name '([^']*)' is not defined")
 _MACRO = re.compile(r"unknown macro name: xacro:(\S+)")
 _BLOCK = re.compile(r'Undefined block "([^"]*)"')
@@ -75,6 +77,17 @@ def explain(failure: Failure) -> DescriptionError:
     values: dict[str, Value] = {}
 
     if isinstance(inner, RecursionError):
+        cycle = _cycle(failure.files)
+        if cycle:
+            others = f"{len(cycle) - 1} other file{'s' if len(cycle) > 2 else ''}"
+            through = f", through {others}" if len(cycle) > 1 else ""
+            return DescriptionError(
+                f'"{cycle[0]}" includes itself{through}',
+                code=codes.INCLUDE_RECURSIVE,
+                values={"file": cycle[0], "length": len(cycle)},
+                origin=Origin(file=origin.file, line=origin.line),
+                hint="xacro fails as well. Remove the include.",
+            )
         return DescriptionError(
             "macros, includes or properties refer to each other in an endless loop",
             code=codes.EXPANSION_TOO_LARGE,
@@ -165,6 +178,16 @@ def _unknown(kind: str, name: str, near: str) -> tuple[Code, dict[str, Value]]:
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "eval", "cwd")
 _FUNCTIONS = ("pi", "sin", "cos", "tan", "sqrt", "radians", "degrees", "atan2", "abs", "load_yaml")
+
+
+def _cycle(files: Sequence[str]) -> Sequence[str]:
+    """The files that included each other again and again at the end; empty if there are none."""
+    for length in range(1, _LONGEST_CYCLE + 1):
+        last = files[-length:]
+        times = [files[len(files) - n * length :][:length] for n in range(1, _TURNS + 1)]
+        if len(files) >= _TURNS * length and all(each == last for each in times):
+            return last
+    return ()
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:

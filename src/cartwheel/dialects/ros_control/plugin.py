@@ -25,6 +25,7 @@ from cartwheel.dialects.ros_control.services import Ros1ManagerServices
 from cartwheel.dialects.ros_control.settings import Settings
 from cartwheel.dialects.tags import tag
 from cartwheel.errors import Origin, PluginError
+from cartwheel.graph import is_name
 
 _PLAIN = ("gazebo_ros_control/DefaultRobotHWSim", "DefaultRobotHWSim", "")
 
@@ -161,9 +162,10 @@ class RosControl(ControlPlugin):
         return Hardware(self, joints, self._gains(joints), limits)
 
     def _parameters_of(self, entry: ControllerEntry) -> Mapping[str, Any]:
-        values: Mapping[str, Any] = self.graph.parameters.get(
-            f"/{self.namespace}/{entry.name}", entry.values
-        )
+        name = f"/{self.namespace}/{entry.name}"
+        if not is_name(name):
+            return entry.values
+        values: Mapping[str, Any] = self.graph.parameters.get(name, entry.values)
         return values
 
     def _known_types(self) -> list[str]:
@@ -202,6 +204,9 @@ class RosControl(ControlPlugin):
                 )
         for key, value in _below_root(inner):
             name = f"/{self.namespace}/{key}"
+            if not is_name(name):
+                # Only the controller of this name fails in ROS, when it is loaded.
+                continue
             before = self.graph.parameters.get(name)
             if isinstance(before, dict) and isinstance(value, dict):
                 value = {**before, **value}  # noqa: PLW2901

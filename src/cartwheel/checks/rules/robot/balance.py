@@ -36,7 +36,7 @@ _TILTED = 0.1
 def balance(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         held = any(joint.parent == "world" for joint in robot.description.joints)
-        if robot.description.static or held or not robot.is_placed or robot.incomplete:
+        if robot.description.static or held or not robot.is_placed or robot.uncovered:
             continue
         poses = starting_poses(robot)
         center = center_of_mass(robot.description, poses)
