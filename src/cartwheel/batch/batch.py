@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -23,6 +24,18 @@ if TYPE_CHECKING:
 
 _SEEDS = 2**31
 """Number of seeds that follow others."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Share:
+    """Those of some worlds that are in one process."""
+
+    process: int
+    """Number of the process, from this one on."""
+    worlds: list[int]
+    """Their numbers in the process."""
+    rows: slice | list[int]
+    """Their places among the worlds."""
 
 
 class Batch:
@@ -108,6 +121,11 @@ class Batch:
         self._processes: list[Process] = []
         self._edges = np.linspace(0, n, count + 2).astype(int).tolist()
         """The first world of each process, from this one on, and the number of worlds."""
+        self._every = list(range(n))
+        self._all = [
+            _Share(index, list(range(last - first)), slice(first, last))
+            for index, (first, last) in enumerate(itertools.pairwise(self._edges))
+        ]
         if count and start_method != "fork" and (reason := unpicklable(self._plan)):
             error = invalid(f"act, obs or vary cannot be passed to processes: {reason}", "workers")
             error.hint = f"{AT_TOP_LEVEL}, or pass workers=0."
@@ -184,7 +202,11 @@ class Batch:
                 _after(self._seeds[index]) if self._begun[index] else self._seeds[index]
                 for index in chosen
             ]
-        values = self._call("reset", chosen, lambda rows: [given[row] for row in rows])
+        values = self._call(
+            "reset",
+            chosen,
+            lambda rows: given[rows] if isinstance(rows, slice) else [given[row] for row in rows],
+        )
         for index, each in zip(chosen, given, strict=True):
             self._seeds[index], self._begun[index] = each, True
         return values
@@ -218,7 +240,7 @@ class Batch:
         if self._closed:
             raise CartwheelError("the batch is closed", code=BATCH_CLOSED)
         if which is None:
-            return list(range(self.n))
+            return self._every
         found = np.asarray(which)
         if found.dtype == bool:
             found = np.flatnonzero(found)
@@ -229,7 +251,20 @@ class Batch:
             raise invalid(f"the worlds must be different numbers from 0 to {self.n - 1}", "which")
         return chosen
 
-    def _call(self, name: str, chosen: list[int], part_of: Callable[[list[int]], Any]) -> Values:
+    def _shares(self, chosen: list[int]) -> list[_Share]:
+        """The processes that have some of these worlds."""
+        if chosen is self._every:
+            return self._all
+        found = []
+        for index, (first, last) in enumerate(itertools.pairwise(self._edges)):
+            rows = [row for row, world in enumerate(chosen) if first <= world < last]
+            if rows:
+                found.append(_Share(index, [chosen[row] - first for row in rows], rows))
+        return found
+
+    def _call(
+        self, name: str, chosen: list[int], part_of: Callable[[slice | list[int]], Any]
+    ) -> Values:
         """Calls a method of `Lanes` for some worlds, each in its process.
 
         Args:
@@ -237,18 +272,16 @@ class Batch:
             chosen: Indices of the worlds.
             part_of: The argument for some of the chosen worlds.
         """
-        asked: list[tuple[Callable[[], Values], list[int]]] = []
-        for index, (first, last) in enumerate(itertools.pairwise(self._edges)):
-            rows = [row for row, world in enumerate(chosen) if first <= world < last]
-            if not rows:
-                continue
-            arguments = [chosen[row] - first for row in rows], part_of(rows)
-            if index == 0:
-                asked.append((functools.partial(getattr(self._here, name), *arguments), rows))
+        asked: list[tuple[Callable[[], Values], slice | list[int]]] = []
+        for share in self._shares(chosen):
+            arguments = share.worlds, part_of(share.rows)
+            if share.process == 0:
+                here = functools.partial(getattr(self._here, name), *arguments)
+                asked.append((here, share.rows))
             else:
-                process = self._processes[index - 1]
+                process = self._processes[share.process - 1]
                 process.ask(name, *arguments)
-                asked.append((process.answer, rows))
+                asked.append((process.answer, share.rows))
         return _joined(asked, len(chosen))
 
     def close(self) -> None:
@@ -261,11 +294,11 @@ class Batch:
         self._processes.clear()
 
 
-def _joined(asked: Sequence[tuple[Callable[[], Values], list[int]]], count: int) -> Values:
+def _joined(asked: Sequence[tuple[Callable[[], Values], slice | list[int]]], count: int) -> Values:
     """The answers of the processes in the order of the worlds."""
     if len(asked) == 1:
         return asked[0][0]()
-    answers: list[tuple[list[int], Values]] = []
+    answers: list[tuple[slice | list[int], Values]] = []
     failure: Exception | None = None
     for answer, rows in asked:
         try:

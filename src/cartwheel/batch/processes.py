@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from cartwheel.batch.abreast import run_abreast
 from cartwheel.batch.lane import Lane, Values, stacked
+from cartwheel.batch.link import Link
 from cartwheel.batch.warp import WarpPhysics, unsupported
 from cartwheel.codes.world import BATCH_PROCESS_ENDED
 from cartwheel.errors import CartwheelError, fault
@@ -97,7 +98,8 @@ class Process:
         device: str | None = None,
     ) -> None:
         context: Any = multiprocessing.get_context(method)
-        self._link, theirs = context.Pipe()
+        ours, theirs = context.Pipe()
+        self._link = Link(ours)
         self._calls = 0
         self._process: Any = context.Process(
             target=_work, args=(theirs, built, plan, seeds, device), name="cartwheel-batch",
@@ -121,7 +123,7 @@ class Process:
         try:
             number = 0
             while number != self._calls:  # an interrupted caller did not wait for the others
-                number, error, result = self._link.recv()
+                number, error, result = self._link.receive()
         except (EOFError, OSError):
             self._process.join(_END)
             status = self._process.exitcode
@@ -146,20 +148,21 @@ class Process:
 
 
 def _work(
-    link: Connection, built: Built, plan: Plan, seeds: Sequence[int], device: str | None
+    connection: Connection, built: Built, plan: Plan, seeds: Sequence[int], device: str | None
 ) -> None:
     """Runs in the process: answers calls until the link is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one
+    link = Link(connection)
     with contextlib.suppress(EOFError, OSError):
         try:
             lanes = Lanes(built, plan, seeds, device)
         except Exception as error:  # noqa: BLE001 - each answer reports it
             failure = _picklable(error)
-            while (call := link.recv()) is not None:
+            while (call := link.receive()) is not None:
                 link.send((call[0], failure, None))
             return
         with contextlib.closing(lanes):
-            while (call := link.recv()) is not None:
+            while (call := link.receive()) is not None:
                 number, name, arguments = call
                 answer: tuple[int, CartwheelError | None, Any]
                 try:

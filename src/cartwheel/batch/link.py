@@ -1,0 +1,57 @@
+"""The two ends of a connection between processes that answer each other at a high rate."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import select
+import time
+from multiprocessing.connection import Connection
+from typing import Any
+
+_SPIN = 200e-6
+"""Wall time for which a process looks for data before it sleeps, s. It takes 20 to 100 µs to wake
+up."""
+
+
+class Link:
+    """Sends and receives objects that can be pickled.
+
+    Args:
+        connection: Connects the two processes.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._arrived = select.poll()
+        self._arrived.register(connection.fileno(), select.POLLIN)
+        self._is_quick = False
+        """Whether the last wait was short, so that the next one probably is, too."""
+
+    def send(self, sent: Any) -> None:
+        """Sends an object.
+
+        Raises:
+            OSError: The other process has ended.
+        """
+        # `Connection.send` also pickles sockets and such, which takes a third of its time.
+        self._connection.send_bytes(pickle.dumps(sent, pickle.HIGHEST_PROTOCOL))
+
+    def receive(self) -> Any:
+        """Waits for an object.
+
+        Raises:
+            EOFError: The other process has ended.
+            OSError: The same.
+        """
+        start = time.perf_counter()
+        if self._is_quick:
+            while not self._arrived.poll(0) and time.perf_counter() - start < _SPIN:
+                os.sched_yield()  # other programs come first, such as the other process
+        received = self._connection.recv_bytes()
+        self._is_quick = time.perf_counter() - start < _SPIN
+        return pickle.loads(received)  # noqa: S301 - sent by Cartwheel
+
+    def close(self) -> None:
+        """Closes this end."""
+        self._connection.close()

@@ -1,0 +1,82 @@
+"""Objects between two processes that answer each other at a high rate."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import threading
+
+import numpy as np
+import pytest
+
+from cartwheel.batch import link as module
+from cartwheel.batch.link import Link
+
+
+@pytest.fixture
+def ends():
+    one, other = (Link(each) for each in multiprocessing.Pipe())
+    yield one, other
+    one.close()
+    other.close()
+
+
+def test_objects_arrive_in_order(ends):
+    one, other = ends
+    sent = (1, None, {"pose": np.arange(6.0).reshape(2, 3)})
+    one.send(sent)
+    one.send("next")
+    number, error, values = other.receive()
+    assert (number, error) == sent[:2] and np.array_equal(values["pose"], sent[2]["pose"])
+    assert other.receive() == "next"
+    other.send([3])
+    assert one.receive() == [3]
+    one.close()
+    with pytest.raises((EOFError, OSError)):
+        other.receive()
+
+
+def test_a_process_looks_for_data_before_it_sleeps_if_the_last_wait_was_short(ends, monkeypatch):
+    one, other = ends
+    looks = []
+
+    def look():
+        looks.append(None)
+        if len(looks) == 3:
+            one.send("second")
+
+    monkeypatch.setattr(module, "_SPIN", 100.0)
+    monkeypatch.setattr(os, "sched_yield", look)
+    one.send("first")
+    assert other.receive() == "first" and not looks  # the first wait may be long
+    assert other.receive() == "second" and len(looks) == 3
+
+
+def test_a_process_sleeps_in_a_long_wait(ends, monkeypatch):
+    one, other = ends
+    asleep = threading.Event()
+    times: list[float] = []
+
+    def clock() -> float:
+        times.append(float(len(times)))  # each look takes a second
+        if times[-1] >= 5.0:
+            asleep.set()
+        return times[-1]
+
+    def send() -> None:
+        assert asleep.wait(60.0)
+        one.send("second")
+
+    monkeypatch.setattr(module, "_SPIN", 5.0)
+    one.send("first")
+    assert other.receive() == "first"
+    sender = threading.Thread(target=send)
+    with monkeypatch.context() as patched:
+        patched.setattr(module.time, "perf_counter", clock)
+        sender.start()
+        assert other.receive() == "second"
+        sender.join()
+    assert len(times) == 7
+    monkeypatch.setattr(os, "sched_yield", lambda: pytest.fail("it looked after a long wait"))
+    one.send("third")
+    assert other.receive() == "third"
