@@ -9,7 +9,7 @@ export VENV
 # The tests start many hundreds of processes, and each would compile all sources again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test campaign lint format warp bench corpus catalogue docs ros1 dist clean
+.PHONY: run test campaign lint format bench corpus catalogue docs ros1 dist clean
 
 run: ## simulate the cart in the browser, with a post in front of its camera
 	@tools/setup.sh run
@@ -33,10 +33,6 @@ format: ## format the sources
 	@tools/setup.sh lint
 	$(BIN)/ruff check --fix-only -q .
 	$(BIN)/ruff format -q .
-
-warp: ## test batches of worlds on MuJoCo Warp's CPU device; compiling the kernels takes minutes
-	@tools/setup.sh warp
-	@$(BIN)/pytest -q tests/batch/test_warp.py $(ARGS)
 
 bench: ## measure the speed relative to MuJoCo alone, and what the check finds; writes benchmarks/results/*.json
 	@tools/setup.sh test

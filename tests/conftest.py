@@ -50,7 +50,7 @@ _WAITING = (
     *("scenarios", "sweeps", "codes_only"),
 )
 """Folders whose tests start many processes and wait for them."""
-_BUSY = ("saving", "api")
+_BUSY = ("saving", "api", "batch")
 """Folders whose tests take long, and use a processor all the time."""
 _SPREAD = ("tests/docs/test_commands.py",)
 """Files whose tests need not run in the same process, and take long together."""

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what is missing: a virtual environment with Cartwheel, and the Debian packages
-# that pip cannot install. Usage: tools/setup.sh run|test|lint|docs|ros1|warp
+# that pip cannot install. Usage: tools/setup.sh run|test|lint|docs|ros1
 set -eu
 cd "$(dirname "$0")/.."
 purpose=${1:-run}
@@ -143,10 +143,7 @@ fi
 
 extras="[test,lint,docs]"
 stamp="$venv/.ready-tools"
-if [ "$purpose" = warp ]; then
-    extras="[test,warp]"
-    stamp="$venv/.ready-warp"
-elif [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
+if [ "$purpose" = run ] && [ ! -e "$stamp" ]; then
     extras=""
     stamp="$venv/.ready"
 fi

@@ -1,7 +1,4 @@
-"""Batches on MuJoCo Warp's CPU device, compared with MuJoCo. `make warp` runs them.
-
-Compiling the kernels takes minutes, so `make test` does not install MuJoCo Warp.
-"""
+"""Batches on MuJoCo Warp's CPU device, compared with MuJoCo."""
 
 from __future__ import annotations
 
@@ -14,8 +11,9 @@ import cartwheel as cw
 from cartwheel.batch import Batch
 from cartwheel.codes.world import WARP_DEVICE_UNUSABLE, WARP_UNSUPPORTED
 
-warp = pytest.importorskip("warp", reason="MuJoCo Warp is not installed: make warp")
-pytest.importorskip("mujoco_warp", reason="MuJoCo Warp is not installed: make warp")
+_ABSENT = "MuJoCo Warp is not installed. It has packages for Linux on x86-64 and ARM."
+warp = pytest.importorskip("warp", reason=_ABSENT)
+pytest.importorskip("mujoco_warp", reason=_ABSENT)
 
 ACT = {
     "/part2_cmr/cmd_vel": ["linear.x", "angular.z"],
