@@ -128,6 +128,7 @@ STARTER = """<launch>
   <rosparam file="$(find arm)/config/other.yaml"/>
   <node pkg="controller_manager" type="spawner" name="s" args="good bad"/>
 </launch>"""
+STATES = "good: {type: joint_state_controller/JointStateController, publish_rate: 50}"
 ONE = "{name}: {{type: position_controllers/JointPositionController, joint: {joint}_joint}}"
 
 
@@ -166,7 +167,7 @@ def test_a_controller_that_only_a_launch_file_names_is_reported(model, tmp_path,
         robots__arm_dot_urdf=robot(
             beam("beam", "world") + transmission("beam_joint", "Position"), tag.format(file=good)
         ),
-        config__good_dot_yaml="good: {type: joint_state_controller/JointStateController, publish_rate: 50}",
+        config__good_dot_yaml=STATES,
     )
     path = tmp_path / "arm/robots/arm.urdf"
     with cw.World("empty") as world:

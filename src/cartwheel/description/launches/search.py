@@ -17,6 +17,8 @@ from cartwheel.description.launches.use import Facts, LaunchUse, beside
 from cartwheel.description.launches.xml_launch import read_xml
 
 _SKIPPED = frozenset({"build", "devel", "install", "log", "node_modules", "__pycache__"})
+_FOLDER = 100
+"""Steps to list a folder."""
 _MOST = 500
 """Maximum number of launch files in a folder."""
 _INCLUDES = 60
@@ -46,7 +48,7 @@ def launches_near(folder: Path, package_path: Sequence[Path] = ()) -> tuple[Laun
 def _near(folder: Path, package_path: Sequence[Path], effort: Effort) -> Iterator[LaunchUse]:
     # Which package is found depends on the folder of the launch file.
     packages: dict[Path, Packages] = {}
-    for path in _files(folder):
+    for path in _files(folder, effort):
         near = packages.setdefault(path.parent, Packages(path, package_path))
         facts = _facts(path, near, {}, effort)
         yield from _uses(path, facts)
@@ -173,9 +175,10 @@ def _common(one: Path, other: Path) -> int:
     return len(os.path.commonpath([one.absolute(), other]))
 
 
-def _files(folder: Path) -> Iterator[Path]:
+def _files(folder: Path, effort: Effort) -> Iterator[Path]:
     count = 0
     for root, folders, names in os.walk(folder):
+        effort.spend(_FOLDER + len(names))
         folders[:] = sorted(
             name for name in folders if not name.startswith(".") and name not in _SKIPPED
         )

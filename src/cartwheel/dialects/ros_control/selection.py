@@ -35,6 +35,8 @@ _TEXTS = (".yaml", ".yml", ".launch", ".py", ".xml", ".xacro", ".urdf", ".sdf", 
 """Ends of the names of files that may contain parameters of controllers, also within a tag."""
 _MOST_TEXTS = 2000
 """Maximum number of such files that are read."""
+_MOST_FOLDERS = 5000
+"""Maximum number of folders that are searched for them."""
 _MOST = 8
 """Maximum number of descriptions that are read."""
 _FOLDERS = (".", "urdf", "../urdf")
@@ -134,18 +136,17 @@ def _undefined(
     """Controllers that a robot's launch file starts, but that no file near it defines."""
     file = Path(robot.origin.file)
     starter, folder = _starter(file, use, launches), root_of(file)
-    if starter is None or folder is None or not is_controlled(robot):
+    if starter is None or not starter.spawned or folder is None or not is_controlled(robot):
         return
-    undefined = set(starter.spawned)
-    for path in itertools.islice(_definitions(folder), _MOST_TEXTS):
+    undefined, paths = set(starter.spawned), _definitions(folder)
+    for path in paths:
         if not undefined:
             return
         with contextlib.suppress(OSError, UnicodeDecodeError):
             text = yaml_text.read(path)
             undefined -= {name for name in undefined if _is_key(name, text)}
-    for name in starter.spawned:
+    for name in starter.spawned if paths else ():
         if name in undefined:
-            undefined.discard(name)
             yield CONTROLLER_UNDEFINED.diagnostic(
                 f'"{starter.file.name}" starts the controller "{name}", but no file near it '
                 "contains its parameters, so it cannot be loaded",
@@ -154,11 +155,18 @@ def _undefined(
             )
 
 
-def _definitions(folder: Path) -> Iterator[Path]:
-    """Files in a folder that may contain parameters of controllers."""
-    for root, folders, names in os.walk(folder):
+def _definitions(folder: Path) -> list[Path]:
+    """Files in a folder that may contain parameters of controllers, the likely ones first.
+
+    Empty if there are too many to read.
+    """
+    found: list[Path] = []
+    for count, (root, folders, names) in enumerate(os.walk(folder)):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
-        yield from (Path(root, name) for name in sorted(names) if name.endswith(_TEXTS))
+        found += (Path(root, name) for name in sorted(names) if name.endswith(_TEXTS))
+        if count >= _MOST_FOLDERS or len(found) > _MOST_TEXTS:
+            return []
+    return sorted(found, key=lambda path: path.suffix not in (".yaml", ".yml"))
 
 
 def _is_key(name: str, text: str) -> bool:
