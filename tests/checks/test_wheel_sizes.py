@@ -235,6 +235,18 @@ def test_a_skid_steers_default_separation_is_its_plugins(told):
     assert finding.values["measured"] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("missing", [("leftFrontJoint", "leftRearJoint"), tuple(SKID)[:4]])
+def test_sizes_are_compared_with_the_joints_that_a_plugin_uses_by_default(told, take, missing):
+    """The default joints are named left_front_joint and so on."""
+    tags = {name: value for name, value in SKID.items() if name not in missing}
+    text = car(plugin("libgazebo_ros_skid_steer_drive.so", **{**tags, "wheelSeparation": 0.2}))
+    text = re.sub(r"(front|rear)_(left|right)_joint", r"\2_\1_joint", text)
+    (finding,) = told(text)
+    assert finding.code.name == "wheel-separation-mismatch"
+    assert finding.values["measured"] == pytest.approx(TRACK)
+    assert told(take(text, finding)) == []
+
+
 def test_only_the_differential_drive_has_another_name_for_its_torque(bench):
     torque = {"torque": 1}
     for name in ("libgazebo_ros_kobuki.so", "libgazebo_ros_skid_steer_drive.so"):

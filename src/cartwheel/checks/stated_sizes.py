@@ -216,11 +216,17 @@ def _is_new(tag: PluginTag) -> bool:
 
 
 def _joints(robot: Robot, tag: PluginTag, names: Sequence[str]) -> tuple[str, ...]:
+    """The joints in tags with these names, or those that the plugin uses without the tags."""
     found = [
         word
         for name in names
         for element in tag.element.find_all(name)
         for word in element.text.split()
+    ]
+    found += [
+        joint
+        for spellings, joint in plugin_tags.default_joints(tag)
+        if set(spellings) <= set(names)
     ]
     return tuple(name for name in found if name in robot.joints)
 
