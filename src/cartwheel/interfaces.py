@@ -117,6 +117,21 @@ class RunningSimulation(Protocol):
         """Whether a model is visible from each point."""
 
 
+class RunningPlayback(RunningSimulation, Protocol):
+    """See `Player`."""
+
+    @property
+    def start_ns(self) -> int:
+        """Time of the recording's first message."""
+
+    @property
+    def end_ns(self) -> int:
+        """Time of its last message."""
+
+    def seek(self, time_ns: int) -> None:
+        """Jumps to a time."""
+
+
 class RunningSession(Protocol):
     """See `Session`."""
 
@@ -138,4 +153,4 @@ class RunningSession(Protocol):
         """Spawns a model on the owner's thread, and returns its name."""
 
 
-__all__ = ["RunningSession", "RunningSimulation", "SnapshotSource"]
+__all__ = ["RunningPlayback", "RunningSession", "RunningSimulation", "SnapshotSource"]

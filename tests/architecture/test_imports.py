@@ -370,3 +370,32 @@ def test_the_internals_of_viser_are_used_in_one_file() -> None:
     private = re.compile(r"viser import _|\._websock|\._impl\b|\._gui_input|\._release_cross")
     users = [path.name for path in FILES if private.search(path.read_text())]
     assert users == ["viser_internals.py"]
+
+
+def test_what_rooms_share_has_a_type() -> None:
+    """A cast, or a variable of type ``Any``, would hide a method that only some of them have."""
+    hidden = [
+        f"{shown(path)}:{node.lineno}: {ast.unparse(node)}"
+        for path in FILES
+        for node in ast.walk(parsed(path))
+        if hides_type(node)
+    ]
+    assert not hidden
+
+
+def hides_type(node: ast.AST) -> bool:
+    """Whether a simulation, a session or a graph gets another type than its own."""
+    if isinstance(node, ast.Call) and ast.unparse(node.func) in ("cast", "typing.cast"):
+        value: ast.expr | None = node.args[1]
+    elif isinstance(node, ast.AnnAssign) and ast.unparse(node.annotation) == "Any":
+        value = node.value
+    else:
+        return False
+    name = getattr(value, "attr", getattr(value, "id", ""))
+    return name.strip("_") in ("graph", "player", "session", "simulation")
+
+
+def test_a_hidden_type_is_found() -> None:
+    for text in ("player: Any = self.simulation", "x = cast('Player', session._simulation)"):
+        assert any(map(hides_type, ast.walk(ast.parse(text))))
+    assert not any(map(hides_type, ast.walk(ast.parse("graph: Graph = session.graph"))))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cartwheel.assembly.observer import Observer
@@ -17,6 +18,7 @@ from cartwheel.viewer import Viewer
 
 if TYPE_CHECKING:
     from cartwheel.viewer.desk import Desk
+    from cartwheel.viewer.page import Page
 
 
 class AnnouncedViewer:
@@ -41,7 +43,7 @@ class AnnouncedViewer:
         access: Access,
         port: int,
         open_browser: bool = False,
-        desk: type[Desk] | None = None,
+        desk: Callable[[Page, RunningSession], Desk] | None = None,
     ) -> None:
         self._session = session
         self._access = access

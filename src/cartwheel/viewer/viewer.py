@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cartwheel.codes.recording import VIEWER_NOT_STARTED
 from cartwheel.errors import ControlError
@@ -58,6 +58,7 @@ class Viewer:
         self._latest: Snapshot | None = None
         self._version = -1
         self._page: Page | None = None
+        self._desk: Desk
         self._ready = threading.Event()
         self._stopped = threading.Event()
         self._failure: BaseException | None = None
@@ -128,7 +129,7 @@ class Viewer:
             page = Page(
                 self._listener, self._access, title="Cartwheel", keys=KEYS, refused=self._refused
             )
-            self._desk: Any = (self._make_desk or Desk)(page, self._session)
+            self._desk = (self._make_desk or Desk)(page, self._session)
             self._desk_changed, page.on_clients = page.on_clients, self._clients_changed
             self._page = page
             page.post(self._show_latest)

@@ -1,6 +1,7 @@
 """A recording in a real browser: it is shown, held, and moved in time."""
 
 import threading
+from functools import partial
 
 import pytest
 from tests.viewer.conftest import eventually, new_page
@@ -27,7 +28,7 @@ class Cinema:
         self.session = PlaybackSession(open_recording(path))
         self.player = self.session.simulation
         self.player.pause()
-        self.viewer = Viewer(self.session, port=0, desk=PlayDesk)
+        self.viewer = Viewer(self.session, port=0, desk=partial(PlayDesk, player=self.player))
         self.viewer.start(self.player)
         self._thread = threading.Thread(target=self.player.run)
         self._thread.start()

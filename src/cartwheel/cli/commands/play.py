@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from cartwheel.assembly.ports import refuse_taken
@@ -98,7 +99,7 @@ def play(options: Options) -> None:
                     open_browser=is_desktop()
                     if options.open_browser is None
                     else options.open_browser,
-                    desk=PlayDesk,
+                    desk=partial(PlayDesk, player=player),
                 )
                 page.start(player)
             else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from cartwheel.interfaces import RunningPlayback
 from cartwheel.simulation.snapshot import Snapshot
 from cartwheel.viewer.every import Every
 from cartwheel.viewer.panels.clock import ClockPanel
@@ -14,12 +15,17 @@ _PATIENCE = 0.5
 
 
 class TimelinePanel(ClockPanel):
-    """Adds a slider to the clock; Step advances by one frame, Reset returns to the start."""
+    """Adds a slider to the clock; Step advances by one frame, Reset returns to the start.
 
-    def __init__(self, stage: Stage) -> None:
+    Args:
+        stage: Shared state of the panels.
+        player: Plays the recording.
+    """
+
+    def __init__(self, stage: Stage, player: RunningPlayback) -> None:
         super().__init__(stage)
-        player: Any = self.simulation
-        self._start_ns = int(player.start_ns)
+        self._player = player
+        self._start_ns = player.start_ns
         length = max((player.end_ns - player.start_ns) / 1e9, 0.001)
         self._slider = self.gui.add_slider(
             "Time, s", min=0.0, max=length, step=0.001, initial_value=0.0
@@ -43,6 +49,6 @@ class TimelinePanel(ClockPanel):
         if event.client is None:
             return  # moved by `update`, not by a user
         self._left_alone = self._now + _PATIENCE
-        player: Any = self.simulation
+        player = self._player
         place = self._start_ns + round(seconds * 1e9)
         self.page.then(player.call(lambda: player.seek(place)))
