@@ -8,5 +8,16 @@ from cartwheel.component import Component, Scope
 from cartwheel.description.model import CameraIntrinsics
 from cartwheel.dialects.plugin import NoTags, Plugin
 from cartwheel.dialects.tags import tag
+from cartwheel.graph import Action, Goal, Publisher
 
-__all__ = ["CameraIntrinsics", "Component", "NoTags", "Plugin", "Scope", "tag"]
+__all__ = [
+    "Action",
+    "CameraIntrinsics",
+    "Component",
+    "Goal",
+    "NoTags",
+    "Plugin",
+    "Publisher",
+    "Scope",
+    "tag",
+]

@@ -50,7 +50,7 @@ MAY_IMPORT = {
     "component": {"simulation", "messages", "graph"},
     "devices": {"component", "description", "world", "simulation", "messages", "graph"},
     "dialects": {"component", "description", "devices", "world", "simulation", "messages", "graph"},
-    "plugin": {"component", "description", "dialects"},
+    "plugin": {"component", "description", "dialects", "graph"},
     "interfaces": {"description", "simulation", "graph"},
     "session": {"component", "description", "simulation", "messages", "graph", "dialects"},
     "saving": {
