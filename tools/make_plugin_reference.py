@@ -25,6 +25,7 @@ from cartwheel.description.loading import load_text
 from cartwheel.description.model import WorldDescription
 from cartwheel.dialects.catalogue import all_plugins
 from cartwheel.dialects.plugin import Plugin
+from cartwheel.errors import CartwheelError
 from cartwheel.session import Session
 from plugin_examples import FILES, Interface, example, fields, picture, robot, slug, title, world
 
@@ -135,7 +136,15 @@ def reference() -> dict[str, str]:
     """All pages: the text by the path below docs."""
     # Without those of packages that happen to be installed here.
     ours = [plugin for plugin in all_plugins() if plugin.__module__.startswith("cartwheel.")]
-    interfaces = {plugin: _interface(plugin) for plugin in ours}
+    interfaces = {}
+    for plugin in ours:
+        try:
+            interfaces[plugin] = _interface(plugin)
+        except CartwheelError as error:
+            raise SystemExit(
+                f"{title(plugin)}: its example does not load: {error}\n"
+                f"Write an example: {FILES.relative_to(DOCS.parent)}/{slug(plugin)}.xml"
+            ) from error
     links = {title(p): f"{slug(p)}.md" for p in ours}
     pages = {f"{FOLDER}/{slug(p)}.md": _page(p, interfaces[p], links) for p in ours}
     assert len(pages) == len(ours), "two plugins have the same page"

@@ -39,6 +39,20 @@ def test_each_example_loads_without_a_warning(
     assert [each for each in reports if each.severity != "info"] == []
 
 
+def test_a_plugin_whose_example_does_not_load_needs_one_in_a_file(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    import make_plugin_reference
+
+    (plugin,) = (each for each in PLUGINS if "libgazebo_ros_p3d.so" in each.filenames)
+    text = make_plugin_reference.example(plugin).replace("base_footprint", "hook")
+    monkeypatch.setattr(make_plugin_reference, "all_plugins", lambda: [plugin])
+    monkeypatch.setattr(make_plugin_reference, "example", lambda *_, **__: text)
+    with pytest.raises(SystemExit, match=r"tools/examples/libgazebo_ros_p3d\.xml"):
+        make_plugin_reference.reference()
+
+
 @pytest.mark.parametrize("picture", sorted((ROOT / "docs/images/plugins").glob("*.svg")))
 def test_each_picture_is_valid_xml(picture: Path) -> None:
     assert ElementTree.parse(picture).getroot().tag.endswith("svg")
