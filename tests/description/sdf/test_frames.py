@@ -127,6 +127,19 @@ def test_the_frame_of_an_axis(version, axis, xyz):
     assert not [d for d in found.diagnostics if d.severity == "warning"]
 
 
+def test_the_parent_models_frame_is_unknown_since_1_7():
+    found = robot(
+        f"""<link name="base"/><link name="arm"><pose>0 0 0 0 0 {QUARTER}</pose></link>
+        <joint name="hinge" type="revolute"><parent>base</parent><child>arm</child>
+        <axis><xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame></axis></joint>""",
+        version="1.8",
+    )
+    # As in libsdformat, the axis remains in the joint's frame.
+    assert found.joint("hinge").axis.xyz == (1, 0, 0)
+    (ignored,) = (d for d in found.diagnostics if d.severity == "warning")
+    assert (ignored.code, ignored.values["tag"]) == (tags.TAG_IGNORED, "use_parent_model_frame")
+
+
 def test_parts_relative_to_other_frames():
     found = robot(
         f"""<link name="base"><pose>1 0 0 0 0 {QUARTER}</pose>

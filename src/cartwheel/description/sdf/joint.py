@@ -277,8 +277,7 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
         )
     xyz = (xyz[0] / length, xyz[1] / length, xyz[2] / length)
     expressed_in = (xyz_node.get("expressed_in") or "").strip() if xyz_node is not None else ""
-    # Until 1.4, axes were always in the model's frame; 1.5 and 1.6 specify the frame.
-    in_model_frame = node.boolean_at("use_parent_model_frame", ctx.version < (1, 5))
+    in_model_frame = _is_in_model_frame(node, joint, ctx)
     if in_model_frame or expressed_in:
         frame = frames.pose(expressed_in, node.origin) if expressed_in else Pose()
         xyz = rotate(quat_conjugate(in_model.orientation), rotate(frame.orientation, xyz))
@@ -296,6 +295,28 @@ def _axis(node: Node, joint: str, ctx: Context, frames: Frames, in_model: Pose) 
         spring_stiffness=node.number_at("dynamics/spring_stiffness", 0.0),
         spring_reference=node.number_at("dynamics/spring_reference", 0.0),
     )
+
+
+def _is_in_model_frame(axis: Node, joint: str, ctx: Context) -> bool:
+    """Whether an axis is in the frame of the model instead of its joint.
+
+    Until 1.4, all axes were. 1.5 and 1.6 have a tag for this, which libsdformat ignores in files
+    of later versions.
+    """
+    tag = "use_parent_model_frame"
+    if ctx.version < (1, 7):
+        return axis.boolean_at(tag, ctx.version < (1, 5))
+    stated = axis.child(tag)
+    if stated is not None and stated.text.strip().lower() in ("1", "true"):
+        ctx.report(
+            tags.TAG_IGNORED.diagnostic(
+                f'joint "{joint}": <{tag}> is ignored, because SDF has not had this tag since 1.7',
+                origin=stated.origin,
+                hint='Use <xyz expressed_in="__model__"> if the axis is in the frame of the model.',
+                values={"tag": tag, "parent": axis.tag, "joint": joint},
+            )
+        )
+    return False
 
 
 _FARTHEST = 1000.0
