@@ -419,6 +419,20 @@ def test_the_robots_own_limits_are_no_fault(tried):
     assert verdict.good, verdict.faults
 
 
+def test_the_velocity_limits_of_wheels_are_no_fault(tried):
+    """1 rad/s on a radius of 5 cm, of which 90 % is commanded; the track is 0.2 m."""
+    verdict = tried(cart(0.1).replace("libgazebo_ros_diff_drive.so", "gz-sim-diff-drive-system")
+        .replace("leftJoint", "left_joint").replace("rightJoint", "right_joint")
+        .replace("wheelSeparation", "wheel_separation")
+        .replace("<wheelDiameter>0.1</wheelDiameter>", "<wheel_radius>0.05</wheel_radius>")
+        .replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 1"/><limit effort="9" velocity="1"/>')
+    )  # fmt: skip
+    (drive,) = verdict.drives
+    assert drive.limited
+    assert (drive.commanded, drive.commanded_turn) == pytest.approx((0.045, 0.4))
+    assert verdict.good, verdict.faults
+
+
 def test_a_vehicle_that_faces_y_is_measured_along_its_wheels(tried):
     turned = cart(0.1).replace('name="base"', 'name="body"').replace('"base"', '"body"')
     joint = (

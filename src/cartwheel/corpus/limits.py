@@ -1,15 +1,27 @@
-"""Limits on a base's velocity in the robot's own files: controller files and plugin tags."""
+"""Limits on a base's velocity in the robot's own files: controllers, plugin tags and joints."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+from cartwheel.checks.robot import Robot
+from cartwheel.checks.wheels import wheel_joints, wheel_place, wheel_radius
 from cartwheel.description.model import Element, RobotDescription
+from cartwheel.devices.joints.limits import velocity_limit
+from cartwheel.dialects.catalogue import plugin_named
+from cartwheel.dialects.gz.ackermann import GzAckermannDrive
+from cartwheel.dialects.gz.diff_drive import GzDiffDrive
+from cartwheel.dialects.gz.mecanum import GzMecanumDrive
 from cartwheel.dialects.ros_control.controller import Controller
+from cartwheel.dialects.ros_control.controllers.wheel_controller import WheelController
 
+_GZ = (GzDiffDrive, GzMecanumDrive, GzAckermannDrive)
+"""Plugins whose wheels respect the velocity limits of their joints."""
+_BELOW = 0.9
+"""Part of the wheels' maximum speed that is commanded."""
 _TURNS = ("angular", "yaw", "rotation", "turn")
 
 
@@ -42,6 +54,35 @@ def stated_limits(robot: RobotDescription, controllers: list[Controller]) -> Sta
     for tag in robot.plugins:
         _take(found, _texts(tag.element, ""))
     return StatedLimits(**found)
+
+
+def within_speeds(
+    limits: StatedLimits, robot: Robot, controllers: Sequence[Controller]
+) -> StatedLimits:
+    """Limits at which no driven wheel turns faster than the velocity limit of its joint."""
+    speeds = {
+        name: joint.fastest
+        for each in controllers
+        if isinstance(each, WheelController)
+        for name, joint in each.claims.items()
+    }
+    if any(plugin_named(tag.filename) in _GZ for tag in robot.description.plugins):
+        speeds |= {joint.name: velocity_limit(joint) for joint in wheel_joints(robot)}
+    rims = {
+        name: speed * radius
+        for name, speed in speeds.items()
+        if name in robot.joints
+        and robot.joints[name].turns
+        and math.isfinite(speed)
+        and (radius := wheel_radius(robot, robot.joints[name])) is not None
+    }
+    if not rims:
+        return limits
+    slowest = _BELOW * min(rims.values())
+    places = [wheel_place(robot, robot.joints[name]).position for name in rims]
+    reach = max(math.dist(a[:2], b[:2]) for a in places for b in places) / 2
+    turn = slowest / reach if reach > 0 else limits.turn
+    return replace(limits, forward=min(limits.forward, slowest), turn=min(limits.turn, turn))
 
 
 def _take(found: dict[str, float], values: Iterator[tuple[str, Any]]) -> None:

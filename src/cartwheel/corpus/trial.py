@@ -17,7 +17,7 @@ from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
 from cartwheel.corpus.gains import weak_gains
-from cartwheel.corpus.limits import stated_limits
+from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
 from cartwheel.corpus.resting import blocked, dragging, drives_apart, gave_way
@@ -240,7 +240,7 @@ def _moved(
             world,
             model,
             body,
-            stated_limits(robot, started),
+            within_speeds(stated_limits(robot, started), body, started),
             started,
             idle=_idle(world),
             steered=_steered(robot, started),

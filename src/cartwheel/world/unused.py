@@ -28,6 +28,14 @@ _HELD = ("fixed", "revolute", "continuous", "ball")
 """Joint types that are constrained correctly when they close a loop."""
 _CONTROL = ("ros_control", "ros2_control")
 """Parts of the names of plugins that run controllers."""
+_GZ_DRIVES = (
+    "diff-drive",
+    "mecanum-drive",
+    "ackermann-steering",
+    "joint-controller",
+    "position-controller",
+)
+"""Parts of the names of gz-sim's plugins whose joints respect their velocity limits."""
 
 
 def unused(description: RobotDescription) -> Iterator[Diagnostic]:
@@ -68,10 +76,10 @@ def unused(description: RobotDescription) -> Iterator[Diagnostic]:
         elif joint.type != "fixed" and joint.resists:
             why = "not simulated for joints that close a loop"
             note("a joint's limits, damping, friction or spring", joint.origin, why)
-    heeded = _controlled(description)
+    heeded = _controlled(description) | _driven_in_gz(description)
     for joint in description.joints:
         if joint.axis.velocity is not None and joint.drivable and joint.name not in heeded:
-            note("a joint's velocity limit", joint.origin, "only controllers use it")
+            note("a joint's velocity limit", joint.origin, "only controllers and gz-sim use it")
         if joint.stop_cfm is not None or joint.stop_erp is not None:
             note(
                 "a joint's stop_cfm or stop_erp",
@@ -139,4 +147,14 @@ def _controlled(description: RobotDescription) -> set[str]:
         joint.attribute("name") or ""
         for element in (*description.transmissions, *description.ros2_control)
         for joint in element.find_all("joint")
+    }
+
+
+def _driven_in_gz(description: RobotDescription) -> set[str]:
+    """Joints that gz-sim's plugins drive at velocities: all texts of the tags of these plugins."""
+    return {
+        part.text.strip()
+        for plugin in description.plugins
+        if any(f"{word}-system" in plugin.filename for word in _GZ_DRIVES)
+        for part in plugin.element.children
     }

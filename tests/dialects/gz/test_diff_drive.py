@@ -15,6 +15,7 @@ from tests.devices.drives.carts import (
 )
 
 from cartwheel.codes import devices, robot
+from cartwheel.codes.world import PHYSICS_SETTING_IGNORED
 from cartwheel.errors import PluginError
 
 TWO = {"left": (0.0, 0.15), "right": (0.0, -0.15)}
@@ -141,3 +142,18 @@ def test_a_reset_takes_drives_back(make, cart):
     told = box.drain()[-1]
     assert where(told)[:2] == pytest.approx((0, 0), abs=1e-3)
     assert told.twist.twist.linear.x == pytest.approx(0, abs=1e-3)
+
+
+def test_the_velocity_limits_of_the_wheels_apply(make):
+    """gz-sim's physics clips the commanded velocity of a joint: 2 rad/s on a radius of 0.1 m."""
+    limited = cart_sdf(TWO, gz_diff(), balls=GLIDERS).replace(
+        "<axis><xyz>", "<axis><limit><velocity>2</velocity></limit><xyz>"
+    )
+    world = spawn(make, make.sdf(limited))
+    for forward, speed in ((0.5, 0.2), (-0.5, -0.2), (0.15, 0.15)):
+        world.publish("/model/cart/cmd_vel", linear_x=forward)
+        world.run(1.0)
+        before = world.model("cart").pose.x
+        world.run(1.0)
+        assert world.model("cart").pose.x - before == pytest.approx(speed, rel=0.01)
+    assert not coded(world, PHYSICS_SETTING_IGNORED)

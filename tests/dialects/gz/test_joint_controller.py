@@ -192,3 +192,17 @@ def test_actuators_messages_need_a_number(make):
     world.run(1.0)
     assert float(world.session.simulation.data.qvel[0]) == pytest.approx(0.5, abs=1e-3)
     assert [each.code for each in world.diagnostics] == [devices.PLUGIN_PARAMETER_IGNORED]
+
+
+@pytest.mark.parametrize(
+    ("kind", "tags", "topic"),
+    [
+        ("joint-controller", "", VELOCITY),
+        ("joint-position-controller", "<use_velocity_commands>1</use_velocity_commands>", POSITION),
+    ],
+)
+def test_the_velocity_limit_of_the_joint_applies(make, kind, tags, topic):
+    limit = "<limit><velocity>0.5</velocity></limit>"
+    position, velocity = run(make, controller(kind, tags), 1.0, [(topic, 2.0)], limit=limit)
+    assert velocity == pytest.approx(0.5, rel=0.01)
+    assert position == pytest.approx(0.5, rel=0.02)

@@ -108,3 +108,33 @@ def test_gazebo_classic_ignores_the_effort_limit_of_velocities(bench, tmp_path, 
     else:
         assert made.position("beam_joint") > before
         assert raised == []
+
+
+@pytest.mark.parametrize(("classic", "speed"), [(True, 0.5), (False, 0.2)])
+def test_gazebo_classic_ignores_the_velocity_limit_of_velocities(bench, tmp_path, classic, speed):
+    """gazebo_ros2_control sets the velocity of a joint; gz-sim's physics clips the command."""
+    file = tmp_path / "own.yaml"
+    settings = {
+        "type": "velocity_controllers/JointGroupVelocityController",
+        "joints": ["beam_joint"],
+    }
+    file.write_text(yaml.safe_dump(ros2_parameters(200, c=settings)))
+    limit = 'lower="-3" upper="3" effort="100" velocity="0.2"'
+    body = beam("beam", "world", axis="0 0 1", limit=limit)
+    body += ros2_system(ros2_joint("beam_joint", "velocity"))
+    control = ros2_plugin(file)
+    if classic:
+        control = control.replace("gz_ros2_control-system", "libgazebo_ros2_control.so")
+    made = bench(robot(body, control))
+    made.world.run(0.1)
+    made.publish("/c/commands", "std_msgs/msg/Float64MultiArray", data=[0.5])
+    made.world.run(0.2)
+    before = made.position("beam_joint")
+    made.world.run(0.5)
+    assert made.position("beam_joint") - before == pytest.approx(0.5 * speed, rel=0.01)
+    # A program's own limit applies in both.
+    made.world.model("arm").joints["beam_joint"].velocity_limit = 0.1
+    made.world.run(0.2)
+    before = made.position("beam_joint")
+    made.world.run(0.5)
+    assert made.position("beam_joint") - before == pytest.approx(0.05, rel=0.01)

@@ -14,6 +14,7 @@ from cartwheel.devices.drives.limiter import Limiter, Limits
 from cartwheel.devices.drives.reckoning import AxleReckoning, Motion
 from cartwheel.devices.drives.steering import angle_of_turn, rim_factors, wheel_angles
 from cartwheel.devices.elementwise import Number, clamp, copysign, tan
+from cartwheel.devices.joints.limits import velocity_limit
 from cartwheel.messages import message_class
 from cartwheel.simulation.dynamics.joint_servo import ServoHandle
 
@@ -86,13 +87,18 @@ class AckermannDrive(Drive):
         # The model contains the motors in the order in which they are requested.
         if config.steering_first:
             self._steering = self._servos(steering)
+        limited = config.drive.limited_joints
         self._driven = [
-            [Wheel(part, name, max_effort=None, origin=origin) for name in names]
+            [Wheel(part, name, max_effort=None, limited=limited, origin=origin) for name in names]
             for names in (config.left, config.right)
         ]
         if not config.steering_first:
             self._steering = self._servos(steering)
         self._steered = [part.joint(name, origin=origin) for name in steering]
+        self._fastest = [
+            velocity_limit(part.description.joint(name)) if limited else math.inf
+            for name in steering
+        ]
         self._steering_wheel = None
         if config.steering_wheel is not None:
             self._steering_wheel = part.servo(config.steering_wheel, max_effort=None, origin=origin)
@@ -157,8 +163,8 @@ class AckermannDrive(Drive):
             middle = reversed_angle(self._command[0], turn)
         middle = clamp(middle, -config.max_steering, config.max_steering)
         angles = wheel_angles(middle, config.wheel_base, config.steered_track)
-        for servo, angle in zip(self._steering, angles, strict=True):
-            servo.command_position(angle)
+        for servo, angle, fastest in zip(self._steering, angles, self._fastest, strict=True):
+            servo.command_position(angle, max_velocity=fastest)
         factors = rim_factors(middle, config.wheel_base, config.driven_track)
         for wheels, factor in zip(self._driven, factors, strict=True):
             for wheel in wheels:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
+from cartwheel.devices.joints.limits import velocity_limit
 from cartwheel.errors import Origin
 from cartwheel.simulation import Part
 from cartwheel.simulation.handles import JointHandle
@@ -33,6 +35,7 @@ class Wheel:
         part: The model's part of the simulation.
         joint: Name of the joint.
         max_effort: Maximum torque, N m; None: the effort limit of the joint.
+        limited: Whether the joint's velocity limit applies.
         origin: Origin for errors.
 
     Raises:
@@ -40,9 +43,16 @@ class Wheel:
     """
 
     def __init__(
-        self, part: Part, joint: str, *, max_effort: float | None, origin: Origin | None
+        self,
+        part: Part,
+        joint: str,
+        *,
+        max_effort: float | None,
+        limited: bool = False,
+        origin: Origin | None,
     ) -> None:
         self.state = part.joint(joint, origin=origin)
+        self._fastest = velocity_limit(part.description.joint(joint)) if limited else math.inf
         self._motor = part.velocity_motor(joint, max_effort=max_effort, origin=origin)
 
     @property
@@ -62,5 +72,7 @@ class Wheel:
 
     @command.setter
     def command(self, speed: float) -> None:
-        motor = self._motor
+        motor, most = self._motor, self._fastest
+        if speed > most or speed < -most:
+            speed = math.copysign(most, speed)
         motor.target = motor.rotors[motor.dof] = speed

@@ -254,8 +254,14 @@ class DifferentialDrive(Drive):
         return left_sum / count, right_sum / count
 
     def _motor_wheel(self, joint: str) -> CommandedJoint:
-        torque = self._config.max_torque
-        return Wheel(self.part, joint, max_effort=torque, origin=self.origin)
+        config = self._config
+        return Wheel(
+            self.part,
+            joint,
+            max_effort=config.max_torque,
+            limited=config.drive is not None and config.drive.limited_joints,
+            origin=self.origin,
+        )
 
 
 def _mean(values: list[float]) -> float:

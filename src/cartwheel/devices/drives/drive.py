@@ -22,6 +22,8 @@ class DriveConfig:
     """Time after which the robot stops without a command, s; None: never."""
     control_rate: float
     """Rate of the control loop, Hz; 0: every step."""
+    limited_joints: bool = False
+    """Whether the velocity limits of the joints apply, as in gz-sim."""
     odometry: OdometryConfig
     """The odometry. Its rate is the publish rate of all topics."""
     joint_states: JointStatesConfig | None = None

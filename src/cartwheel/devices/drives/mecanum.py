@@ -218,13 +218,15 @@ class MecanumDrive(Drive):
         super().__init__(scope)
         part, origin = self.part, self.origin
         corners = (config.front_left, config.front_right, config.back_left, config.back_right)
-        wheels = [
-            [Wheel(part, name, max_effort=None, origin=origin) for name in names]
-            for names in corners
-        ]
         pushes = not has_rollers(part.description) and has_grip(
             part.description, [name for names in corners for name in names]
         )
+        # A base that is pushed is as fast as it is commanded, so its wheels must be, too.
+        limited = config.drive.limited_joints and not pushes
+        wheels = [
+            [Wheel(part, name, max_effort=None, limited=limited, origin=origin) for name in names]
+            for names in corners
+        ]
         servo = part.body_drive(origin=origin) if pushes else None
         self._reckoning = DeadReckoning()
         heading = rolling_direction(

@@ -41,6 +41,8 @@ class JointActuatorConfig:
     joint follows it regardless of its load, up to `strength`."""
     led: bool = False
     """Whether the joint follows another joint. It is then not held while it has no command."""
+    overruns: bool = False
+    """Whether velocity commands may exceed the velocity limit, until a program changes it."""
     yields: bool = False
     """Whether only a drive plugin moves the joint, if there is one, while no controller does."""
     origin: Origin | None = None
@@ -111,6 +113,7 @@ class JointActuator:
         self._held = position_range(joint)
         """The limits of the joint itself, rad or m."""
         self._limits = config.limits
+        self._overruns = config.overruns
         self._prepare()
         part.limit(name, self)
 
@@ -125,6 +128,7 @@ class JointActuator:
         if ends != (self._limits.lower, self._limits.upper):
             # A program sets those of the joint and of its controllers.
             self._held = ends
+        self._overruns = self._overruns and limits.velocity == self._limits.velocity
         self._limits = limits
         self._prepare()
 
@@ -134,7 +138,13 @@ class JointActuator:
         """Whether the maximum velocity depends on the position."""
         self._is_limited = limits != JointLimits()
         self._lower, self._upper, self._fastest = limits.lower, limits.upper, limits.velocity
+        self._quickest = math.inf if self._overruns else limits.velocity
         self._lowest, self._highest = cut_range(limits, self._held)
+
+    @property
+    def fastest(self) -> float:
+        """Maximum velocity command, rad/s or m/s."""
+        return self._quickest
 
     def expect_commands(self, period: float) -> None:
         """States the time between two calls of `write`, s."""
@@ -247,7 +257,7 @@ class JointActuator:
         # and `max`, and positional arguments less than named ones.
         active, target = self._active, self.command
         if active == "velocity":
-            high = self._fastest
+            high = self._quickest
             low = -high
             if self._slows:
                 low, high = velocity_bounds(self._limits, self.state.position)

@@ -41,6 +41,11 @@ def position_range(joint: Joint | None) -> tuple[float, float]:
     return -math.inf if lower is None else lower, math.inf if upper is None else upper
 
 
+def velocity_limit(joint: Joint | None) -> float:
+    """Returns the stated maximum speed of a joint, rad/s or m/s; infinite without a limit."""
+    return (joint.axis.velocity if joint is not None else None) or math.inf
+
+
 def velocity_bounds(limits: JointLimits, position: Number) -> tuple[Number, Number]:
     """Returns the lowest and highest velocity in rad/s or m/s at a position in rad or m.
 

@@ -9,6 +9,8 @@ from typing import Any, Literal
 
 from cartwheel.codes import running
 from cartwheel.component import Component, Scope
+from cartwheel.devices.elementwise import clamp
+from cartwheel.devices.joints.limits import velocity_limit
 from cartwheel.devices.joints.pid import Pid, PidGains
 from cartwheel.devices.periodic import Elapsed
 from cartwheel.messages import message_class
@@ -35,6 +37,8 @@ class JointServosConfig:
     of their loads."""
     max_velocity: float = math.inf
     """Maximum velocity of joints that move to a position without gains, rad/s or m/s."""
+    limited: bool = False
+    """Whether the velocity limits of the joints apply to joints without gains, as in gz-sim."""
 
 
 class JointServos(Component):
@@ -52,6 +56,13 @@ class JointServos(Component):
         self._config = config
         self._joints = [
             (part.joint(name, origin=origin), part.servo(name, max_effort=None, origin=origin))
+            for name in config.joints
+        ]
+        self._fastest = [
+            min(
+                velocity_limit(part.description.joint(name)) if config.limited else math.inf,
+                config.max_velocity if config.quantity == "position" else math.inf,
+            )
             for name in config.joints
         ]
         gains = config.gains
@@ -104,8 +115,8 @@ class JointServos(Component):
     def _move(self) -> None:
         config, target = self._config, self._target
         if config.gains is None:
-            for _, servo in self._joints:
-                servo.command_position(target, max_velocity=config.max_velocity)
+            for (_, servo), fastest in zip(self._joints, self._fastest, strict=True):
+                servo.command_position(target, max_velocity=fastest)
             return
         seconds = self._elapsed.seconds(self.part.time_ns)
         for (joint, servo), pid in zip(self._joints, self._pids, strict=True):
@@ -114,8 +125,8 @@ class JointServos(Component):
 
     def _turn(self) -> None:
         if self._config.gains is None:
-            for _, servo in self._joints:
-                servo.command_velocity(self._target)
+            for (_, servo), fastest in zip(self._joints, self._fastest, strict=True):
+                servo.command_velocity(clamp(self._target, -fastest, fastest))
             return
         seconds = self._elapsed.seconds(self.part.time_ns)
         for (joint, servo), pid in zip(self._joints, self._pids, strict=True):

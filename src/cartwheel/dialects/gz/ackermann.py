@@ -89,8 +89,8 @@ class GzAckermannDrive(Plugin[GzAckermannParameters]):
     """Drives and steers a car as commanded by Twist messages, and publishes odometry.
 
     In a command, ``linear.x`` is the speed in m/s, and ``angular.z`` is the yaw rate in rad/s. The
-    odometry is computed from the rotation of the driven wheels. Original plugin:
-    ``AckermannSteering`` in gz-sim.
+    odometry is computed from the rotation of the driven wheels. The joints turn no faster than
+    their velocity limits. Original plugin: ``AckermannSteering`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-ackermann-steering-system",)

@@ -42,7 +42,8 @@ class GzDiffDrive(Plugin[GzDiffDriveParameters]):
     """Drives left and right wheels as commanded by Twist messages, and publishes odometry.
 
     The odometry is computed from the rotation of the wheels. Only the effort limits of the joints
-    limit the torque of the wheels. Original plugin: ``DiffDrive`` in gz-sim.
+    limit the torque of the wheels, and their velocity limits the speed. Original plugin:
+    ``DiffDrive`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-diff-drive-system",)

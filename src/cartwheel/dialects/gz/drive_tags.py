@@ -209,6 +209,8 @@ def gz_drive(plugin: Plugin[Any], config: GzDriveParameters, *, topic: str = "")
     return DriveConfig(
         command_topic=gz_name(plugin, config.topic or topic, "cmd_vel"),
         control_rate=CONTROL_RATE,
+        # DART clips the velocities that are commanded.
+        limited_joints=True,
         odometry=OdometryConfig(
             topic=gz_name(plugin, config.odom_topic, "odometry"),
             frame=config.frame or model_frame(part, "odom"),

@@ -176,6 +176,7 @@ def _add_servos(
         initial=config.initial,
         gains=_gains(config) if by_pid else None,
         max_velocity=max_velocity,
+        limited=True,
     )
     plugin.add(JointServos(plugin.scope, device))
 
@@ -233,8 +234,8 @@ class JointController(Plugin[JointVelocityParameters]):
     """Moves a joint at the last commanded velocity.
 
     Until the first command, the target velocity is ``<initial_velocity>``. By default, a velocity
-    servo controls the velocity. With ``<use_force_commands>``, a PID controller does. Original
-    plugin: ``JointController`` in gz-sim.
+    servo controls the velocity, up to the velocity limit of the joint. With
+    ``<use_force_commands>``, a PID controller does. Original plugin: ``JointController`` in gz-sim.
     """
 
     filenames: ClassVar[tuple[str, ...]] = ("gz-sim-joint-controller-system",)

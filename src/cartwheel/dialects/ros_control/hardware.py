@@ -31,7 +31,7 @@ class JointHardware(JointActuator):
         gains: An interface whose commands a PID converts to efforts, with the gains.
         limits: Parameters that override the limits in the description. If given, even empty, the
             soft limits in the description apply.
-        forced: Whether a joint follows velocity commands regardless of its effort limit.
+        forced: Whether a joint follows velocity commands regardless of its stated limits.
 
     Raises:
         PluginError: A limit is not a number.
@@ -67,6 +67,7 @@ class JointHardware(JointActuator):
                 strength=min(strength, STRONGEST),
                 exceeds_limit=min(strength, STRONGEST) > joint_limits.effort,
                 pid=gains,
+                overruns=forced,
                 led=joint.mimic is not None or interfaces.mimic is not None,
                 # gz_ros2_control and gazebo_ros2_control stop such joints once in each control
                 # period, after which the motor of the drive plugin turns them on in the same step.
@@ -159,7 +160,7 @@ class Hardware:
         joints: Interfaces of the joints.
         gains: Interface and gains of each joint whose commands a PID converts to efforts.
         limits: ROS 1's parameters ``joint_limits``; None in ROS 2, which has no soft limits.
-        forced: Whether joints follow velocity commands regardless of their effort limits.
+        forced: Whether joints follow velocity commands regardless of their stated limits.
     """
 
     def __init__(
