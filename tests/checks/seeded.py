@@ -15,6 +15,18 @@ Changes = list[tuple[str, str]]
 Case = tuple[str, Changes, str | None, str]
 """A code's name; the changes; a text in the line of the finding; a text of its advice or hint."""
 
+
+def transmission(joint: str, interface: str) -> tuple[str, str]:
+    return (
+        "</robot>",
+        f'<transmission name="{joint}_t"><type>transmission_interface/SimpleTransmission</type>\n'
+        f'<joint name="{joint}">\n<hardwareInterface>{interface}</hardwareInterface></joint>'
+        "</transmission>\n</robot>",
+    )
+
+
+EFFORT = "hardware_interface/EffortJointInterface"
+
 ROBOT = """<?xml version="1.0"?>
 <robot name="tester">
   <material name="blue">
@@ -424,6 +436,9 @@ WITHOUT_PLACE: dict[str, Case] = {
     "empty": ("tag-empty", [("<mu1>1.0</mu1>", "<kp></kp>")], "<kp>", ""),
     "below 0": ("value-ignored", [("<mu1>1.0</mu1>", "<mu1>-2</mu1>")], "<mu1>-2", ""),
     "limit below 0": ("value-ignored", [('effort="5"', 'effort="-1"')], "<limit", ""),
+    "damping": ("damping-too-high", [('<limit lower="-1" upper="1" effort="5" velocity="2"/>\n  </joint>\n  <link name="arm">',
+        '<limit lower="-1" upper="1" effort="5" velocity="2"/><dynamics damping="100"/></joint>\n<link name="arm">'),
+        transmission("arm_joint", EFFORT)], None, ""),
     "materials differ": ("material-differs", [('<link name="base_footprint"/>',
         '<material name="blue">\n<color rgba="0 1 0 1"/>\n</material><link name="base_footprint"/>')],
         None, ""),
@@ -439,16 +454,6 @@ ROS1 = (
 )
 
 
-def transmission(joint: str, interface: str) -> tuple[str, str]:
-    return (
-        "</robot>",
-        f'<transmission name="{joint}_t"><type>transmission_interface/SimpleTransmission</type>\n'
-        f'<joint name="{joint}">\n<hardwareInterface>{interface}</hardwareInterface></joint>'
-        "</transmission>\n</robot>",
-    )
-
-
-EFFORT = "hardware_interface/EffortJointInterface"
 ARM = """arm:
   type: effort_controllers/JointPositionController
   joint: arm_joint

@@ -14,6 +14,7 @@ from cartwheel.api.motion import Twist
 from cartwheel.checks.robot import Robot
 from cartwheel.codes.devices import (
     CONTROLLER_GAINS_MISSING,
+    CONTROLLER_UNDAMPED,
     CONTROLLERS_NOT_FOUND,
     PLUGIN_PARAMETER_OBSOLETE,
     PLUGIN_UNKNOWN,
@@ -21,6 +22,7 @@ from cartwheel.codes.devices import (
 from cartwheel.codes.files import FILE_MISSING, INCLUDE_ABSENT, LINK_RECONNECTED
 from cartwheel.codes.robot import (
     BODY_ON_GROUND,
+    DAMPING_TOO_HIGH,
     DRIVES_APART,
     DUPLICATE_NAME,
     INERTIA_GEOMETRY_MISMATCH,
@@ -522,6 +524,31 @@ def test_an_error_that_follows_from_gravity_and_the_gains_is_none(tmp_path, trie
     assert reach.sag == pytest.approx(abs(reach.error), rel=0.02)
     assert reach.arrived
     assert verdict.good
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.5])
+def test_a_controller_without_damping_is_the_reason_for_oscillations(tmp_path, tried, damping):
+    """A spring of 1 N m/rad on 0.02 kg m² about a vertical axis oscillates for minutes."""
+    path = tmp_path / "spring.yaml"
+    path.write_text(PID.format(p=1.0).replace("d: 1.0", "d: 0.0"))
+    text = ARM.format(kind="Effort").replace('xyz="0 1 0"', 'xyz="0 0 1"')
+    verdict = tried(
+        text.replace("<limit", f'<dynamics damping="{damping}"/><limit'), controllers=[path]
+    )
+    (reach,) = verdict.reaches
+    assert reach.arrived == (damping > 0)
+    assert [(each.test, each.code, each.source) for each in verdict.faults] == (
+        [] if damping else [("reach", CONTROLLER_UNDAMPED, "file")]
+    )
+
+
+def test_damping_that_the_effort_limit_cannot_overcome_is_the_reason(tmp_path, tried):
+    """50 N m against 5000 N m s/rad."""
+    path = tmp_path / "slow.yaml"
+    path.write_text(PID.format(p=500.0))
+    text = ARM.format(kind="Effort").replace("<limit", '<dynamics damping="5000"/><limit')
+    (fault,) = tried(text, controllers=[path]).faults
+    assert (fault.test, fault.code, fault.source) == ("reach", DAMPING_TOO_HIGH, "file")
 
 
 LIFT = (

@@ -273,3 +273,9 @@ CONTROLLER_UNDEFINED = Code(
     "warning",
     "a launch file starts a controller whose parameters no file contains",
 )
+CONTROLLER_UNDAMPED = Code(
+    "CW486",
+    "controller-undamped",
+    "info",
+    "a PID controller without a derivative gain moves a joint without damping",
+)

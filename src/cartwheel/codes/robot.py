@@ -207,6 +207,12 @@ WHEELS_TOED = Code(
 ROOT_NOT_HELD = Code(
     "CW250", "root-not-held", "warning", "motors push against a light root link that nothing holds"
 )
+DAMPING_TOO_HIGH = Code(
+    "CW252",
+    "damping-too-high",
+    "warning",
+    "the effort limit of a joint hardly moves it against its damping",
+)
 DRIVES_APART = Code(
     "CW251",
     "drives-apart",

@@ -53,10 +53,12 @@ _JOINTS = frozenset(
         robot.LIMIT_ZERO,
         robot.LIMIT_IN_DEGREES,
         robot.EFFORT_ZERO,
+        robot.DAMPING_TOO_HIGH,
         robot.OVERLAPPING_COLLISIONS,
         robot.ROOT_NOT_HELD,
         devices.EFFORT_LIMIT_TOO_LOW,
         devices.CONTROLLER_GAINS_MISSING,
+        devices.CONTROLLER_UNDAMPED,
         devices.JOINT_CLAIMED_TWICE,
         running.JOINT_DRIVEN_TWICE,
     }

@@ -39,6 +39,7 @@ _DRIVING = frozenset(
         robot.DRIVES_APART,
         robot.UNBALANCED,
         robot.EFFORT_ZERO,
+        robot.DAMPING_TOO_HIGH,
         robot.OVERLAPPING_COLLISIONS,
         running.PLUGIN_LEFT_OUT,
         running.JOINT_DRIVEN_TWICE,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
+from typing import Any
 
+from cartwheel.codes import devices
 from cartwheel.corpus import commands, motion
 from cartwheel.description.model import RobotDescription
 from cartwheel.dialects.catalogue import plugin_named, short_name
@@ -17,7 +19,7 @@ from cartwheel.dialects.gz.joint_controller import (
 )
 from cartwheel.dialects.ros_control.controller import Controller
 from cartwheel.dialects.tags import read
-from cartwheel.errors import PluginError
+from cartwheel.errors import Diagnostic, Origin, PluginError
 
 _COMPLETE = 50.0
 """Exponent of a factor that is as good as infinite."""
@@ -30,14 +32,7 @@ def weak_gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[s
     for controller in started:
         values = controller.settings.flat()
         for joint, interface in controller.interfaces.items():
-            path = next(
-                (
-                    each
-                    for each in ("pid", f"gains.{joint}", f"{joint}.pid")
-                    if f"{each}.p" in values
-                ),
-                None,
-            )
+            path = _path_of_gains(joint, values)
             if interface == "effort" and path is not None:
                 gain, integral = (values.get(f"{path}.{name}") or 0.0 for name in ("p", "i"))
                 clamps = ("i_clamp", "i_clamp_min", "i_clamp_max")
@@ -59,6 +54,59 @@ def weak_gains(robot: RobotDescription, started: Sequence[Controller]) -> dict[s
                 if speed.force and weak:
                     found |= dict.fromkeys(speed.joints, speed.p)
     return found
+
+
+def undamped(
+    robot: RobotDescription, started: Sequence[Controller], joints: Container[str]
+) -> Iterator[Diagnostic]:
+    """Joints that a PID moves like a spring, because nothing damps it.
+
+    Args:
+        robot: The description.
+        started: The controllers that run.
+        joints: The joints of interest.
+    """
+    axes = {joint.name: joint.axis for joint in robot.joints}
+    for controller in started:
+        values = controller.settings.flat()
+        for joint, interface in controller.interfaces.items():
+            axis = axes.get(joint)
+            if joint not in joints or axis is None or axis.damping or axis.friction:
+                continue
+            gains = _position_gains(controller, joint, interface, values)
+            if gains is not None and gains[0] > 0 and gains[1] == 0:
+                yield devices.CONTROLLER_UNDAMPED.diagnostic(
+                    f'the PID controller of joint "{joint}" has no derivative gain, and the joint '
+                    "no damping, so it oscillates around its target",
+                    severity="info",
+                    origin=Origin(file=controller.settings.source)
+                    if controller.settings.source
+                    else robot.origin,
+                    values={"joint": joint, "controller": controller.name, "p": gains[0]},
+                    hint="Set a derivative gain, or the damping of the joint.",
+                )
+
+
+def _position_gains(
+    controller: Controller, joint: str, interface: str, values: Mapping[str, Any]
+) -> tuple[float, float] | None:
+    """Proportional and derivative gain of the PID of a joint's position; None if there is none."""
+    if interface == "effort":
+        path = _path_of_gains(joint, values)
+        if path is None:
+            return None
+        return float(values.get(f"{path}.p") or 0.0), float(values.get(f"{path}.d") or 0.0)
+    hardware = controller.claims.get(joint)
+    pid = hardware.pids.get("position") if hardware is not None else None
+    if interface != "position" or pid is None:
+        return None
+    return pid.gains.p, pid.gains.d
+
+
+def _path_of_gains(joint: str, values: Mapping[str, Any]) -> str | None:
+    """Path of a controller's gains for a joint with an effort interface."""
+    paths = ("pid", f"gains.{joint}", f"{joint}.pid")
+    return next((each for each in paths if f"{each}.p" in values), None)
 
 
 def _hardware_gains(started: Sequence[Controller]) -> dict[str, float]:

@@ -16,7 +16,7 @@ from cartwheel.corpus import commands, motion
 from cartwheel.corpus.diagnosis import faults
 from cartwheel.corpus.faults import Fault
 from cartwheel.corpus.flights import flights
-from cartwheel.corpus.gains import weak_gains
+from cartwheel.corpus.gains import undamped, weak_gains
 from cartwheel.corpus.limits import stated_limits, within_speeds
 from cartwheel.corpus.movers import STEERED, movers
 from cartwheel.corpus.poses import posed
@@ -272,6 +272,8 @@ def _joints_moved(
     verdict = replace(verdict, reaches=tuple(reached))
     late = {each.joint for each in reached if not each.arrived}
     held |= late & blocked(world, model, Robot(robot, None)) if late else late
+    springs = tuple(undamped(robot, started, late)) if late else ()
+    verdict = replace(verdict, observed=tuple(dict.fromkeys((*verdict.observed, *springs))))
     yield verdict
     yield replace(verdict, spins=tuple(commands.spins(world, model, robot, started, gains)))
 

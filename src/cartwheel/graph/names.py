@@ -18,11 +18,13 @@ def resolve_name(name: str, namespace: str = "") -> str:
     """
     full = _full(name, namespace)
     if not _NAME.match(full):
+        # The mistake may be in the namespace.
+        shown = full if is_name(name) else name
         raise GraphError(
-            f'"{name}" is not a valid name',
+            f'"{shown}" is not a valid name',
             code=GRAPH_NAME_INVALID,
             hint="Names may contain letters, digits, _ and /, and no part may begin with a digit.",
-            values={"name": name},
+            values={"name": shown},
         )
     return full
 

@@ -73,6 +73,22 @@ def test_an_effort_limit_below_the_friction_is_reported_and_exceeded(bench):
     assert warning.values["needed"] == pytest.approx(7.0, abs=0.01)
 
 
+@pytest.mark.parametrize(("velocity", "needed"), [(10, 50.0), (0.2, 20.0)])
+def test_an_effort_limit_below_the_damping_is_reported_and_exceeded(bench, velocity, needed):
+    """100 N m s/rad at 0.5 rad/s, or at the velocity limit."""
+    limit = f'lower="-3" upper="3" effort="2" velocity="{velocity}"'
+    body = beam("beam", "world", axis="0 0 1", limit=limit)
+    body = body.replace(f"<limit {limit}/>", f'<limit {limit}/><dynamics damping="100"/>')
+    body += transmission("beam_joint", "Position")
+    group = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
+    made = bench(robot(body, ROS1), {"c": group})
+    made.publish("/c/command", "std_msgs/msg/Float64", data=0.2)
+    made.world.run(2.0)
+    assert made.position("beam_joint") == pytest.approx(0.2, abs=0.01)
+    (warning,) = [each for each in made.warnings if each.code is devices.EFFORT_LIMIT_TOO_LOW]
+    assert warning.values["needed"] == pytest.approx(needed, abs=0.01)
+
+
 def test_an_effort_limit_above_the_weight_holds_the_arm(held):
     places, warnings = held(1.02 * WEIGHT)
     assert warnings == []

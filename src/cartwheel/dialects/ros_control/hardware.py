@@ -19,6 +19,8 @@ from cartwheel.errors import PluginError, UnknownNameError
 
 STRONGEST = 1e5
 """Effort in N m or N of a joint without an effort limit."""
+_TURNING, _SLIDING = 0.5, 0.05
+"""Speed at which a joint overcomes its damping at least, rad/s and m/s."""
 
 
 class JointHardware(JointActuator):
@@ -121,7 +123,8 @@ def _strength(
     """
     if limit == math.inf:
         return limit
-    need = needs().get(joint.name, 0.0) + _friction(owner.part.description, joint)
+    resistance = _friction(owner.part.description, joint) + _drag(joint)
+    need = needs().get(joint.name, 0.0) + resistance
     if limit >= need:
         return limit
     raises = owner.part.adds("raised-efforts")
@@ -135,7 +138,7 @@ def _strength(
         devices.EFFORT_LIMIT_TOO_LOW,
         f'the effort limit of joint "{joint.name}", {limit:g} {unit}, is below the '
         f"{need:.3g} {unit} required to hold the joint against gravity and to overcome its "
-        f"friction; {result}{held:.3g} {unit}",
+        f"friction and damping; {result}{held:.3g} {unit}",
         at=interfaces.origin,
         values={"joint": joint.name, "stated": limit, "needed": need, "used": held},
     )
@@ -150,6 +153,12 @@ def _friction(description: RobotDescription, joint: Joint) -> float:
         if each.mimic is not None and each.mimic.joint == joint.name
     ]
     return joint.axis.friction + sum(led)
+
+
+def _drag(joint: Joint) -> float:
+    """Effort against a joint's damping at a low speed, N m or N."""
+    speed = _SLIDING if joint.type == "prismatic" else _TURNING
+    return joint.axis.damping * min(speed, joint.axis.velocity or speed)
 
 
 class Hardware:

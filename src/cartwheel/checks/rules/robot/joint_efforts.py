@@ -17,6 +17,8 @@ from cartwheel.errors import Diagnostic
 _GRAVITY = 9.8
 """m/s²."""
 _LEAST_EFFORT = 10.0
+_CREEPING, _CREEPING_SLIDE = 0.1, 0.01
+"""Highest speed, rad/s and m/s, below which a joint hardly moves."""
 
 
 @rule(robot_codes.EFFORT_ZERO)
@@ -46,6 +48,36 @@ def effort_zero(subject: Subject) -> Iterator[Diagnostic]:
                 values={"joint": name, "attribute": "velocity"},
                 **edits.attribute(limit, "velocity", "1" if slides else "10"),
                 hint="Set the velocity limit to the motor's maximum speed.",
+            )
+
+
+@rule(robot_codes.DAMPING_TOO_HIGH)
+def damping_too_high(subject: Subject) -> Iterator[Diagnostic]:
+    for robot in subject.robots:
+        # The torque of a drive replaces the effort limits of its wheels.
+        wheels = {name for drive in robot.drives for name in drive.joints}
+        for name in sorted(robot.driven - wheels):
+            joint = robot.joints.get(name)
+            if joint is None or not joint.axis.effort or not joint.axis.damping:
+                continue
+            slides = joint.type == "prismatic"
+            speed = joint.axis.effort / joint.axis.damping
+            if speed >= (_CREEPING_SLIDE if slides else _CREEPING):
+                continue
+            unit = "N" if slides else "N m"
+            yield robot_codes.DAMPING_TOO_HIGH.diagnostic(
+                message=f'the effort limit of joint "{name}", {joint.axis.effort:g} {unit}, moves '
+                f"it against its damping of {joint.axis.damping:g} {unit} "
+                f"{'s/m' if slides else 's/rad'} at {speed:.2g} {'m/s' if slides else 'rad/s'} "
+                "at most",
+                values={
+                    "joint": name,
+                    "effort": joint.axis.effort,
+                    "damping": joint.axis.damping,
+                    "speed": speed,
+                },
+                origin=joint.origin,
+                hint="Decrease the damping, or increase the effort limit to that of the motor.",
             )
 
 
