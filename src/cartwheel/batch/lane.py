@@ -90,7 +90,7 @@ class Lane:
         return keep
 
     def begin(self, seed: int | None) -> None:
-        """Begins anew, with a new seed unless it is None."""
+        """Starts again, with a new seed unless it is None."""
         world, plan = self.world, self._plan
         self._seed = self._seed if seed is None else seed
         if self._start is not None:

@@ -52,7 +52,7 @@ class Lanes:
             raise
 
     def reset(self, which: Sequence[int], seeds: Sequence[int | None]) -> Values:
-        """Begins some of the worlds anew, and runs them for a period without an action."""
+        """Restarts some of the worlds, and runs them for a period without an action."""
         lanes = [self.lanes[index] for index in which]
         for lane, seed in zip(lanes, seeds, strict=True):
             lane.begin(seed)

@@ -170,15 +170,15 @@ def reaches(
     world.reset()
     world.run(1.0)
     joints = {joint.name: joint for joint in description.joints}
-    told: list[tuple[JointInput, Joint, float]] = []
+    sent: list[tuple[JointInput, Joint, float]] = []
     chosen = _targets(world, model, [joints[name] for taker in takers for name in taker.joints])
     for taker in takers:
         targets = {name: chosen[name] for name in taker.joints}
         taker.put(targets, _TRAJECTORY)
-        told += [(taker, joints[name], value) for name, value in targets.items()]
-    held = {joint.name: held_by(world, model, joint.name) for _, joint, _ in told}
+        sent += [(taker, joints[name], value) for name, value in targets.items()]
+    held = {joint.name: held_by(world, model, joint.name) for _, joint, _ in sent}
     coupled = couplings_of(world, model)
-    if told:
+    if sent:
         world.run(_REACHING)
     return [
         Reach(
@@ -192,7 +192,7 @@ def reaches(
                 for name, slope in slopes(joint.name, held, coupled).items()
             ),
         )
-        for taker, joint, target in told
+        for taker, joint, target in sent
     ]
 
 
@@ -240,17 +240,17 @@ def _driven(
     waited = speed_up + _MEASURED
     # Wheels that slide because of a small load need long to accelerate the base.
     while waited < _LONGEST and not all(
-        abs(now - told) <= TOLERANCE * abs(told)
-        for now, told in zip((ahead, turned), velocity, strict=True)
-        if told
+        abs(now - wanted) <= TOLERANCE * abs(wanted)
+        for now, wanted in zip((ahead, turned), velocity, strict=True)
+        if wanted
     ):
         before = ahead, turned
         ahead, turned = _measured(world, model, robot, topic, velocity, flying=flying)
         waited += _MEASURED
         changes = [
-            (now - then) / told
-            for now, then, told in zip((ahead, turned), before, velocity, strict=True)
-            if told
+            (now - then) / wanted
+            for now, then, wanted in zip((ahead, turned), before, velocity, strict=True)
+            if wanted
         ]
         if max(changes) < _SETTLED:
             break

@@ -69,7 +69,7 @@ class Classes(dict[str, Any]):
         ]
 
     def pop(self, name: str, *default: Any) -> Any:
-        """Removes a type, which may then be defined anew."""
+        """Removes a type, which may then be defined again."""
         self._converted.pop(name, None)
         return super().pop(name, *default)
 
@@ -164,7 +164,7 @@ def _is_nan(value: Any) -> bool:
 
 
 def _default(field: Field, make: Callable[[str], Any]) -> Any:
-    """The default value of a field for msgspec. Mutable values are created anew."""
+    """The default value of a field for msgspec. Mutable values are created for each message."""
     if field.array or field.kind == "message":
         return msgspec.field(default_factory=functools.partial(empty, field, make))
     return empty(field, make)

@@ -275,7 +275,7 @@ def _function(
     """Compiles a function with constant values.
 
     They are variables of an enclosing function. Many forms share the code, so Python would have to
-    look up global names anew in each call.
+    look up global names in each call.
     """
     inner = "\n        ".join((f"def {name}({', '.join(arguments)}):", *lines))
     text = f"def enclosing({', '.join(names)}):\n    {inner}\n    return {name}"

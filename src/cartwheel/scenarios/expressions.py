@@ -1,7 +1,7 @@
 """Expressions in scenarios: ``${speed * 2}`` in values, and conditions.
 
-A scenario may come from a stranger, so its expressions are evaluated like those of xacro files:
-without access to Python, and with limits.
+A scenario may come from an untrusted source, so its expressions are evaluated like those of xacro
+files: without access to Python, and with limits.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ExpressionFaultError(f"{error.msg}") from None
     except (CartwheelError, ExpressionFaultError):
         raise
-    except Exception as error:  # noqa: BLE001 - whatever the operation of a stranger raises
+    except Exception as error:  # noqa: BLE001 - whatever an untrusted operation raises
         raise ExpressionFaultError(f"{type(error).__name__}: {error}") from None
 
 

@@ -2,8 +2,8 @@
 
 A cylinder meets the ground at two points, the ends of a line. In a turn, both must slide in
 opposite directions, and any traction makes one of them stick. The wheel then pivots about one end
-or the other, which changes the cart's heading. A crowned tyre, an ellipsoid with the same radius
-and width, touches in the middle.
+or the other, which changes the cart's heading. An ellipsoid with the same radius and width touches
+in the middle.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def axle_of(joint: Joint | None) -> Axle | None:
 
 
 def tyre(collision: Collision, axle: Axle | None) -> tuple[Shape, Pose]:
-    """The collision shape and its pose in the link: a wheel's shape is crowned.
+    """The collision shape and its pose in the link: an ellipsoid for a wheel.
 
     Args:
         collision: A collision of the rotating link, or of a link fixed to it.
@@ -188,7 +188,7 @@ def _on(axle: Axle, shape: Cylinder, pose: Pose) -> bool:
 
 
 def _round_mesh(mesh: Mesh, pose: Pose, axle: Axle) -> tuple[Shape, Pose] | None:
-    """A mesh that is round about the axle, as a crowned tyre; None for other meshes."""
+    """The ellipsoid for a mesh that is round about the axle; None for other meshes."""
     try:
         points, _ = convex_hull_input(load_mesh(mesh))
     except MeshError:

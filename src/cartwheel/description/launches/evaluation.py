@@ -36,7 +36,7 @@ def evaluated(text: str, names: Mapping[str, Any], effort: Effort) -> str:
         value = limited(str(evaluator.evaluate(text, {**BUILTINS, **MATH, **names})))
     except TooCostlyError:
         raise
-    except Exception:  # noqa: BLE001 - whatever the operation of a stranger raises
+    except Exception:  # noqa: BLE001 - whatever an untrusted operation raises
         value = UNKNOWN
     effort.spend_seconds(time.thread_time() - begin)
     return value

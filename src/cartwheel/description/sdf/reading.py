@@ -1,8 +1,7 @@
-"""SDF 1.0 to 1.11 into descriptions: a model is a robot, a world a world.
+"""Reads SDF 1.0 to 1.11: a model becomes a `RobotDescription`, a world a `WorldDescription`.
 
-What Gazebo does not say in one place is split over the files beside this one: ``sdf_frames``
-resolves who is placed relative to whom, ``sdf_model``, ``sdf_link``, ``sdf_joint`` and
-``sdf_shapes`` read a model, ``sdf_world``, ``sdf_include`` and ``sdf_state`` what surrounds it.
+``frames.py`` resolves poses relative to frames. ``model.py``, ``joint.py`` and the folder ``links``
+read a model, ``include.py`` reads ``<include>``, and the folder ``worlds`` reads a world.
 """
 
 from __future__ import annotations

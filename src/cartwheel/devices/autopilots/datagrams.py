@@ -48,7 +48,7 @@ class DatagramPort:
             return None
 
     def send(self, data: bytes, address: Address) -> None:
-        """Sends a datagram, which is lost if nobody receives it."""
+        """Sends a datagram, which is lost without a receiver."""
         with contextlib.suppress(OSError):
             self._socket.sendto(data, address)
 

@@ -275,7 +275,7 @@ def encode_truth(truth: Truth, sequence: int) -> bytes:
 
 
 def encode_heartbeat(sequence: int) -> bytes:
-    """Encodes ``HEARTBEAT`` of a component that is no autopilot and is active."""
+    """Encodes ``HEARTBEAT`` of an active component other than an autopilot."""
     return encode(HEARTBEAT, sequence, 0, 0, 8, 0, 4, 3)
 
 

@@ -34,7 +34,7 @@ class Attachments:
         return bool(self._engine.model.body_treeid[self._engine.body_id(*place)] >= 0)
 
     def attach(self, one: Place, two: Place) -> None:
-        """Attaches two links, of which at least one is movable; an attached pair anew."""
+        """Attaches two links, one of which is movable; attached links at their present poses."""
         weld = self._weld(one, two) or next((each for each in self._welds if not each.held), None)
         if weld is None:
             weld = self._part.attachment()

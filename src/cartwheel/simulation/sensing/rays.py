@@ -1,7 +1,7 @@
 """Rays from a link into the world, for laser scanners and sonars.
 
 A sensor does not measure two groups of its own robot's shapes: shapes that enclose the sensor,
-which are its housing, and shapes closer than the minimum range.
+which are its enclosure, and shapes closer than the minimum range.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _MESH = mujoco.mjtGeom.mjGEOM_MESH
 class RayHandle:
     """A bundle of rays from one point on a link.
 
-    The rays ignore geoms of the same model that enclose the point, such as the sensor's housing,
+    The rays ignore geoms of the same model that enclose the point, such as the sensor's enclosure,
     and geoms of the same model nearer than `minimum`. They hit everything else.
 
     Args:
@@ -81,7 +81,7 @@ class RayHandle:
         self._group = COLLISION_GROUP if visuals is None else VISUAL_GROUP
         self._shared, self._visuals = scenes, visuals
         self._model: Any = None
-        self._housing: frozenset[int] | None = None
+        self._enclosure: frozenset[int] | None = None
 
     def bind(self, model: Any, data: Any) -> None:
         """Resolves names in a compiled model."""
@@ -103,7 +103,7 @@ class RayHandle:
         self._retros = np.append(retros, 0.0)
         self._reflects = bool(retros.any())
         # Determined at the first cast, because the new model has no computed poses yet.
-        self._housing = None
+        self._enclosure = None
         limits: dict[str, Any] = {"minimum": self.minimum, "maximum": self.maximum}
         self._caster: EmbreeCaster | MujocoCaster
         if AVAILABLE and _size(model, self._group) >= _WORTH_EMBREE:
@@ -133,9 +133,9 @@ class RayHandle:
                 self._resolve(model, data)
         turn = self._turn
         start = self._place + turn @ self._offset
-        if self._housing is None:
-            self._housing = self._enclosing(start)
-        distances, geoms = self._caster.cast(start, turn, self._housing)
+        if self._enclosure is None:
+            self._enclosure = self._enclosing(start)
+        distances, geoms = self._caster.cast(start, turn, self._enclosure)
         far = distances >= self.maximum
         reflected = np.zeros(len(distances))
         if self._reflects:

@@ -18,16 +18,16 @@ from cartwheel.errors import Diagnostic
 def joint_claimed_twice(subject: Subject) -> Iterator[Diagnostic]:
     for _, file in subject.control:
         holders: dict[tuple[str, str], Claim] = {}
-        told: set[tuple[str, str]] = set()
+        reported: set[tuple[str, str]] = set()
         for controller in file.controllers:
             for claim in claims(controller):
                 first = holders.setdefault((claim.joint, claim.interface), claim)
                 both = (first.controller.name, controller.name)
                 # Different types are alternatives, such as a trajectory and a position controller.
                 alike = first.controller.kind == controller.kind
-                if first.controller is controller or not alike or both in told:
+                if first.controller is controller or not alike or both in reported:
                     continue
-                told.add(both)
+                reported.add(both)
                 yield devices_codes.JOINT_CLAIMED_TWICE.diagnostic(
                     message=f'the controllers "{both[0]}" and "{both[1]}" both command the '
                     f'{claim.interface} of joint "{claim.joint}"',

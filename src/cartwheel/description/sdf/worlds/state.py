@@ -171,13 +171,13 @@ def _positions(
         axis = np.array(joint.axis.xyz)
         if joint.type == "prismatic":
             found[joint.name] = float(np.dot(motion.position, axis))
-            told = Pose(tuple((found[joint.name] * axis).tolist()))
+            stated_motion = Pose(tuple((found[joint.name] * axis).tolist()))
         elif joint.type in ("revolute", "continuous"):
             x, y, z, w = motion.orientation
             angle = 2 * math.atan2(float(np.dot((x, y, z), axis)), w)
             found[joint.name] = math.remainder(angle, 2 * math.pi)
-            told = Pose((0.0, 0.0, 0.0), quat_from_axis_angle(joint.axis.xyz, angle))
-        if joint.name not in found or not _near(told, motion):
+            stated_motion = Pose((0.0, 0.0, 0.0), quat_from_axis_angle(joint.axis.xyz, angle))
+        if joint.name not in found or not _near(stated_motion, motion):
             lost.append(f'joint "{joint.name}"')
     return found, lost
 
