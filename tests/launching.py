@@ -488,7 +488,7 @@ def _leave(function: Callable[[], object]) -> NoReturn:
             if stream is not None:
                 stream.flush()
     except (OSError, ValueError):
-        sys.exit(status)  # It tells why, and has a status for this.
+        sys.exit(status)  # It prints the reason, and has a status for this.
     os._exit(status & 0xFF)
 
 

@@ -105,7 +105,7 @@ def test_a_command_between_two_runs_fails_in_time(monkeypatch: pytest.MonkeyPatc
             client.request("delete", model="rosbots")
         assert caught.value.hint
         world.run(0.1)
-        # The caller was told that it failed, so it must not happen later.
+        # The caller was informed that it failed, so it must not happen later.
         assert "rosbots" in world.models
 
 
@@ -126,7 +126,7 @@ def test_messages_that_wait_are_limited(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.wording
-def test_clients_are_told_to_call_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_clients_are_asked_to_call_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(operations, "PATIENCE", 0.2)
     monkeypatch.setattr(operations, "_MOST_WAITING", 1)
     with cw.World("empty") as world, client_of(world) as client:

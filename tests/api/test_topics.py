@@ -198,7 +198,7 @@ def test_waiting_runs_until_the_next_message() -> None:
         assert world.time == odometry.latest_time == 0.21
 
 
-def test_a_wait_in_vain_says_what_is_known() -> None:
+def test_a_wait_that_times_out_reports_what_is_known() -> None:
     with cw.World("empty") as world:
         world.spawn("rosbots.xacro")
         scans = world.topic("/odom2", type="nav_msgs/Odometry")

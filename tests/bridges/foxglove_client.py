@@ -42,7 +42,7 @@ for (const { name, encoding, schema, data } of JSON.parse(require("fs").readFile
   } catch (error) { console.log(name + ": " + error.message); }
 }
 """
-"""A program in Node that tells what of the messages on its standard input cannot be read."""
+"""A program in Node that reports which messages on its standard input cannot be read."""
 
 Accept = Callable[[dict[str, Any]], Any]
 

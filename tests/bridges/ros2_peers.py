@@ -1,4 +1,4 @@
-"""ROS 2 beside the simulation: a program on Fast DDS that a test tells what to do."""
+"""ROS 2 beside the simulation: a program on Fast DDS that a test controls."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Peer:
     def call(
         self, service: str, type_name: str, values: dict[str, Any], *, hashes: bool = False
     ) -> Any:
-        """Calls a service and waits for its response; on demand with the types' hashes told."""
+        """Calls a service and waits for its response; on demand, with hashes of the types."""
         type_ = ros2_service(type_name)
         data = encode_cdr(from_dict(type_.request, values))
         before = len(self.lines)

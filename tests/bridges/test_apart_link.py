@@ -39,7 +39,7 @@ def pair() -> Iterator[Pair]:
     made.far.close()
 
 
-def test_calls_are_answered_and_tells_come_in_order(pair: Pair) -> None:
+def test_calls_are_answered_and_notifications_come_in_order(pair: Pair) -> None:
     told: list[int] = []
     pair.far.handle("add", lambda a, b: a + b)
     pair.far.handle("note", told.append)

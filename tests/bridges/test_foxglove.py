@@ -281,7 +281,7 @@ def test_a_client_that_knows_twist_alone_drives_what_wants_a_stamp(
         ("/nowhere", "geometry_msgs/Twist", b"\0\1\0\0", MESSAGE_UNREAD),
     ],
 )
-def test_what_cannot_be_taken_is_told(
+def test_what_cannot_be_taken_is_reported(
     *, served: Served, client: Client, topic: str, kind: str, data: bytes, code: Code
 ) -> None:
     client.wait("advertise")
@@ -355,7 +355,7 @@ def test_parameters(served: Served, client: Client) -> None:
     assert served.simulation.speed == 1.0
 
 
-def test_what_others_do_to_time_is_told(served: Served, client: Client) -> None:
+def test_what_others_do_to_time_is_published(served: Served, client: Client) -> None:
     client.wait("advertise")
     client.do("watch", names=["/cartwheel/paused", "/cartwheel/speed"])
     client.do("get", names=["/cartwheel/paused"], id="there")
@@ -385,8 +385,8 @@ def test_time_is_the_simulations(served: Served, client: Client) -> None:
     assert 0 <= times[0] < times[-1] <= served.simulation.time_ns
 
 
-def test_messages_come_close_to_the_time_told(served: Served, client: Client) -> None:
-    """Lichtblick takes the last time it was told for that of a message, and plots by it."""
+def test_messages_come_close_to_the_published_time(served: Served, client: Client) -> None:
+    """Lichtblick plots a message at the last time that it has received."""
     client.subscribe("/odom")
     client.wait("message", count=200)
     told, off = None, []
@@ -399,7 +399,7 @@ def test_messages_come_close_to_the_time_told(served: Served, client: Client) ->
 
 
 class Late(SimulationControls):
-    """As in another process, where messages tell what time it is."""
+    """As in another process, where the time comes from messages."""
 
     @property
     def time_ns(self) -> int:
@@ -531,7 +531,7 @@ def test_hostile_bytes_end_nothing(served: Served, client: Client) -> None:
     client.wait("message")
 
 
-def test_a_taken_port_is_told() -> None:
+def test_a_taken_port_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         session = Session(load_world("empty"))

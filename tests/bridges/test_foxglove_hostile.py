@@ -94,7 +94,7 @@ def reader(served: Served) -> Iterator[Reader]:
     made.link.close()
 
 
-def test_nonsense_of_one_client_disconnects_no_other(served: Served, reader: Reader) -> None:
+def test_malformed_data_of_one_client_disconnects_no_other(served: Served, reader: Reader) -> None:
     values = [{"name": f"/9/{number}", "value": "x"} for number in range(1000)]
     with connected(served) as other:
         other.send(json.dumps({"op": "setParameters", "parameters": values}))

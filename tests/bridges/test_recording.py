@@ -317,7 +317,7 @@ def test_recording_changes_nothing(tmp_path: Path) -> None:
     assert states(None) == states(tmp_path / "a.mcap")
 
 
-def test_a_pattern_without_topics_is_told(tmp_path: Path) -> None:
+def test_a_pattern_without_topics_is_reported(tmp_path: Path) -> None:
     with cw.World("empty") as world:
         with world.record(tmp_path / "a.mcap", topics=["/clok", "/clock"]):
             world.run(0.1)

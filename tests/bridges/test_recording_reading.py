@@ -247,7 +247,7 @@ def test_a_file_cut_anywhere_gives_what_lies_before(name: str, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("name", ["a.mcap", "a.bag", "a.db3"])
-def test_damage_is_told_and_is_no_fault(name: str, tmp_path: Path) -> None:
+def test_damage_is_reported_and_is_no_fault(name: str, tmp_path: Path) -> None:
     path = tmp_path / name
     drive(path, 0.3, topics=["!*image*"])
     whole = path.read_bytes()
@@ -339,7 +339,7 @@ ARM = """<robot name="arm">
 </robot>"""
 
 
-def test_a_file_tells_where_links_are_that_no_plugin_tells(tmp_path: Path) -> None:
+def test_a_file_states_where_links_are_that_no_plugin_states(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     run_program(
         *("run", "arm.urdf", "--headless", "--speed", "max", "--for", "1", "--record", "a.mcap"),

@@ -75,7 +75,7 @@ def serves(master: Master) -> None:
     subscriber.close()
 
 
-def test_nonsense_on_the_stream_port(bridge: Bridge, master: Master) -> None:
+def test_malformed_data_on_the_stream_port(bridge: Bridge, master: Master) -> None:
     run = bridge(robot=False)
     before = memory()
     generator = random.Random(1)
@@ -89,7 +89,7 @@ def test_nonsense_on_the_stream_port(bridge: Bridge, master: Master) -> None:
     wait_for(lambda: not run.bridge._node._unknown, "their ends")
 
 
-def test_nonsense_on_the_call_port(bridge: Bridge, master: Master) -> None:
+def test_malformed_data_on_the_call_port(bridge: Bridge, master: Master) -> None:
     run = bridge()
     before = memory()
     port = int(run.bridge.uri.rsplit(":", 1)[1].strip("/"))
@@ -121,7 +121,7 @@ def test_connections_that_say_nothing_are_limited(bridge: Bridge, master: Master
         sock.close()
 
 
-def test_a_publisher_of_nonsense_is_left(bridge: Bridge, master: Master) -> None:
+def test_a_publisher_of_malformed_data_is_left(bridge: Bridge, master: Master) -> None:
     run = bridge()
     with socket.create_server(("127.0.0.1", 0)) as server:
         talker = master.python(FALSE_NODE, str(server.getsockname()[1]))
@@ -432,7 +432,9 @@ def test_what_strangers_call_themselves_moves_no_cursor(bridge: Bridge) -> None:
     assert [report for report in run.reports if "/?[2J" in report.message]
 
 
-def test_a_master_that_answers_nonsense_takes_no_name(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_master_that_answers_malformed_data_takes_no_name(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     taken: list[str] = []
     found: list[bool] = []
     registrar = Registrar(

@@ -117,7 +117,7 @@ def test_a_message_from_ros_is_not_sent_back(bridge: Bridge, master: Master) -> 
     assert heard == ["from ros", "from us"]
 
 
-def test_a_wrong_type_is_refused_and_told(bridge: Bridge, master: Master) -> None:
+def test_a_wrong_type_is_refused_and_reported(bridge: Bridge, master: Master) -> None:
     run = bridge(robot=False)
     subscriber = Subscriber(master, "/clock", type="std_msgs/String", md5sum="0" * 32)
     assert "rosgraph_msgs/Clock" in subscriber.header["error"]
@@ -127,7 +127,7 @@ def test_a_wrong_type_is_refused_and_told(bridge: Bridge, master: Master) -> Non
     assert not run.wanted("/clock")
 
 
-def test_types_that_ros1_lacks_are_told_and_left_out(bridge: Bridge, master: Master) -> None:
+def test_types_that_ros1_lacks_are_reported_and_left_out(bridge: Bridge, master: Master) -> None:
     run = bridge(robot=False)
     run.graph.advertise("/parameter_events", "rcl_interfaces/msg/ParameterEvent")
     wait_for(

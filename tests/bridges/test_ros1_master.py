@@ -315,13 +315,13 @@ def test_a_remote_master_that_does_not_answer_is_an_error(
     bridge.close()
 
 
-def test_what_is_no_master_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_no_master_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_MASTER_URI", "here:or there")
     with raises(ROS_URI_INVALID):
         Ros1Bridge(Graph())
 
 
-def test_a_port_that_something_else_has_is_told(
+def test_a_port_that_something_else_has_is_reported(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     port = free_port()

@@ -111,7 +111,7 @@ def cancel(peer: Peer, identity: Any = None, name: str = ARM) -> Any:
 
 
 def nodes(peer: Peer) -> dict[str, set[bytes]]:
-    """The endpoints of each node as ``ros_discovery_info`` last told them."""
+    """The endpoints of each node as last published on ``ros_discovery_info``."""
     name = "rmw_dds_common/msg/ParticipantEntitiesInfo"
     data = [
         bytes.fromhex(line[3])
@@ -192,7 +192,7 @@ def position(bridged: Ros2Bridged, joint: str) -> float:
     return simulation.call(lambda: simulation.joint_position("arm", joint)).result()
 
 
-def test_a_goal_is_followed_and_told_of(bridged: Ros2Bridged, peer: Peer) -> None:
+def test_a_goal_is_followed_and_published(bridged: Ros2Bridged, peer: Peer) -> None:
     feedback = f"{TRAJECTORY}_FeedbackMessage"
     peer.subscribe(f"{ARM}/_action/feedback", feedback)
     peer.subscribe(f"{ARM}/_action/status", STATUS, transient=True)
@@ -334,7 +334,7 @@ def test_a_result_that_waits_is_sent_when_it_is_there(bridged: Ros2Bridged, peer
         other.close()
 
 
-def test_a_gripper_goes_where_it_is_told(bridged: Ros2Bridged, peer: Peer) -> None:
+def test_a_gripper_goes_where_it_is_commanded(bridged: Ros2Bridged, peer: Peer) -> None:
     identity = uuid()
     request = {"goal_id": identity, "goal": {"command": {"position": 0.3, "max_effort": 0.0}}}
     assert peer.call(f"{FINGER}/_action/send_goal", f"{GRIPPER}_SendGoal", request).accepted

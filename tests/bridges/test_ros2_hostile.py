@@ -117,7 +117,7 @@ def test_noise_is_counted_and_passed_over(bridged: Ros2Bridged, sender: socket.s
     assert not coded(bridged.reports, BRIDGE_FAULT)
 
 
-def test_who_may_not_have_listened_yet_is_told_again_until_it_answers(
+def test_a_peer_that_may_not_have_listened_is_notified_until_it_answers(
     bridged: Ros2Bridged, sender: socket.socket
 ) -> None:
     """Fast DDS announces itself some time before it takes what is sent to it."""
@@ -576,7 +576,7 @@ def test_others_are_served_meanwhile(bridged: Ros2Bridged, sender: socket.socket
         peer.close()
 
 
-def test_variables_that_make_no_sense_are_told_of() -> None:
+def test_variables_that_make_no_sense_are_reported() -> None:
     assert domain_id({"ROS_DOMAIN_ID": "17"}) == 17
     for wrong in ("-1", "x", "233", "²"):
         with raises(ROS_VARIABLE_INVALID, variable="ROS_DOMAIN_ID"):
@@ -650,7 +650,9 @@ def test_a_peer_is_heard_by_what_its_name_means(monkeypatch: pytest.MonkeyPatch)
         network.close()
 
 
-def test_zenoh_that_is_missing_is_told_with_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_zenoh_that_is_missing_is_reported_with_the_command(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     import sys
 
     monkeypatch.setitem(sys.modules, "zenoh", None)

@@ -134,7 +134,7 @@ def test_two_simulations_live_in_one_domain(start: Start, peer: Peer) -> None:
     assert not [line for line in peer.lines if line[0] == "NO_WRITER"]
 
 
-def test_a_middleware_that_is_none_is_told(start: Start) -> None:
+def test_a_middleware_that_is_none_is_reported(start: Start) -> None:
     process = start("--rmw", "tin_cans", "--for", "1")
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 2

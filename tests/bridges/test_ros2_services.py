@@ -129,7 +129,7 @@ def test_states_are_set_and_got(bridged: Ros2Bridged, peer: Peer) -> None:
     assert not none.success
 
 
-def test_properties_are_told_and_set(bridged: Ros2Bridged, peer: Peer) -> None:
+def test_properties_are_returned_and_set(bridged: Ros2Bridged, peer: Peer) -> None:
     told = peer.call(
         "/get_model_properties", "gazebo_msgs/srv/GetModelProperties", {"model_name": "rosbots"}
     )
@@ -359,7 +359,7 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
     wait_for(lambda: bridged.simulation.speed == 2.0, "the speed that was set")
 
     def told() -> list[Any]:
-        """What other tests did to time may be told still."""
+        """Earlier changes of the time by other tests may still be published."""
         return [
             event
             for event in peer.messages("/parameter_events", events)
@@ -382,7 +382,7 @@ def test_parameters_are_listed_described_got_and_set(bridged: Ros2Bridged, peer:
     assert bridged.simulation.speed == 2.0
 
 
-def test_parameters_that_something_else_changes_are_told_too(
+def test_parameters_that_something_else_changes_are_published_too(
     bridged: Ros2Bridged,
 ) -> None:
     events = "rcl_interfaces/msg/ParameterEvent"

@@ -40,7 +40,7 @@ def peer(bridged: Ros2Bridged) -> Iterator[Peer]:
 
 
 def entities(peer: Peer) -> list[tuple[str, str, int, int]]:
-    """Nodes as ``ros_discovery_info`` last told them: namespace, name, readers, writers."""
+    """Nodes as last published on ``ros_discovery_info``: namespace, name, readers, writers."""
     name = "rmw_dds_common/msg/ParticipantEntitiesInfo"
     data = [
         bytes.fromhex(line[3])
@@ -165,7 +165,7 @@ def test_who_asks_for_more_than_is_offered_gets_nothing(bridged: Ros2Bridged, pe
     assert coded(bridged.reports, QOS_INCOMPATIBLE, name=CAMERA, policy="RELIABILITY")
 
 
-def test_who_takes_a_topic_for_another_type_is_told(bridged: Ros2Bridged, peer: Peer) -> None:
+def test_who_takes_a_topic_for_another_type_is_reported(bridged: Ros2Bridged, peer: Peer) -> None:
     peer.subscribe("/odom", CLOCK)
     peer.publish("/part2_cmr/cmd_vel", CLOCK, {})
     wait_for(lambda: mismatched(bridged, "/odom"), "the reader")
@@ -251,7 +251,7 @@ def test_who_leaves_is_forgotten(bridged: Ros2Bridged, peer: Peer) -> None:
     dds = bridged.bridge.middleware
     assert isinstance(dds.participant._remotes.by_prefix, dict)  # type: ignore[attr-defined]
     peer.kill()
-    # It was killed, so its silence alone tells.
+    # It was killed, so only its silence shows that.
     wait_for(lambda: not dds.participant._remotes.by_prefix, "its end", 40.0)  # type: ignore[attr-defined]
     wait_for(lambda: not bridged.wanted("/odom"), "that nothing is published for nobody")
 

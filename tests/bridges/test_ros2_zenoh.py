@@ -71,7 +71,7 @@ def session(bridged: Ros2Bridged) -> Iterator[Any]:
     made.close()
 
 
-def test_tokens_tell_of_the_node_and_its_endpoints(session: Any) -> None:
+def test_tokens_announce_the_node_and_its_endpoints(session: Any) -> None:
     tokens: list[str] = []
     subscriber = session.liveliness().declare_subscriber(
         "@ros2_lv/7/**", lambda sample: tokens.append(str(sample.key_expr)), history=True
@@ -91,7 +91,7 @@ def test_tokens_tell_of_the_node_and_its_endpoints(session: Any) -> None:
     subscriber.undeclare()
 
 
-def test_a_node_of_its_own_is_told_of_while_it_has_something(
+def test_a_node_of_its_own_is_announced_while_it_has_something(
     bridged: Ros2Bridged, session: Any
 ) -> None:
     tokens: set[str] = set()

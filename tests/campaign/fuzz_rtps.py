@@ -38,7 +38,7 @@ samples of which it may ask for all."""
 
 
 class Loop:
-    """Time passes when it is told to."""
+    """Time advances only when it is set."""
 
     def __init__(self) -> None:
         self.timers: list[Callable[[], None]] = []

@@ -1,4 +1,4 @@
-"""Files of controllers: what is wrong in them is told in their own line, and mended there."""
+"""Mistakes in files of controllers are reported and fixed in their own line."""
 
 # ruff: noqa: E501  (a case is a table row)
 
@@ -78,7 +78,7 @@ def test_a_joint_without_a_transmission_is_given_one(spoil, told):
     assert told(text.replace("</robot>", finding.instead + "</robot>"), ARM) == []
 
 
-def test_a_transmission_with_another_interface_is_told_at_its_line(spoil, told, take, line_of):
+def test_a_transmission_with_another_interface_is_reported_at_its_line(spoil, told, take, line_of):
     text = spoil(ROS1, transmission("arm_joint", "hardware_interface/PositionJointInterface"))
     (finding,) = told(text, ARM)
     assert finding.code.name == "controller-interface-mismatch"
@@ -104,7 +104,7 @@ def test_two_controllers_of_one_joint_are_a_note(arm, told):
     assert "joint-claimed-twice" not in [each.code.name for each in told(arm, ARM + other)]
 
 
-def test_sizes_of_wheels_are_told_in_the_files_line(spoil, told, take):
+def test_sizes_of_wheels_are_reported_in_the_files_line(spoil, told, take):
     wheels = [
         transmission(f"{side}_wheel_joint", "hardware_interface/VelocityJointInterface")
         for side in ("left", "right")
@@ -184,7 +184,7 @@ def test_a_file_that_lies_nearby_is_checked_where_it_is_of_this_robot(bench, arm
     assert not [f for f in bench.report(without).findings if f.code.name in RULES]
 
 
-def test_a_file_that_is_missing_or_damaged_is_told(arm, told, bench, tmp_path):
+def test_a_file_that_is_missing_or_damaged_is_reported(arm, told, bench, tmp_path):
     (finding,) = told(arm, "arm: [")
     assert (finding.code.name, finding.origin.line) == ("controllers-file-unreadable", 1)
     missing = bench.report(arm, controller_files=[tmp_path / "no.yaml"]).findings

@@ -69,7 +69,7 @@ def test_a_file_of_new_gazebo_needs_no_prefix(bench, spoil):
         assert [each.severity for each in found] == ["info"], name
 
 
-def test_what_follows_from_a_fault_is_not_told_as_well(bench, spoil):
+def test_what_follows_from_a_fault_is_not_reported_as_well(bench, spoil):
     """Where a joint's place cannot be read nobody knows where its link is."""
 
     def rules(*changes):
@@ -132,7 +132,7 @@ def test_a_long_body_is_no_giant(bench, spoil, tmp_path):
     assert not bench.find(text.replace('radius="0.08"', 'radius="1.3"'), "shape-out-of-scale")
 
 
-def test_a_speck_of_a_mesh_beside_its_collision_is_told(bench, spoil, take, tmp_path):
+def test_a_speck_of_a_mesh_beside_its_collision_is_reported(bench, spoil, take, tmp_path):
     corners = [(0, 0, 0), (0.0004, 0, 0), (0, 0.0004, 0), (0, 0, 0.0004)]
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     lines = [f"v {x} {y} {z}" for x, y, z in corners]
@@ -177,7 +177,7 @@ def test_the_rest_is_checked_behind_an_error(bench, spoil):
     assert lines == sorted(lines)
 
 
-def test_a_cause_is_told_once(bench, spoil):
+def test_a_cause_is_reported_once(bench, spoil):
     """A link that is cut out because of one number makes no second error."""
     text = spoil(('<mass value="0.3"/>', '<mass value="heavy"/>'))
     errors = [f for f in bench.report(text).findings if f.severity == "error"]
@@ -202,7 +202,7 @@ def test_all_spellings_of_a_collision_are_shown(bench, spoil):
         assert name in hint
 
 
-def test_a_lumped_link_is_told_where_its_frame_is_another(bench, spoil):
+def test_a_lumped_link_is_reported_where_its_frame_is_another(bench, spoil):
     moved = ('<child link="base_link"/>', '<child link="base_link"/>\n<origin xyz="0 0 0.1"/>')
     assert bench.find(spoil(moved), "lumped-link")[0].severity == "info"
     snake = spoil(("<bodyName>base_link</bodyName>", "<body_name>base_link</body_name>"))
@@ -228,7 +228,7 @@ HOUSING = (
 )
 
 
-def test_a_camera_that_looks_at_its_housing_is_told(bench, spoil):
+def test_a_camera_that_looks_at_its_housing_is_reported(bench, spoil):
     found = bench.find(spoil(HOUSING), "view-blocked")
     assert found[0].values["sensor"] == "camera"
     assert found[0].values["share"] == 1.0
@@ -239,7 +239,7 @@ def test_a_camera_that_looks_at_its_housing_is_told(bench, spoil):
     assert not bench.find(spoil(inside), "view-blocked")
 
 
-def test_a_lidar_within_a_collision_is_told(bench, spoil):
+def test_a_lidar_within_a_collision_is_reported(bench, spoil):
     around = HOUSING[1].replace("visual", "collision").replace("0.02 0.5 0.5", "0.3 0.3 0.3")
     text = spoil((HOUSING[0], around))
     found = bench.find(text, "view-blocked")
@@ -247,7 +247,7 @@ def test_a_lidar_within_a_collision_is_told(bench, spoil):
     assert not bench.find(spoil((HOUSING[0], around), ("<min>0.05<", "<min>0.7<")), "view-blocked")
 
 
-def test_a_dwarf_mesh_is_told_with_its_scale(bench, spoil, take, tmp_path):
+def test_a_dwarf_mesh_is_reported_with_its_scale(bench, spoil, take, tmp_path):
     corners = [(0, 0, 0), (300, 0, 0), (0, 300, 0), (0, 0, 300)]
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     lines = [f"v {x} {y} {z}" for x, y, z in corners]
@@ -259,7 +259,7 @@ def test_a_dwarf_mesh_is_told_with_its_scale(bench, spoil, take, tmp_path):
     assert not bench.find(take(text, found[0]), "shape-out-of-scale")
 
 
-def test_a_damaged_mesh_is_told(bench, spoil, tmp_path):
+def test_a_damaged_mesh_is_reported(bench, spoil, tmp_path):
     (tmp_path / "bad.stl").write_bytes(b"solid nothing")
     text = spoil(('<box size="0.03 0.03 0.01"/>', '<mesh filename="bad.stl"/>'))
     assert bench.find(text, "mesh-unreadable")
@@ -273,7 +273,7 @@ def test_a_mesh_of_nearly_that_name_is_offered(bench, spoil, take, tmp_path):
     assert not bench.find(take(text, found[0]), "file-missing")
 
 
-def test_what_nothing_collides_with_is_told(bench, spoil, take):
+def test_what_nothing_collides_with_is_reported(bench, spoil, take):
     text = spoil(
         (
             '<collision>\n      <origin xyz="0 0 0.1"/>\n      <geometry>\n'
@@ -302,7 +302,7 @@ def test_what_is_written_already_is_not_what_was_meant(bench, spoil):
     assert (found[0].severity, found[0].instead) == ("info", "")
 
 
-def test_what_is_measured_on_a_part_only_is_not_told(bench, spoil):
+def test_what_is_measured_on_a_part_only_is_not_reported(bench, spoil):
     """Where a mesh is missing the rest of the link's geometry says nothing of its inertia."""
     large = ('ixx="0.001" iyy="0.001" izz="0.00008"', 'ixx="1" iyy="1" izz="1"')
     assert bench.find(spoil(large), "inertia-geometry-mismatch")
@@ -325,7 +325,7 @@ def test_an_inertia_that_does_not_matter_is_a_note(bench, spoil):
         assert [f.severity for f in found if "caster_link" in f.values.values()] == [severity]
 
 
-def test_two_giant_wheels_are_told_though_they_are_alike(bench, spoil):
+def test_two_giant_wheels_are_reported_though_they_are_alike(bench, spoil):
     wheel = 'radius="0.08" length="0.04"'
     giant = wheel.replace("0.08", "30").replace("0.04", "4")
     found = bench.find(spoil((wheel, giant), (wheel, giant)), "shape-out-of-scale")
@@ -392,7 +392,7 @@ def lines_of(text, part):
     return [number for number, line in enumerate(text.splitlines(), 1) if part in line]
 
 
-def test_a_package_that_is_missing_is_told_once_with_the_one_that_was_meant(bench, misspelt):
+def test_a_package_that_is_missing_is_reported_once_with_the_one_that_was_meant(bench, misspelt):
     (finding,) = bench.find(misspelt, "file-missing")
     assert (finding.values["name"], finding.values["places"]) == ("tester_descripton", 2)
     assert finding.values["meant"] == "tester_description"
@@ -416,7 +416,7 @@ def test_a_mesh_without_its_scale_is_a_giant(bench, spoil, tmp_path):
     assert bench.find(text, "shape-out-of-scale")[0].instead == 'scale="0.001 0.001 0.001"'
 
 
-def test_wheels_that_skid_may_be_told_a_wider_separation(bench, spoil):
+def test_wheels_that_skid_may_state_a_wider_separation(bench, spoil):
     more = "<leftJoint>left_wheel_joint</leftJoint>\n<rightJoint>right_wheel_joint</rightJoint>\n"
     pairs = ("<wheelSeparation>", more + "<wheelSeparation>")
     wide = ("<wheelSeparation>0.4<", "<wheelSeparation>0.6<")
@@ -448,7 +448,7 @@ def test_a_caster_wheel_that_does_not_swivel_slides_in_turns(bench, spoil):
     assert not found("continuous", "0 0 1")
 
 
-def test_tags_of_a_link_that_stand_at_its_joint_are_told_together(bench, spoil, take):
+def test_tags_of_a_link_that_stand_at_its_joint_are_reported_together(bench, spoil, take):
     text = spoil(('reference="caster_link"', 'reference="caster_joint"'))
     (finding,) = bench.find(text, "tag-misplaced")
     assert finding.values["tags"] == ("mu1", "mu2")
@@ -478,7 +478,9 @@ CONTROLLERS = """arm:
 """
 
 
-def test_controllers_of_joints_that_are_not_there_are_told_in_their_file(bench, spoil, tmp_path):
+def test_controllers_of_joints_that_are_not_there_are_reported_in_their_file(
+    bench, spoil, tmp_path
+):
     plugin = (
         "  <gazebo>\n",
         '  <gazebo><plugin name="c" filename="libgazebo_ros2_control.so">\n'

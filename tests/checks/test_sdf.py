@@ -152,7 +152,7 @@ def test_attributes_of_urdf_are_written_as_elements(bench, take):
     assert not bench.find(text, "tag-ignored", "x.sdf")
 
 
-def test_a_misspelt_end_of_a_joint_is_told_once_with_the_right_one(bench, take):
+def test_a_misspelt_end_of_a_joint_is_reported_once_with_the_right_one(bench, take):
     rules = {"joint-link-unknown", "value-ignored", "drive-joint-unknown"}
     wheels = wheel("left", 0.15) + wheel("right", -0.15)
     good = WHEELS.format(wheels=wheels, separation=0.3)
@@ -173,7 +173,7 @@ def test_what_a_missing_model_holds_nobody_knows(bench):
     assert bench.find(text.replace(include, ""), "plugin-joint-unknown", "x.sdf")
 
 
-def test_a_model_of_a_world_that_cannot_be_read_is_told_as_such(bench):
+def test_a_model_of_a_world_that_cannot_be_read_is_reported_as_such(bench):
     text = world(
         '<model name="a"><link name="b"><inertial><mass>-1</mass></inertial></link></model>\n'
     )
@@ -199,7 +199,7 @@ def test_limits_of_joints(bench):
     assert not good & {"limit-zero", "limit-in-degrees"}
 
 
-def test_a_misspelt_uri_is_told_with_the_one_that_was_meant(bench, tmp_path):
+def test_a_misspelt_uri_is_reported_with_the_one_that_was_meant(bench, tmp_path):
     (tmp_path / "crate").mkdir()
     (tmp_path / "crate" / "model.config").write_text("<model><sdf>model.sdf</sdf></model>")
     (tmp_path / "crate" / "model.sdf").write_text(model())

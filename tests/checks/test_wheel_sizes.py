@@ -153,7 +153,7 @@ def test_the_cars_own_sizes_are_no_fault(told, name):
 
 
 @pytest.mark.parametrize(("name", "tag"), STATED)
-def test_a_size_that_is_not_the_cars_is_told_with_its_own(told, take, line_of, name, tag):
+def test_a_size_that_is_not_the_cars_is_reported_with_its_own(told, take, line_of, name, tag):
     # Below the car's own: a skid's separation may be wider.
     wrong = car(plugin(name, **{**DRIVES[name], tag: 0.8 * DRIVES[name][tag]}))
     (finding,) = told(wrong)

@@ -16,7 +16,7 @@ def rules(bench, text, name="robot.xacro"):
     }
 
 
-def test_an_argument_that_nothing_uses_is_told_at_its_line(bench):
+def test_an_argument_that_nothing_uses_is_reported_at_its_line(bench):
     declared = '<xacro:arg name="width" default="1"/>\n'
     found = rules(bench, HEAD + declared + LINK + "</robot>")
     assert found["argument-unused"].origin.line == 2
@@ -65,7 +65,7 @@ def test_what_another_file_of_the_package_uses_is_used(bench, tmp_path):
     assert rules(bench, text) == {}
 
 
-def test_findings_of_a_macro_are_told_once_with_the_calls(bench):
+def test_findings_of_a_macro_are_reported_once_with_the_calls(bench):
     macro = (
         '<xacro:macro name="part" params="side">\n<link name="${side}"><inertial>'
         '<mass value="1"/>\n<inertia ixx="1" iyy="1" izz="9"/></inertial></link>\n'
@@ -81,7 +81,7 @@ def test_findings_of_a_macro_are_told_once_with_the_calls(bench):
     assert [each.values["link"] for each in found[0].also] == ["b", "c"]
 
 
-def test_findings_of_one_line_are_told_apart_by_their_values(bench):
+def test_findings_of_one_line_are_distinguished_by_their_values(bench):
     links = "".join(
         f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="9"/>'
         f'</inertial></link><joint name="{name}_joint" type="continuous"><parent link="base"/>'

@@ -130,7 +130,7 @@ def faulty_version(program):
     return program("version", status=1).stderr
 
 
-def test_a_fault_of_ours_is_told_as_one(program):
+def test_a_fault_of_ours_is_reported_as_one(program):
     assert f"[{INTERNAL_FAULT}]" in faulty_version(program)
 
 

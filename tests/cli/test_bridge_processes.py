@@ -81,7 +81,7 @@ def test_a_signal_to_all_of_them_keeps_everything(program: Program) -> None:
     assert "recorded" in out
 
 
-def test_a_wire_that_dies_is_told_and_the_simulation_goes_on(program: Program) -> None:
+def test_a_wire_that_dies_is_reported_and_the_simulation_goes_on(program: Program) -> None:
     process = program.start("run", "--headless", "--ros2", "--for", "6")
     _read_to(process, "ros 2")
     (child,) = bridges_of(process)

@@ -132,7 +132,7 @@ def test_json_of_a_clean_description_has_no_findings(checked):
     assert json.loads(checked(GOOD, "--json", status=0))["findings"] == []
 
 
-def test_json_tells_what_ended_the_check(checked):
+def test_json_states_what_ended_the_check(checked):
     report = json.loads(checked(GOOD.replace("  </link>\n", ""), "--json", status=2))
     assert report["complete"] is False
     assert [(one["rule"], one["severity"], one["line"]) for one in report["findings"]] == [
@@ -158,7 +158,7 @@ def test_the_same_of_several_lines_is_shown_once(checked):
     assert len(json.loads(checked(text, "--json", status=0))["findings"]) == 3
 
 
-def test_a_rule_can_be_ignored_and_a_wrong_name_is_told(checked, program, tmp_path):
+def test_a_rule_can_be_ignored_and_a_wrong_name_is_reported(checked, program, tmp_path):
     out = checked(ERROR, "--ignore", "inertia-impossible", status=0)
     assert "1 ignored" in out
     done = program("check", tmp_path / "bar.urdf", "--ignore", "inertia-imposible", status=2)

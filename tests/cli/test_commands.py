@@ -156,7 +156,7 @@ def test_services(cart):
     assert f"[{FIELD_UNKNOWN}]" in done.stderr
 
 
-def test_what_is_told_of_a_spawned_file_has_its_place(cart, tmp_path):
+def test_what_is_reported_a_spawned_file_has_its_place(cart, tmp_path):
     file = tmp_path / "told.urdf"
     file.write_text("""<robot name="told"><link name="a"><inertial><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>

@@ -44,7 +44,7 @@ EMPTY = str(share() / "worlds" / "empty.world")
         ("-s /a/libgazebo_ros_paths_plugin.so -s libgazebo_ros_api_plugin.so w", "world", "w"),
     ],
 )
-def test_what_the_server_is_told(line, field, value):
+def test_what_the_server_is_sent(line, field, value):
     assert getattr(parse_server("gzserver", line.split()), field) == value
 
 
@@ -121,7 +121,7 @@ def test_the_server_as_a_run():
     assert not translated("gazebo", parse_server("gazebo", [])).headless
 
 
-def test_what_the_client_is_told():
+def test_what_the_client_is_sent():
     assert parse_client(["--verbose", "__name:=gui"]).ros == ("__name:=gui",)
     assert parse_client(["-g", "libgazebo_ros_paths_plugin.so"]).notes == ()
     assert "libx.so" in parse_client(["-g", "libx.so"]).notes[0]

@@ -63,7 +63,7 @@ def test_a_taken_port_is_left_to_whoever_has_it(headless):
         assert page.status == 200
 
 
-def test_the_client_tells_the_address_where_there_is_no_display(program, headless):
+def test_the_client_prints_the_address_without_a_display(program, headless):
     client = program.start("gzclient")
     url = url_of(client)
     with urllib.request.urlopen(url, timeout=120) as page:

@@ -221,7 +221,7 @@ def test_a_free_port_is_named_and_how_to_stop_a_simulation(monkeypatch):
         assert caught.value.hint.endswith("Or stop that simulation: kill 17")
 
 
-def test_two_simulations_are_told_apart(program, ends):
+def test_two_simulations_are_distinguished(program, ends):
     first = program.start("run", "--headless")
     program.wait_until_up(first)
     second = program.start("run", "--headless", "empty")
@@ -321,7 +321,9 @@ BOX = """<robot name="box">
     ],
     ids=["ros2_control", "transmission", "neither"],
 )
-def test_joints_that_wait_for_controllers_nobody_starts_are_told(program, tmp_path, tags, plugin):
+def test_joints_that_wait_for_controllers_nobody_starts_are_reported(
+    program, tmp_path, tags, plugin
+):
     file = tmp_path / "arm.urdf"
     file.write_text(f"""<robot name="arm"><link name="world"/><link name="a"><inertial>
       <mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>

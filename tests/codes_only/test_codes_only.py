@@ -28,7 +28,7 @@ REPRESENTATIVE = {
     "graph": "tests/graph/test_graph.py",
     "gym": "tests/gym/test_env.py::test_mistakes_are_errors",
     "messages": "tests/messages/library/test_library.py",
-    "playback": "tests/playback/test_player.py::test_an_empty_recording_is_told",
+    "playback": "tests/playback/test_player.py::test_an_empty_recording_is_reported",
     "saving": "tests/saving/test_saving.py::test_not_while_it_runs_and_not_when_closed",
     "scenarios": "tests/scenarios/test_schema.py",
     "simulation": "tests/simulation/dynamics/test_separation.py",

@@ -141,7 +141,7 @@ def test_a_subscription_ends_with_its_client(client, session, eventually):
     eventually(lambda: session.graph.topic("/twist").subscribers == ())
 
 
-def test_a_slow_reader_loses_the_oldest_and_is_told(client, eventually):
+def test_a_slow_reader_loses_the_oldest_and_is_reported(client, eventually):
     client.request("speed", speed=None)
     with client.subscribe("/twist", queue=5) as subscription:
         eventually(lambda: client.request("status")["time"] > 400)

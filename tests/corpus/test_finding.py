@@ -107,7 +107,7 @@ def test_models_are_robots_and_worlds_are_not(folder):
     assert folder(box__model_dot_sdf=model, w_dot_sdf=world) == ["box/model.sdf"]
 
 
-def test_what_cannot_be_read_is_kept_for_its_trial_to_tell(folder):
+def test_what_cannot_be_read_is_kept_for_its_trial_to_report(folder):
     assert folder(bad_dot_urdf='<robot name="bad"><link name="a">') == ["bad.urdf"]
 
 

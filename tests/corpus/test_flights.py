@@ -1,4 +1,4 @@
-"""Aircraft without a stabilising controller take off, or the reason is told."""
+"""Aircraft without a stabilising controller take off, or the reason is reported."""
 
 import math
 
@@ -157,7 +157,7 @@ def test_an_aircraft_without_a_velocity_controller_has_no_such_error():
     assert drag_errors(load_text(multirotor("", 1e-3), file="aircraft.urdf")) == (0.0, 0.0)
 
 
-def test_a_drone_takes_off_before_it_is_told_to_move(tmp_path):
+def test_a_drone_takes_off_before_it_is_commanded_to_move(tmp_path):
     gains = {
         "rollpitch": (10, 5),
         "yaw": (2, 1),

@@ -1,4 +1,4 @@
-"""What a trial tells of robots whose faults are known."""
+"""What a trial reports about robots with known faults."""
 
 import math
 from dataclasses import replace
@@ -128,7 +128,7 @@ def cart(diameter: float) -> str:
     return parts + DRIVE.format(diameter=diameter)
 
 
-def test_a_cart_stands_publishes_and_drives_as_it_is_told(tried):
+def test_a_cart_stands_publishes_and_drives_as_it_is_commanded(tried):
     verdict = tried(cart(0.1))
     assert verdict.good, verdict
     assert verdict.mass == pytest.approx(2.4)
@@ -485,7 +485,7 @@ def test_what_the_world_holds_is_fixed(tried):
 
 
 @pytest.mark.parametrize("name", ["arm.yaml", "config.yml"])
-def test_the_controllers_beside_a_robot_take_its_joint_where_they_are_told(tmp_path, tried, name):
+def test_the_controllers_beside_a_robot_take_its_joint_where_that_is_set(tmp_path, tried, name):
     (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / name).write_text(
@@ -614,7 +614,7 @@ def test_an_error_that_follows_from_friction_and_the_gain_of_a_plugin_is_none(tr
     assert verdict.good, verdict.faults
 
 
-def test_an_arm_that_nothing_drives_falls_and_the_reason_is_told(tried):
+def test_an_arm_that_nothing_drives_falls_and_the_reason_is_reported(tried):
     upper = ARM[ARM.index('<link name="upper">') : ARM.index('<joint name="stand"')]
     joint = ARM[ARM.index('<joint name="shoulder"') : ARM.index("<transmission")]
     # It falls to the side.
@@ -626,7 +626,9 @@ def test_an_arm_that_nothing_drives_falls_and_the_reason_is_told(tried):
     assert (fault.test, fault.code, fault.source) == ("stand", JOINTS_UNDRIVEN, "file")
 
 
-def test_an_arm_whose_controller_waits_for_a_command_falls_and_the_reason_is_told(tmp_path, tried):
+def test_an_arm_whose_controller_waits_for_a_command_falls_and_the_reason_is_reported(
+    tmp_path, tried
+):
     path = tmp_path / "arm.yaml"
     path.write_text("arm:\n  type: effort_controllers/JointEffortController\n  joint: shoulder\n")
     arm = ARM.format(kind="Effort")

@@ -27,7 +27,7 @@ texts = st.sampled_from([URDF, *SOURCES.values()])
 
 
 def survives(text):
-    """Loads, or fails as users are told of failures; says which."""
+    """Loads, or fails with a diagnostic; returns which."""
     try:
         found = load_text(text, file=str(CART))
     except CartwheelError as error:

@@ -1,4 +1,4 @@
-"""Every element acts or is told of: without it, what is read is not the same."""
+"""Every element has an effect or is reported: without it, the result differs."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -344,7 +344,7 @@ WITHOUT_WORD = {
 
 
 def described(text: str, file: Path, place: tuple[int, ...] = (), attribute: str | None = None):
-    """What is read of a document, and what is told; without the element at `place`."""
+    """The result of a document, and its diagnostics; without the element at `place`."""
     root = parse(text, str(file))
     if place:
         owner = at(root, place[:-1])
@@ -377,7 +377,7 @@ DOCUMENTS = {
 
 
 @pytest.mark.parametrize("text", DOCUMENTS.values(), ids=DOCUMENTS)
-def test_every_element_acts_or_is_told_of(tmp_path, text):
+def test_every_element_acts_or_is_reported(tmp_path, text):
     (tmp_path / "cube.stl").write_text(MESH)
     Image.linear_gradient("L").resize((5, 5)).save(tmp_path / "map.png")
     file = tmp_path / "w.sdf"
@@ -405,7 +405,7 @@ def test_every_element_acts_or_is_told_of(tmp_path, text):
             elif found[1] == whole[1] and label not in WITHOUT_WORD:
                 silent.append(f"line {node.origin.line}: {label}")
             if attribute is None and None not in acts:
-                break  # told of as a whole
+                break  # reported as a whole
         if None in acts and node.tag != "plugin":
             left += [(*place, index) for index in range(len(node.children))]
     assert sorted(silent) == []

@@ -70,7 +70,7 @@ def test_arguments():
     assert '<link name="b">' in robot.text
 
 
-def test_arguments_of_what_is_no_xacro_are_told():
+def test_arguments_of_what_is_no_xacro_are_reported():
     (told,) = load_text(URDF, file="r.urdf", arguments={"n": "b"}).diagnostics
     assert placed(told) == "r.urdf warning argument-unknown"
 

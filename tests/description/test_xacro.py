@@ -1,4 +1,4 @@
-"""xacro as in ROS; origins through includes and macros; what is told when it fails."""
+"""xacro as in ROS; origins through includes and macros; diagnostics of failures."""
 
 import os
 import re
@@ -345,7 +345,7 @@ def test_nine_thousand_macro_calls_expand(folder):
     assert [child.tag for child in expanded().root.children] == ["a"]
 
 
-def test_unknown_argument_is_told_with_the_declared_ones(folder):
+def test_unknown_argument_is_reported_with_the_declared_ones(folder):
     write("part.xacro", '<xacro:arg name="laser_enabled" default="1"/>', "")
     write("robot.xacro", '<xacro:include filename="part.xacro"/>')
     (told,) = expanded(laser_enable="true").diagnostics
@@ -368,7 +368,7 @@ def test_messages_of_xacro_become_diagnostics(folder, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_messages_of_one_line_are_told_apart_by_their_text(folder):
+def test_messages_of_one_line_are_distinguished_by_their_text(folder):
     write(
         "robot.xacro",
         """<xacro:if value="${[xacro.warning('one')] and [xacro.warning('one')] and True}"/>
@@ -383,7 +383,7 @@ def test_messages_of_one_line_are_told_apart_by_their_text(folder):
     ]
 
 
-def test_missing_namespace_is_told(folder):
+def test_missing_namespace_is_reported(folder):
     Path("robot.xacro").write_text(
         '<robot name="r">\n<xacro:property name="a" value="1"/><b c="${a}"/></robot>'
     )
@@ -501,7 +501,7 @@ def test_an_attribute_set_to_a_number(folder):
     assert expanded().root.children[0].attributes == {"b": "2"}
 
 
-def test_an_expression_with_quotes_is_told_as_a_whole(folder):
+def test_an_expression_with_quotes_is_reported_as_a_whole(folder):
     write("robot.xacro", """<a b="${missing['key'] + 'x'}"/>""")
     assert failure().values["expression"] == "missing['key'] + 'x'"
     write("robot.xacro", """<a b="${missing + 'a' 'when evaluating' + ''}"/>""")

@@ -113,7 +113,7 @@ JOINTS = {
 
 
 def wheeled(make, drive, tag):
-    """A model with the joints that a drive takes by itself, or is told here."""
+    """A model with the default joints of a drive, or the joints that are stated here."""
     mass = "<inertial><mass>1</mass></inertial>"
     names = JOINTS[drive]
     links = "".join(f'<link name="{name}_l">{mass}</link>' for name in names)

@@ -34,7 +34,7 @@ def test_ros2_drives_several_pairs_each_by_its_own_size(make, cart):
     assert speeds["right_front"] == pytest.approx((0.5 + 0.15) / 0.1, rel=0.01)
     assert speeds["left_rear"] == pytest.approx((0.5 - 0.3) / 0.2, rel=0.01)
     assert speeds["right_rear"] == pytest.approx((0.5 + 0.3) / 0.2, rel=0.01)
-    # ROS 2's plugin publishes only what it is told to.
+    # ROS 2's plugin publishes only what its tags state.
     assert not {"/odom", "/tf"} & {topic.name for topic in world.graph.topics()}
 
 

@@ -25,7 +25,7 @@ def told(filename):
         ("libgazebo_ros_diff_drive.so", devices.PLUGIN_MISPLACED),
     ],
 )
-def test_a_plugin_that_does_nothing_is_told(filename, code):
+def test_a_plugin_that_does_nothing_is_reported(filename, code):
     (found,) = told(filename)
     assert found.code is code
     assert found.values["name"] == filename

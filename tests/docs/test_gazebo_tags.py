@@ -76,7 +76,7 @@ def test_each_tag_acts_or_is_reported(kind, example, acts, said):
     if acts == "yes":
         assert changed
         return
-    # Of a robot that says nothing there is nothing to tell.
+    # A robot without tags gives no diagnostics.
     assert [each for each in reported(found) if each.severity == SEVERITY[acts]], said
 
 

@@ -41,7 +41,7 @@ def test_the_links_of_a_page_lead_somewhere(page: Path) -> None:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_files_that_a_page_names_exist(page: Path) -> None:
-    """Code moves; what is told of it must move along."""
+    """Documentation must name files that exist after code has moved."""
     for name in _FILE.findall(re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)):
         places = (ROOT / name, ROOT / "src" / "cartwheel" / name)
         assert any(place.exists() for place in places), f"{page.relative_to(ROOT)} names {name}"

@@ -45,19 +45,19 @@ def falling(make, gazebo):
     return gazebo(make.world(make.box("cube", (0.5,) * 3, pose=Pose((0, 0, 100))), ground=None))
 
 
-def test_what_is_told_at_first(falling):
+def test_what_is_published_at_first(falling):
     now = falling.done("get_physics_properties")
     assert now.time_step == 0.005
     assert now.max_update_rate == pytest.approx(200.0)
     assert (now.gravity.x, now.gravity.y, now.gravity.z) == (0.0, 0.0, -G)
     assert not now.pause
-    # As a Gazebo 11 tells them.
+    # As Gazebo 11 returns them.
     ode = now.ode_config
     assert (ode.sor_pgs_iters, ode.max_contacts, ode.sor_pgs_w) == (50, 20, 1.3)
     assert (ode.erp, ode.cfm, ode.contact_surface_layer) == (0.2, 0.0, 0.001)
 
 
-def test_what_was_told_may_be_set_again(falling):
+def test_published_values_may_be_set_again(falling):
     version = falling.simulation.scene.version
     answer = change(falling)
     assert answer.status_message == "physics engine updated"
@@ -246,7 +246,7 @@ def test_reset_returns_every_model(make, gazebo, rosbots, service):
     assert np.abs(api.simulation.data.qvel).max() == 0.0
     time = 0 if service == "reset_simulation" else 3_000_000_000
     assert api.simulation.time_ns == time
-    # It stands until it is told to drive.
+    # It stands until it is commanded to drive.
     world.run(2.0)
     assert world.model("rosbots").pose.x == pytest.approx(0.0, abs=0.01)
     assert api.simulation.time_ns == time + 2_000_000_000
@@ -384,7 +384,7 @@ def test_parameters_are_those_of_gazebo(falling):
     }
 
 
-def test_a_parameter_counts_and_is_told(falling):
+def test_a_parameter_counts_and_is_reported(falling):
     answer = configure(falling, gravity_z=0.0, time_step=0.002)
     assert answer["gravity_z"] == 0.0
     falling.world.run(1.0)
@@ -394,7 +394,7 @@ def test_a_parameter_counts_and_is_told(falling):
     assert told(latest(falling, "parameter_updates"))["time_step"] == 0.002
 
 
-def test_the_service_tells_the_parameters(falling):
+def test_the_service_returns_the_parameters(falling):
     change(falling, gravity__y=1.5)
     assert told(latest(falling, "parameter_updates"))["gravity_y"] == 1.5
 

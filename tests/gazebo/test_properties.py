@@ -60,7 +60,7 @@ def test_properties_of_a_link_as_described(make, gazebo):
     assert found.com.orientation.w == 1.0
 
 
-def test_what_is_set_is_told(cube):
+def test_what_is_set_is_published(cube):
     set_link(cube, "cube::link", (0.1, 0.2, 0.3), gravity=False)
     found = cube.done("get_link_properties", link_name="cube::link")
     for name, value in CUBE.items():

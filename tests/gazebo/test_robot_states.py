@@ -1,4 +1,4 @@
-"""Where links are told to be, against what the simulation itself says."""
+"""The published transforms of links, compared with the simulation."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def session_with(*robots: tuple[str, Any]) -> Session:
     return session
 
 
-def test_the_cart_is_one_tree_and_nothing_is_told_twice() -> None:
+def test_the_cart_is_one_tree_and_nothing_is_reported_twice() -> None:
     session = session_with(("rosbots", load_robot("rosbots.xacro")))
     states_of(session)
     heard = Listener(session)
@@ -149,7 +149,7 @@ def test_a_robot_that_another_describes_is_left_to_it_alone() -> None:
     session.close()
 
 
-def test_a_second_robot_of_the_same_frames_is_left_out_and_told_of() -> None:
+def test_a_second_robot_of_the_same_frames_is_left_out_and_reported() -> None:
     arm = load_text(ARM, file="arm.urdf")
     session = session_with(("one", arm), ("two", arm))
     states_of(session)

@@ -142,7 +142,7 @@ def test_an_effort_acts_until_it_is_cleared(make):
     assert rate == pytest.approx([0.5 * 1.0 / 0.5], rel=1e-9)
 
 
-def test_links_of_a_model_are_told_with_its_name(make):
+def test_links_of_a_model_are_reported_with_its_name(make):
     api = ros2(make.world(make.sdf(ARM), ground=None))
     found = api.done("get_model_properties", model_name="arm")
     assert found.canonical_body_name == "arm::base"

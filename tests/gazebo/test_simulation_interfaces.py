@@ -144,7 +144,7 @@ def test_entities_are_found_by_where_they_reach(make):
     assert refused(7, 2) == UNSUPPORTED
 
 
-def test_a_state_tells_the_acceleration_too(make):
+def test_a_state_contains_the_acceleration_too(make):
     cube = make.box("cube", (0.5,) * 3, mass=2.0, pose=Pose((0, 0, 5)))
     api = interfaces(make.world(cube, make.sdf(ARM)))
 

@@ -1,4 +1,4 @@
-"""Where things are and how they move: told in any frame, and set so that physics goes on."""
+"""Poses and velocities: returned in any frame, and set without disturbing the physics."""
 
 import math
 
@@ -84,7 +84,7 @@ def test_a_turning_model_turns_about_the_worlds_axis(space):
 
 
 def test_relative_to_a_link_or_model(space):
-    """Set in the beacon's frame, told in the beacon's frame; in the world turned by it."""
+    """Set and returned in the beacon's frame; in the world, turned by it."""
     beacon = Pose((1.0, 1.0, 1.0), quat_from_rpy(0, 0, 0.5))
     for frame in ("beacon", "beacon::link"):
         place(
@@ -279,7 +279,7 @@ def test_free_parts_of_a_model_stay_together(make, gazebo):
 
 
 def test_a_model_frame_beside_its_canonical_link(make, gazebo):
-    """Its link is 1 m ahead of the model's frame: put and told by the frame."""
+    """Its link is 1 m ahead of the model's frame: set and returned by the frame."""
     ahead = make.sdf(
         """<model name="ahead"><link name="l"><pose>1 0 0 0 0 0</pose><inertial/></link></model>"""
     )

@@ -266,7 +266,7 @@ def test_no_message_is_lost_or_doubled_between_threads():
     assert box.dropped == 0
 
 
-def test_who_mirrors_the_graph_is_told_of_each_change():
+def test_mirrors_of_the_graph_are_notified_of_each_change():
     graph = Graph()
     seen = []
     graph.on_change.append(lambda: seen.append(graph.changed))

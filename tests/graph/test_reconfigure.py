@@ -1,4 +1,4 @@
-"""Values changed while a node runs: what is told, what a request does, what it may not."""
+"""Values changed while a node runs: what is published, and what a request may change."""
 
 import math
 
@@ -154,7 +154,7 @@ def test_what_is_refused_changes_nothing(lists, error, on_change):
     assert updates.drain() == []
 
 
-def test_initial_values_and_updates_from_elsewhere_are_told():
+def test_initial_values_and_updates_from_elsewhere_are_published():
     graph, server = serve(initial={"rate": 100})
     assert values(last(graph, "/eye/parameter_updates"))["rate"] == 100.0
     server.update({"rate": 7, "format": "png"})

@@ -146,7 +146,9 @@ def on_slope(make, rosbots, degrees):
 
 @pytest.mark.parametrize("degrees", [8, 12, 18])
 def test_it_holds_on_a_ramp(make, rosbots, degrees):
-    """Wheels told to stand brake: the pull of the slope, r m g sin α / 2, is within the torque."""
+    """Wheels with a commanded velocity of zero brake: the pull of the slope, r m g sin α / 2, is
+    within the torque.
+    """
     torque = RADIUS * rosbots.mass * 9.8 * math.sin(math.radians(degrees)) / 2
     assert torque < TORQUE
     world, before = on_slope(make, rosbots, degrees)
@@ -166,7 +168,7 @@ def test_a_brake_gives_no_more_than_the_torque(make, rosbots):
     assert moved == pytest.approx(acceleration * (3.0**2 - 1.0**2) / 2, rel=0.05)
 
 
-def test_a_brake_lets_go_when_it_is_told_to_drive(make, rosbots):
+def test_a_brake_lets_go_when_it_is_commanded_to_drive(make, rosbots):
     """Up the slope from a stand, then a stop that holds again; also over a spawn."""
     world, before = on_slope(make, rosbots, 8)
     drive(world, 3.0, forward=-0.4)

@@ -159,7 +159,7 @@ def test_a_convex_mesh_stays_one_hull_and_one_that_moves_too(make, tmp_path, rin
     assert make.world(moving, ground=None).session.simulation.model.ngeom == 1
 
 
-def test_a_surface_of_too_many_facets_is_told(make, ring, monkeypatch):
+def test_a_surface_of_too_many_facets_is_reported(make, ring, monkeypatch):
     from cartwheel.description.meshes import loading, standing
 
     loading._standing.cache_clear()

@@ -210,7 +210,7 @@ def test_a_world_around_the_robot(drives: Callable[[str], Drive]) -> None:
     assert np.allclose(snapshot.positions[row][:2], wanted.position[:2], atol=1e-9)
 
 
-def test_an_empty_recording_is_told(tmp_path: Path) -> None:
+def test_an_empty_recording_is_reported(tmp_path: Path) -> None:
     with cw.World("empty") as world, world.record(tmp_path / "a.mcap", topics=["/nothing"]):
         world.run(0.1)
     with raises(RECORDING_EMPTY):
@@ -259,7 +259,7 @@ def test_what_others_recorded_is_played_with_types_of_their_own(name: str, tmp_p
     assert session.simulation.snapshot().positions.shape == (0, 3)
 
 
-def test_two_robots_are_told_apart(tmp_path: Path) -> None:
+def test_two_robots_are_distinguished(tmp_path: Path) -> None:
     with cw.World("empty") as world:
         description = load_robot("rosbots.xacro")
         for name, y in (("left", 1.0), ("right", -1.0)):

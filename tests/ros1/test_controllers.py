@@ -125,7 +125,7 @@ def test_rosrun_finds_them(ros: Any) -> None:
         assert shown.strip() == str(ros.overlay.program("controller_manager", name))
 
 
-def test_what_cannot_be_done_is_told(programs: Programs) -> None:
+def test_what_cannot_be_done_is_reported(programs: Programs) -> None:
     assert "could not load 'nothing'" in programs("controller_manager", "load", "nothing", status=1)
     programs("controller_manager", "juggle", status=1)
     programs("controller_group", "switch", "nobody", status=1)

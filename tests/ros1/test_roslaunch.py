@@ -83,7 +83,7 @@ def test_a_server_that_is_required_ends_everything(ros, launch):
     ros.until(lambda: not ros.left())
 
 
-def test_a_world_that_does_not_exist_is_told(ros, launch):
+def test_a_world_that_does_not_exist_is_reported(ros, launch):
     process = launch(
         "gui:=false", "server_required:=true", "world_name:=worlds/emtpy.world", service=None
     )

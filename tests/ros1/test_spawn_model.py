@@ -166,7 +166,7 @@ def test_what_cannot_be_spawned_says_why(ros, spawn, line, content, said):
     assert said in spawn(f"-urdf -model m {line}", status=1).stderr
 
 
-def test_a_refusal_is_told_and_fails(spawn, gazebo):
+def test_a_refusal_is_reported_and_fails(spawn, gazebo):
     gazebo(mood="refuse")
     done = spawn("-urdf -file r.urdf -model m", status=1)
     assert "refused" in done.stderr
@@ -184,7 +184,7 @@ def test_a_refusal_is_told_and_fails(spawn, gazebo):
         ("-urdf -file f -model m -J elbow much", "-J"),
     ],
 )
-def test_wrong_arguments_are_told_before_ros_is_asked(ros, line, said):
+def test_wrong_arguments_are_reported_before_ros_is_asked(ros, line, said):
     program = ros.overlay.program("gazebo_ros", "spawn_model")
     assert said in ros.run(program, *line.split(), status=2).stderr
 

@@ -97,7 +97,7 @@ def eventually(condition: Callable[[], bool], seconds: float = 120.0) -> bool:
     return condition()
 
 
-def test_gzclient_tells_where_the_page_is(world: Terminal) -> None:
+def test_gzclient_prints_where_the_page_is(world: Terminal) -> None:
     address = world.wait_for(r"http://127\.0\.0\.1:(\d+)")
     with socket.create_connection(("127.0.0.1", int(address[1])), timeout=10):
         pass

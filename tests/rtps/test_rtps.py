@@ -156,7 +156,7 @@ def test_samples_of_a_writer_that_was_lost_are_not_delivered_again(
     assert [each.number for each in taken] == ([1, 2, 1, 2, 3] if again else [1, 2, 3])
 
 
-def test_who_asks_for_what_is_no_more_is_told_and_it_is_counted() -> None:
+def test_requests_for_samples_that_are_gone_are_answered_and_counted() -> None:
     sent: list[bytes] = []
     told: list[int] = []
     writer = Writer(endpoint(OURS + WRITER, depth=2), lambda parts, _: sent.append(b"".join(parts)))

@@ -42,7 +42,7 @@ def test_a_laser_reads_its_distance_to_a_wall(make, read):
     assert message.header.frame_id == "laser"
 
 
-def test_wheels_turn_as_their_drive_is_told(make):
+def test_wheels_turn_as_their_drive_is_commanded(make):
     wheels = "".join(
         f"""<link name="{side}_wheel"><pose>0 {y} 0 -1.5707963267948966 0 0</pose>
           <inertial><mass>0.5</mass><inertia><ixx>2e-3</ixx><iyy>2e-3</iyy><izz>2.5e-3</izz></inertia>

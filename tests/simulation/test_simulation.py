@@ -176,7 +176,7 @@ def test_a_model_that_cannot_be_built_takes_its_plugins_along(make, rosbots):
     assert world.graph.services() == []
 
 
-def test_an_unknown_plugin_is_told(make, rosbots):
+def test_an_unknown_plugin_is_reported(make, rosbots):
     import dataclasses
 
     tag = rosbots.plugins[0]
@@ -207,7 +207,7 @@ def test_reset_takes_all_back_to_where_it_was_spawned(driving):
     ]
 
 
-def test_reset_tells_those_who_listen(driving):
+def test_reset_notifies_its_listeners(driving):
     told = []
     driving.session.simulation.on_reset.append(lambda: told.append(driving.time))
     driving.reset()

@@ -145,7 +145,7 @@ def test_a_failed_test_has_a_report_and_artifacts(pytester_run, tmp_path):
         "test_it.py::test_fails[0.2]", "--cartwheel-view",
     ):  # fmt: skip
         assert text in done.stdout
-    # A text that is published once is not shown, and each error is told once.
+    # A text that is published once is not shown, and each error is reported once.
     assert "/robot_description at" not in done.stdout and "<?xml" not in done.stdout
     (recording,) = (tmp_path / "out").glob("*.mcap")
     (picture,) = (tmp_path / "out").glob("*.png")

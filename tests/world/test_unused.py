@@ -1,4 +1,4 @@
-"""What the physics leaves out is told with its place, once for each kind."""
+"""Descriptions that the physics ignores are reported with their place, once for each kind."""
 
 import pytest
 from tests.coded import coded
@@ -46,14 +46,14 @@ def notes(tags: str) -> list[Diagnostic]:
         ("<dampingFactor>0.1</dampingFactor>", "velocity decay", 2, 1),
     ],
 )
-def test_a_tag_that_does_nothing_is_told_at_its_first_place(tags, setting, line, count) -> None:
+def test_a_tag_that_does_nothing_is_reported_at_its_first_place(tags, setting, line, count) -> None:
     (note,) = [each for each in notes(tags) if each.values["setting"] == setting]
     assert note.severity == "info"
     assert note.origin.line == line
     assert note.values["count"] == count
 
 
-def test_a_velocity_limit_is_told_and_nothing_else_is() -> None:
+def test_a_velocity_limit_is_reported_and_nothing_else_is() -> None:
     surface = (
         "<collision><surface><friction><ode><slip1>0</slip1></ode><torsional><coefficient>1"
         "</coefficient><patch_radius>0.1</patch_radius></torsional></friction><bounce>"
@@ -97,7 +97,7 @@ LOOP = """<sdf version="1.7"><model name="loop"><link name="a"/><link name="b"/>
         ("prismatic", "", AXIS),
     ],
 )
-def test_what_a_joint_that_closes_a_loop_does_not_do_is_told(kind, axis, setting) -> None:
+def test_what_a_joint_that_closes_a_loop_does_not_do_is_reported(kind, axis, setting) -> None:
     with cw.World("empty") as world:
         world.spawn(load_text(LOOP.format(kind, axis), file="l.sdf"))
         told = [
@@ -109,7 +109,7 @@ def test_what_a_joint_that_closes_a_loop_does_not_do_is_told(kind, axis, setting
 
 
 @pytest.mark.parametrize(("coefficient", "told"), [(0.5, 0), (1.0, 0), (1.5, 2)])
-def test_a_restitution_above_1_is_told(coefficient, told) -> None:
+def test_a_restitution_above_1_is_reported(coefficient, told) -> None:
     bounce = f"""<collision><surface><bounce><threshold>0.1</threshold><restitution_coefficient>
       {coefficient}</restitution_coefficient></bounce></surface></collision>"""
     said = [each for each in notes(bounce) if each.values["setting"] == "a restitution above 1"]

@@ -87,7 +87,7 @@ def test_targets_stand_at_the_distances_that_the_world_says():
             assert found == pytest.approx(distance - 0.001, abs=1e-6), sensor
 
 
-def test_the_range_sensors_tell_those_distances():
+def test_the_range_sensors_publish_those_distances():
     with opened("range") as world:
         boxes = {
             name: world.mailbox(f"/{name}", size=100) for name in ("sonar", "infrared", "scan")

@@ -1,4 +1,4 @@
-"""What is told of malformed XML and of numbers that are none; what nobody read."""
+"""Malformed XML, invalid numbers and unread elements are reported."""
 
 import pytest
 from tests.coded import named, placed, raises
@@ -205,7 +205,7 @@ def test_missing_child_names_the_likely_meant_one():
         root.require_child("inertial")
 
 
-def test_unread_parts_are_told_with_place_and_likely_meaning():
+def test_unread_parts_are_reported_with_place_and_likely_meaning():
     root = xml.parse(
         "<gazebo>\n<mu1>1</mu1>\n<maxContact>3</maxContact>\n<mu1>2</mu1>\n"
         "<kp valeu='1'/></gazebo>",

@@ -1,4 +1,4 @@
-"""Where packages, models and files are looked for, and what is told when they are not there."""
+"""Where packages, models and files are searched, and how missing ones are reported."""
 
 import tempfile
 import time

@@ -205,7 +205,7 @@ def test_texture_is_found_beside_the_mesh(tmp_path):
     assert part.uv.tolist() == part.vertices[:, :2].tolist()
 
 
-def test_a_missing_texture_is_told(tmp_path):
+def test_a_missing_texture_is_reported(tmp_path):
     (part,) = load(tmp_path, textured_document())
     assert part.texture is None
     notes = mesh_notes(Mesh(uri="", path=tmp_path / "t.dae"))
@@ -251,7 +251,7 @@ def test_kinds_of_polygons(tmp_path, surface, area):
     assert crosses.sum() == pytest.approx(area)
 
 
-def test_lines_are_told_and_skinned_meshes_shown(tmp_path):
+def test_lines_are_reported_and_skinned_meshes_shown(tmp_path):
     surface = TRIANGLE.format(inputs=VERTEX) + f'<lines count="1">{VERTEX}<p>0 1</p></lines>'
     more = """<library_controllers><controller id="c"><skin source="#g">
       <bind_shape_matrix>1 0 0 0 0 1 0 0 0 0 1 7 0 0 0 1</bind_shape_matrix></skin></controller>

@@ -132,7 +132,7 @@ def test_one_scale_counts_for_all_axes_and_none_costs_the_shape(tmp_path):
     assert shape(mesh.format("1 0 1"), tmp_path) is None
 
 
-def test_nested_models_of_one_name_are_told_apart():
+def test_nested_models_of_one_name_are_distinguished():
     inner = '<model name="n"><link name="a"/></model>'
     found = robot(inner + inner)
     assert sorted(each.name for each in found.links) == ["n::a", "n_1::a"]
@@ -546,7 +546,7 @@ def test_sensors_and_plugins():
     assert found.diagnostics == ()
 
 
-def test_a_gripper_is_told_as_idle_with_what_acts():
+def test_a_gripper_is_reported_as_idle_with_what_acts():
     text = """<sdf version="1.7"><model name="m"><link name="a"/><gripper name="g"><grasp_check>
       <attach_steps>20</attach_steps></grasp_check><gripper_link>a</gripper_link>
       <palm_link>a</palm_link></gripper></model></sdf>"""
@@ -626,7 +626,7 @@ def test_impossible_inertia_matters_where_it_moves():
     )
 
 
-def test_what_is_not_understood_is_told_with_its_place():
+def test_what_is_not_understood_is_reported_with_its_place():
     found = link(
         """<gravty>0</gravty>
         <visual name="v" colour="red"><geometry><plane/></geometry></visual>"""
@@ -771,7 +771,7 @@ def test_a_static_model_may_state_any_mass():
     assert found.links[0].inertial is None
 
 
-def test_names_with_a_prefix_are_for_other_programs_and_told_once():
+def test_names_with_a_prefix_are_for_other_programs_and_reported_once():
     found = robot(
         """<gz:semantics x="1"/><link name="a" my:colour="red"><gz:semantics/>
         <collision name="c"><geometry><box/></geometry><surface><friction><ode>
@@ -806,7 +806,7 @@ def test_a_joint_to_a_link_that_is_not_there_is_left_out(ends, missing):
     assert missing == f'{told.values["end"]} link "{told.values["name"]}"'
 
 
-def test_what_needs_a_missing_part_tells_of_the_missing_part():
+def test_what_needs_a_missing_part_reports_the_missing_part():
     with raises(files.FILE_MISSING, kind="model", name="nothing_there", without="n::b"):
         robot(
             """<link name='a'><pose relative_to='n::b'>1 0 0 0 0 0</pose></link>

@@ -274,7 +274,7 @@ def saved(turn, reach, extra="", links=""):
       <pose>{written(base)}</pose>{poses}{links}</model></state>"""
 
 
-def test_a_saved_state_tells_where_joints_stand():
+def test_a_saved_state_states_where_joints_are():
     found = world(saved(0.7, -0.2))
     assert dict(found.models[0].joint_positions) == pytest.approx(
         {"turn": 0.7, "reach": -0.2}, abs=1e-4
@@ -282,7 +282,7 @@ def test_a_saved_state_tells_where_joints_stand():
     assert found.diagnostics == ()
 
 
-def test_a_joint_of_several_degrees_of_freedom_is_told():
+def test_a_joint_of_several_degrees_of_freedom_is_reported():
     ball = """<link name="ball"/><joint name="socket" type="ball"><parent>base</parent>
       <child>ball</child></joint>"""
     turned = '<link name="ball"><pose>2 1 0 0.2 0.3 0</pose></link>'
@@ -396,7 +396,7 @@ def test_a_joint_between_models():
     assert found.diagnostics == ()
 
 
-def test_a_joint_of_the_world_that_cannot_act_is_told():
+def test_a_joint_of_the_world_that_cannot_act_is_reported():
     (told,) = world(JOINED.format(type="prismatic", parent="a", child="b"), "1.10").diagnostics
     assert (told.severity, told.origin.line) == ("error", 6)
     assert (named(told), told.values["name"]) == ("element-left-out", "j")
@@ -414,7 +414,7 @@ def test_a_joint_of_the_world_that_cannot_act_is_told():
     assert told.values["left_out"] == "joint"
 
 
-def test_a_saved_state_reaches_nested_models_and_tells_of_motion():
+def test_a_saved_state_reaches_nested_models_and_states_motion():
     found = world(
         """<model name="m"><link name="a"/><model name="in"><link name="i"/></model></model>
         <state world_name="w"><model name="m"><pose>0 2 0 0 0 0</pose>
@@ -428,7 +428,7 @@ def test_a_saved_state_reaches_nested_models_and_tells_of_motion():
 
 
 @pytest.mark.parametrize("tag", ["actor", "population", "road"])
-def test_what_is_not_simulated_is_told_by_name(tag):
+def test_what_is_not_simulated_is_reported_by_name(tag):
     found = world(f'<{tag} name="it"><pose>0 0 0 0 0 0</pose></{tag}>' + box("a"))
     assert [model.name for model in found.models] == ["a"]
     (told,) = found.diagnostics

@@ -1,4 +1,4 @@
-"""Links that move and state no mass: what they weigh here, and what is told of it."""
+"""Moving links without a mass: their estimated masses, and the diagnostics."""
 
 import math
 
@@ -66,7 +66,7 @@ def test_a_static_robot_needs_none():
     assert not found.diagnostics
 
 
-def test_several_are_told_together():
+def test_several_are_reported_together():
     found = robot(
         *(link(n, BALL.format("collision")) for n in ("base", "a", "b")), joint("a"), joint("b")
     )
@@ -124,7 +124,7 @@ def untouchable(*parts):
     return [d for d in robot(*parts).diagnostics if d.code.name == "base-without-collision"]
 
 
-def test_a_robot_that_nothing_holds_is_told():
+def test_a_robot_that_nothing_holds_is_reported():
     visual, collision = BOX.format("visual"), BOX.format("collision")
     mass = MASS.format(m=1, i=0.1)
     (told,) = untouchable(link("base", mass, visual))

@@ -1,4 +1,4 @@
-"""What ``<gazebo>`` tags say, tag by tag, and what is told of those that do nothing."""
+"""The meaning of each ``<gazebo>`` tag, and the reports of tags without effect."""
 
 import pytest
 from tests.coded import coded, named, placed
@@ -110,7 +110,7 @@ def test_a_material_that_cannot_be_read_costs_no_more_than_itself():
     assert told.values["stated"] == "'1"
 
 
-def test_unknown_material_keeps_the_colour_and_is_told():
+def test_unknown_material_keeps_the_colour_and_is_reported():
     robot = load(on("base", "<material>Gazebo/Bleu</material>"))
     assert robot.link("base").visuals[0].material.diffuse == (0.5, 0.5, 0.5, 1)
     assert told(robot) == ["robot.urdf:2 warning material-unknown Gazebo/Blue"]
@@ -300,7 +300,7 @@ def test_warnings(tags, code):
     assert placed(diagnostic) == f"robot.urdf:2 warning {code}"
 
 
-def test_a_tag_for_nothing_is_left_out_and_told():
+def test_a_tag_for_nothing_is_left_out_and_reported():
     (diagnostic,) = load(on("bas", '<mu1>1</mu1><sensor name="a" type="imu"/>')).diagnostics
     assert placed(diagnostic) == "robot.urdf:2 warning reference-unknown base"
 

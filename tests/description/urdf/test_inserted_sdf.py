@@ -135,7 +135,7 @@ def test_a_mistake_costs_its_element_alone(part, code):
     assert {each.name for each in robot.joints} == {"weld", "hinge"}
 
 
-def test_what_refers_to_a_link_that_is_left_out_is_told_too():
+def test_what_refers_to_a_link_that_is_left_out_is_reported_too():
     wrong = '<link name="l"><inertial><mass>x</mass></inertial></link>'
     robot = load(wrong, joint("j", "base", "l"))
     assert [(str(each.origin), each.severity) for each in robot.diagnostics] == [

@@ -1,4 +1,4 @@
-"""What is told of parts that nobody ever read."""
+"""Reports of parts that no reader supports."""
 
 from tests.coded import named
 

@@ -557,7 +557,7 @@ def test_point_masses_are_good_enough_where_they_are_fixed():
     assert told(robot) == ["robot.urdf:3 info inertia-impossible"]
 
 
-def test_a_warning_is_told_once_for_a_macro_called_twice():
+def test_a_warning_is_reported_once_for_a_macro_called_twice():
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:macro name="part" params="name"><link name="${name}"><oops/></link></xacro:macro>
 <xacro:part name="a"/>

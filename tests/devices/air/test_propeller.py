@@ -159,7 +159,7 @@ def test_speeds_approach_a_command_with_two_time_constants(make):
     command(world, [0, 0, 0, 0])
     world.run(0.2)
     down = [message.data * 10 for message in told.drain()]
-    # What is told is the joint's speed after a step; it is set before the step.
+    # The joint's speed is published after a step, but set before it.
     count = round(UP / step)
     assert up[count] == pytest.approx(100 * (1 - math.exp(-count * step / UP)), abs=100 * step / UP)
     assert up[-1] == pytest.approx(100, abs=0.1)
@@ -204,7 +204,7 @@ def test_px4s_reversible_propeller_pushes_down_and_the_others_never(make):
         assert climb(world, 0.05) == pytest.approx(G * (sign * fades - 1), abs=0.5)
 
 
-def test_a_command_for_fewer_motors_is_ignored_and_told(make):
+def test_a_command_for_fewer_motors_is_ignored_and_reported(make):
     world = fly(make)
     command(world, [HOVER, HOVER])
     world.run(0.1)
@@ -233,7 +233,7 @@ def test_what_no_motor_can_be_is_an_error(make, old, new, parameter):
     assert caught.value.values["parameter"] == parameter
 
 
-def test_a_motor_that_is_told_otherwise_than_by_speed_is_left_alone_and_told(make):
+def test_a_motor_with_another_command_than_a_speed_is_ignored_and_reported(make):
     world = make.world(bee(make, motor(0, tags="<motorType>position</motorType>")))
     assert coded(world, devices.PLUGIN_PARAMETER_UNSUPPORTED, value="position")
     assert not any(topic.name == TOPICS["rotors"][0] for topic in world.graph.topics())

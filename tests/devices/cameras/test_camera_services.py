@@ -101,7 +101,7 @@ def test_imager_rate_acts(make):
     assert len(box.drain()) == 100
 
 
-def test_a_calibration_that_is_set_is_told_from_then_on(make):
+def test_a_calibration_that_is_set_is_published_from_then_on(make):
     world = make.world(make.sdf(sensor(plugin=f"{ROS1}<frameName>optics</frameName>")))
     before = to_dict(take(world, "/eye/camera_info"))
     given = {

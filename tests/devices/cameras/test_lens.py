@@ -68,7 +68,7 @@ def test_a_post_is_where_the_formula_puts_it(make, numbers, post):
 
 
 @pytest.mark.parametrize("numbers", [BARREL, PINCUSHION, SKEW])
-def test_camera_info_tells_what_is_drawn(make, numbers):
+def test_camera_info_describes_what_is_drawn(make, numbers):
     world = make.world(make.sdf(sensor(fov=FOV, inside=tags(numbers))))
     info = take(world, "/cam/camera_info")
     assert info.distortion_model == "plumb_bob"
@@ -113,7 +113,7 @@ def test_the_plugins_own_numbers_bend_too(make):
     assert not np.array_equal(images[0], images[2])
 
 
-def test_numbers_that_contradict_are_told(make):
+def test_numbers_that_contradict_are_reported(make):
     model = sensor(inside=tags(BARREL), plugin="<distortionK1>0.5</distortionK1>")
     world = make.world(make.sdf(model))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]

@@ -104,7 +104,7 @@ print(*warnings[0].values["reasons"], sep="\\n")
 """
 
 
-def test_opengl_that_is_named_and_missing_is_told_and_no_more(tmp_path):
+def test_opengl_that_is_named_and_missing_is_reported_and_no_more(tmp_path):
     """MuJoCo's own package loads what MUJOCO_GL names while it is imported, or fails."""
     (tmp_path / "OpenGL").mkdir()
     (tmp_path / "OpenGL" / "__init__.py").write_text('raise ImportError("no OpenGL here")')

@@ -193,7 +193,7 @@ def test_every_spelling_of_a_collision_works(make, rosbots, name):
     assert read(world, 0.02)[-1].states[0].collision1_name == CHASSIS
 
 
-def test_a_wrong_collision_is_told_with_the_likely_one(make, rosbots):
+def test_a_wrong_collision_is_reported_with_the_likely_one(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots, "base_link_colision"), pose=Pose((0, 0, 0.05)))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]
@@ -212,7 +212,7 @@ def test_the_hint_and_the_values_name_the_same_collision(make, rosbots):
     assert str(warned.values["meant"]) in warned.hint
 
 
-def test_a_bumper_without_a_collision_is_told(make, rosbots):
+def test_a_bumper_without_a_collision_is_reported(make, rosbots):
     world = make.world()
     world.session.spawn(naming(make, rosbots), pose=Pose((0, 0, 0.05)))
     assert coded(world, devices.SENSOR_INCOMPLETE, missing="collision")
@@ -272,7 +272,7 @@ LEGS = {"left": (-0.4, -0.2), "right": (0.4, -0.2), "back": (0.0, 0.4)}
 
 
 def test_a_sensor_watches_several_collisions(make):
-    """Three legs bear what the lever says; the one that is not named is not told of."""
+    """Three legs bear the load that follows from the lever; the unnamed one is not published."""
     legs = "".join(
         f"""<collision name="{name}"><pose>{x} {y} 0 0 0 0</pose><geometry><sphere>
         <radius>0.25</radius></sphere></geometry></collision>"""

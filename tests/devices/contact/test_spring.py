@@ -31,7 +31,7 @@ HAND = """<plugin name="h" filename="libgazebo_ros_hand_of_god.so"><linkName>lin
 
 
 def wish(world, pose, *, parent="world", child="hog_desired"):
-    """Tells tf where a frame is."""
+    """Publishes the transform of a frame."""
     kind = message_class
     place = kind("geometry_msgs/msg/Vector3")(*pose.position)
     turn = kind("geometry_msgs/msg/Quaternion")(*pose.orientation)
@@ -43,7 +43,7 @@ def wish(world, pose, *, parent="world", child="hog_desired"):
     world.publish("/tf", kind("tf2_msgs/msg/TFMessage")([sent]))
 
 
-def test_it_hangs_in_the_air_until_it_is_told_where_to(make):
+def test_it_hangs_in_the_air_until_it_is_commanded_where_to(make):
     world = make.world(body(make, HAND.format(""), pose="0 0 2 0 0 0"), ground=None)
     world.run(2.0)
     assert world.model("body").pose.z == pytest.approx(2.0, abs=1e-6)
@@ -74,7 +74,7 @@ def test_it_turns_to_its_frame_through_a_chain_of_frames(make):
     assert pose.orientation == pytest.approx(quat_from_rpy(0.3, 0, math.pi / 2), abs=1e-3)
 
 
-def test_it_tells_where_it_is(make):
+def test_it_publishes_where_it_is(make):
     world = make.world(body(make, HAND.format(""), pose="1 2 3 0 0 0"), ground=None)
     box = world.mailbox("/tf")
     world.run(0.1)

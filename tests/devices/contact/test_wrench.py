@@ -167,7 +167,7 @@ def test_a_scale_feels_what_lies_on_it_for_as_long_as_it_lies(  # noqa: PLR0917
         assert message.header.frame_id == frame
 
 
-def test_a_frame_of_a_joints_wrench_is_told_as_idle(make):
+def test_a_frame_of_a_joints_wrench_is_reported_as_idle(make):
     tags = "<jointName>wrist</jointName><frame_name>beam</frame_name>"
     (told,) = make.world(make.sdf(arm(ft(tags)))).diagnostics
     assert told.code is devices.PLUGIN_PARAMETER_IGNORED

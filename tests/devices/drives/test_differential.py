@@ -119,7 +119,7 @@ def test_odometry_measures_the_first_pair_or_the_mean_of_all(drive, wheels):
 
 
 @pytest.mark.parametrize("source", ["positions", "velocities"])
-def test_positions_and_velocities_tell_the_same_path(drive, wheels, source):
+def test_positions_and_velocities_give_the_same_path(drive, wheels, source):
     device = drive(replace(CONFIG, odometry=source))
     device.start()
     roll(wheels, fl=1.0, fr=1.5)

@@ -27,7 +27,7 @@ def load(make, z=1.0):
     return make.box("load", (0.1, 0.1, 0.1), mass=2.0, pose=Pose((0.3, 0, z)))
 
 
-def test_a_detachable_joint_holds_until_it_is_told_to_part_and_joins_again(make):
+def test_a_detachable_joint_holds_until_it_is_commanded_to_part_and_joins_again(make):
     world = make.world(post(make, JOINT.format("")), load(make), ground=None)
     states = world.mailbox("/model/load/detachable_joint/state")
     world.run(1.0)

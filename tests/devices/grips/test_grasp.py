@@ -60,7 +60,7 @@ def test_the_threshold_says_how_long_it_must_be_pressed(make):
     assert [event.attached for event in box.drain()] == [True]
 
 
-def test_what_is_held_can_be_told_to_touch_nothing(make):
+def test_a_held_object_can_be_set_to_touch_nothing(make):
     passing = QUICK + "<disable_collisions_on_attach>true</disable_collisions_on_attach>"
     hand = Hand(make, GRASP.format(passing))
     hand.press(0.05)

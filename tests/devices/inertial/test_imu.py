@@ -273,7 +273,7 @@ def test_its_service_answers_as_gazebos(make):
     service.handler(None)
 
 
-def test_a_second_robot_with_the_same_service_is_let_in_and_told(make):
+def test_a_second_robot_with_the_same_service_is_let_in_and_reported(make):
     first = make.sdf(unit("0 0 0.05 0 0 0"))
     world = make.world(first)
     world.session.spawn(first, name="second", pose=Pose((2, 0, 0.05)))

@@ -20,7 +20,7 @@ def altimeter(tags="<topic>height</topic>", inside=""):
       <update_rate>50</update_rate>{tags}<altimeter>{inside}</altimeter></sensor></link></model>"""
 
 
-def test_an_altimeter_tells_how_far_it_fell_since_its_spawn(make, read):
+def test_an_altimeter_publishes_how_far_it_fell_since_its_spawn(make, read):
     world = make.world(ground=None)
     world.session.spawn(make.sdf(altimeter()), pose=Pose((0, 0, 100)))
     messages = read(world, "/height", 1.0)
@@ -61,7 +61,7 @@ def test_an_altimeters_noise_has_its_spread(make, read):
     assert not world.diagnostics
 
 
-def test_what_classic_alone_has_is_told(make):
+def test_what_classic_alone_has_is_reported(make):
     model = """<model name="m"><static>1</static><link name="l"><sensor name="a" type="{}"/>
       </link></model>"""
     for kind in ("altimeter", "logical_camera", "sonar", "wireless_receiver"):

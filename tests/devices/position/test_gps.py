@@ -10,7 +10,7 @@ from cartwheel.devices.position.geodesy import EQUATOR, Datum
 from cartwheel.geometry import Pose
 
 
-def test_hector_gps_tells_latitude_longitude_and_velocity(make, read):
+def test_hector_gps_publishes_latitude_longitude_and_velocity(make, read):
     """Its world's x is north and y is west; a minute of arc north is a nautical mile or so."""
     tags = """<referenceLatitude>52</referenceLatitude><referenceLongitude>13</referenceLongitude>
       <referenceAltitude>30</referenceAltitude><updateRate>10</updateRate>"""
@@ -99,7 +99,7 @@ GPS_NOISE = """<position_sensing><horizontal><noise type="gaussian"><stddev>0.5<
   </position_sensing>"""
 
 
-def test_ros2_gps_sensor_tells_the_worlds_place(make, read):
+def test_ros2_gps_sensor_publishes_the_worlds_place(make, read):
     sensor = """<sensor name="gps" type="gps"><update_rate>10</update_rate>
       <pose>0 0 1 0 0 0</pose><plugin name="gps_plugin" filename="libgazebo_ros_gps_sensor.so">
       <ros><namespace>/demo</namespace><remapping>~/out:=fix</remapping></ros></plugin></sensor>"""

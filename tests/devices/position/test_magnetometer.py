@@ -39,7 +39,7 @@ def test_hector_magnetic_points_to_where_the_compass_does(
     x, y, z = rotate(turned, vector(message.magnetic_field).tolist())
     assert z == pytest.approx(-2 * math.sin(math.radians(inclination)))
     assert math.hypot(x, y) == pytest.approx(2 * math.cos(math.radians(inclination)))
-    # A compass tells how far the x axis is clockwise from the field.
+    # A compass measures the clockwise angle from the field to the x axis.
     compass = math.degrees(math.atan2(y, x))
     assert (compass - (heading - declination) + 180) % 360 - 180 == pytest.approx(0, abs=1e-9)
     assert message.header.frame_id == "link"

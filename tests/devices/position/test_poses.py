@@ -20,7 +20,7 @@ def transforms(message):
     return {each.child_frame_id: each for each in message.transforms}
 
 
-def test_poses_are_told_in_the_frame_of_what_a_part_belongs_to(make, read):
+def test_poses_are_published_in_the_frame_of_what_a_part_belongs_to(make, read):
     tags = """<use_pose_vector_msg>1</use_pose_vector_msg><publish_model_pose>1</publish_model_pose>
       <publish_collision_pose>1</publish_collision_pose>"""
     world = make.world(make.sdf(SWING.format(POSES.format(tags))), ground=None)

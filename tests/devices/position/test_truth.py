@@ -21,7 +21,7 @@ def p3d(tags):
       <topicName>truth</topicName><updateRate>50</updateRate>{tags}</plugin></model>"""
 
 
-def test_p3d_tells_a_falling_body(make, read):
+def test_p3d_publishes_a_falling_body(make, read):
     """z = z₀ - g t² / 2, v = -g t, in the world's axes whatever way the body is turned."""
     world = make.world(ground=None)
     world.session.spawn(make.sdf(p3d("")), pose=Pose((1, 2, 50), quat_from_rpy(0.3, 0.2, 1.0)))
@@ -76,7 +76,7 @@ def test_p3d_noise_has_its_spread_and_seed(make, read):
     assert not np.array_equal(values, noise(2))
 
 
-def test_pal_s_world_odometry_tells_the_twist_in_the_link_s_axes(make, read):
+def test_pal_s_world_odometry_publishes_the_twist_in_the_link_s_axes(make, read):
     """It lies on its side, with its z axis along the world's y: it falls along its own y."""
     model = p3d("").replace("libgazebo_ros_p3d.so", "libgazebo_world_odometry.so")
     world = make.world(ground=None)
@@ -97,13 +97,13 @@ def test_pal_s_world_odometry_needs_no_body_and_is_in_the_world_s_axes(make, rea
     assert (message.header.frame_id, message.child_frame_id) == ("link", "link")
 
 
-def test_p3d_of_a_frame_that_is_no_link_is_told(make, read):
+def test_p3d_of_a_frame_that_is_no_link_is_reported(make, read):
     world = make.world(make.sdf(p3d("<frameName>odom_combined</frameName>")), ground=None)
     assert coded(world, devices.FRAME_UNKNOWN, frame="odom_combined")
     assert read(world, "/truth", 0.1)[0].header.frame_id == "odom_combined"
 
 
-def test_gz_odometry_publisher_tells_the_model_in_its_own_axes(make, read):
+def test_gz_odometry_publisher_publishes_the_model_in_its_own_axes(make, read):
     plugin = """<plugin name="o" filename="gz-sim-odometry-publisher-system">
       <odom_frame>odom</odom_frame><robot_base_frame>base</robot_base_frame>
       <dimensions>3</dimensions><odom_publish_frequency>25</odom_publish_frequency></plugin>"""

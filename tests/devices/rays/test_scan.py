@@ -244,7 +244,7 @@ def test_what_sleeps_is_seen(make):
 
 
 def test_a_moving_robot_with_a_scanner_stays_awake(make, rosbots):
-    """It rests for long, is told to drive, and its scans tell of it."""
+    """It rests for long, is commanded to drive, and its scans show that."""
     text = make.sdf(model(sensor(samples=1, pose="0 0 0.4 0 0 0")))
     scanner = dataclasses.replace(text.links[0].sensors[0], link="base_link")
     cart = dataclasses.replace(

@@ -22,7 +22,7 @@ def gz_ackermann(tags=""):
       <steering_limit>0.6</steering_limit>{tags}</plugin>"""
 
 
-def test_gz_car_goes_round_at_the_rate_it_is_told(make, cart, read):
+def test_gz_car_goes_round_at_the_rate_it_is_commanded(make, cart, read):
     speed, turn = 0.5, 0.4
     world = spawn(make, cart(CAR, gz_ackermann(), forks=FRONT))
     world.publish("/model/cart/cmd_vel", linear_x=speed, angular_z=turn)
@@ -35,7 +35,7 @@ def test_gz_car_goes_round_at_the_rate_it_is_told(make, cart, read):
 
 
 def test_gz_car_steers_no_further_than_its_limit(make, cart):
-    """Told to turn tighter than L / tan 0.6 it goes round at that radius."""
+    """If a tighter turn than L / tan 0.6 is commanded, it turns at that radius."""
     world = spawn(make, cart(CAR, gz_ackermann(), forks=FRONT))
     world.publish("/model/cart/cmd_vel", linear_x=0.3, angular_z=5.0)
     world.run(1.0)

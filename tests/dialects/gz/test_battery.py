@@ -99,7 +99,7 @@ def test_it_is_charged_up_to_nine_tenths(make, read):
     assert told.power_supply_status == told.POWER_SUPPLY_STATUS_FULL
 
 
-def test_an_empty_battery_is_told_once_and_gives_nothing(make, read):
+def test_an_empty_battery_is_reported_once_and_gives_nothing(make, read):
     world = cart(make, NOW + "<initial_charge>0.0001</initial_charge>")
     told = read(world, STATE, 2.0)[-1]
     assert (told.charge, told.current, told.percentage) == (0, 0, 0)
@@ -115,7 +115,7 @@ def test_a_battery_that_cannot_be_is_refused(make):
     assert caught.value.values["parameter"] == "smooth_current_tau"
 
 
-def test_without_a_charging_time_it_cannot_be_charged_and_that_is_told(make):
+def test_without_a_charging_time_it_cannot_be_charged_and_that_is_reported(make):
     world = cart(make, "<enable_recharge>1</enable_recharge>")
     assert coded(world, devices.PLUGIN_PARAMETER_IGNORED, parameter="enable_recharge")
     assert not any("recharge" in topic.name for topic in world.graph.topics())

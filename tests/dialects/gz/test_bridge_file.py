@@ -87,7 +87,7 @@ def test_what_stands_beside_an_image_goes_with_it(bridged):
     assert set(topics(world)) >= {"/front/rgb", "/front/rgb/compressed", "/front_eye/camera_info"}
 
 
-def test_what_has_no_effect_is_told(bridged):
+def test_what_has_no_effect_is_reported(bridged):
     world = bridged(
         """- {topic_name: /model/cat/cmd_vel, ros_type_name: geometry_msgs/msg/Twist}
 - ros_topic_name: /a

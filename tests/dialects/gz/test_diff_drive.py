@@ -119,8 +119,8 @@ def test_the_axes_define_the_sides_of_a_robot_that_faces_along_y(make, swapped):
     assert bool(coded(spawn(make, make.sdf(turned)), robot.WHEELS_SWAPPED)) == swapped
 
 
-def test_a_wheel_on_the_wrong_side_is_told(make, cart, read):
-    """As in Gazebo's own pioneer3dx: it turns to the right when it is told to turn left."""
+def test_a_wheel_on_the_wrong_side_is_reported(make, cart, read):
+    """As in Gazebo's own pioneer3dx: it turns right if a left turn is commanded."""
     swapped = {"left": (0.0, -0.15), "right": (0.0, 0.15)}
     world = spawn(make, cart(swapped, gz_diff(), balls=GLIDERS))
     assert coded(world, robot.WHEELS_SWAPPED)

@@ -68,7 +68,7 @@ def test_an_integral_bears_a_load(make):
     assert position == pytest.approx(0.5, abs=0.005)
 
 
-def test_a_position_by_velocity_goes_no_faster_than_told(make):
+def test_a_position_by_velocity_goes_no_faster_than_commanded(make):
     tags = "<use_velocity_commands>true</use_velocity_commands><cmd_max>0.5</cmd_max>"
     plugin = controller("joint-position-controller", tags)
     commands = [(POSITION, 1.0)]

@@ -55,7 +55,7 @@ CRITICAL = POSITION.format(p=100 * INERTIA, d=20 * INERTIA)
 """Critically damped at 10 /s."""
 
 
-def test_each_point_is_held_until_the_next_one_s_turn_and_progress_is_told(make):
+def test_each_point_is_held_until_the_next_one_s_turn_and_progress_is_published(make):
     world = arm(make, CRITICAL)
     told = world.mailbox(f"{TOPIC}_progress")
     points = [(1.0, [0.5], [], []), (2.0, [-0.3], [], []), (3.0, [0.2], [], [])]
@@ -148,7 +148,7 @@ def test_times_can_count_from_the_header_s_stamp(make):
         (["first"], [0.1, 0.2], "positions"),
     ],
 )
-def test_a_trajectory_that_makes_no_sense_is_told_and_left(make, names, positions, fault):
+def test_a_trajectory_that_makes_no_sense_is_reported_and_left(make, names, positions, fault):
     world = arm(make, CRITICAL)
     world.publish(TOPIC, trajectory(names, [(1.0, positions, [], [])]))
     world.run(0.5)
@@ -156,7 +156,7 @@ def test_a_trajectory_that_makes_no_sense_is_told_and_left(make, names, position
     assert position(world) == pytest.approx(0, abs=1e-6)
 
 
-def test_without_gains_it_is_told_and_without_joints_refused(make):
+def test_without_gains_it_is_reported_and_without_joints_refused(make):
     world = arm(make, "")
     assert coded(world, devices.PLUGIN_IDLE)
     still = make.sdf("""<model name="m"><link name="l"/>

@@ -103,7 +103,7 @@ def test_without_a_topic_it_has_gazebos_long_name(make):
     assert {base, f"{base}/points"} <= set(topics(world))
 
 
-def test_gazebo_classics_ray_without_plugin_is_silent_and_told(make):
+def test_gazebo_classics_ray_without_plugin_is_silent_and_reported(make):
     world = make.world(make.sdf(lidar(kind="ray", tags="")))
     assert not any("scan" in name for name in topics(world))
     (told,) = coded(world, devices.SENSOR_WITHOUT_PLUGIN)

@@ -22,7 +22,7 @@ MECANUM = """<plugin name="drive" filename="gz-sim-mecanum-drive-system">
 
 
 @pytest.mark.parametrize("motion", [(0.3, 0.0, 0.0), (0.0, 0.3, 0.0), (0.2, 0.1, 0.5)])
-def test_mecanum_goes_where_it_is_told_and_believes_its_wheels(make, cart, read, motion):
+def test_mecanum_goes_where_it_is_commanded_and_believes_its_wheels(make, cart, read, motion):
     forward, sideways, turn = motion
     world = spawn(make, cart(FOUR, MECANUM, mu=0.3))
     world.publish("/model/cart/cmd_vel", linear_x=forward, linear_y=sideways, angular_z=turn)

@@ -7,7 +7,7 @@ import pytest
 from cartwheel.geometry import Pose
 
 
-def test_velocity_control_flies_once_it_is_told(make):
+def test_velocity_control_flies_once_it_is_commanded(make):
     model = """<model name="drone"><link name="link"><inertial><mass>2</mass>
       <inertia><ixx>.02</ixx><iyy>.02</iyy><izz>.02</izz></inertia></inertial></link>
       <plugin name="fly" filename="gz-sim-velocity-control-system"/></model>"""

@@ -26,7 +26,7 @@ def ray(name, tags="", *, most=0.15, frame=""):
 
 
 def slider(make, extra="", sensor="", mouse=""):
-    """A can that goes wherever it is told, over a floor without friction."""
+    """A can with a commanded velocity, on a floor without friction."""
     inertia = 3.0 * BODY**2 / 4
     return make.sdf(f"""<model name="robot"><link name="base">
       <inertial><pose>0 0 0.04 0 0 0</pose><mass>3</mass><inertia><ixx>{inertia}</ixx>
@@ -50,7 +50,7 @@ def slider(make, extra="", sensor="", mouse=""):
         (72, "bump_left"),
     ],
 )
-def test_the_zone_of_the_bumper_that_meets_something_is_told(make, degrees, zone):
+def test_the_zone_of_the_bumper_that_meets_something_is_published(make, degrees, zone):
     angle = math.radians(degrees)
     x, y = 0.3 * math.cos(angle), 0.3 * math.sin(angle)
     post = make.sdf(f"""<model name="thing"><static>1</static><pose>{x} {y} 0.1 0 0 0</pose>
@@ -144,7 +144,7 @@ def test_the_mouse_adds_up_the_way_along_its_own_axes(make):
     last, end = box.drain()[-1], world.model("robot").pose
     half = (end.x - start.x) * math.sqrt(0.5)
     gone = (last.integrated_x - first.integrated_x, last.integrated_y - first.integrated_y)
-    # What is told is up to one period of 20 ms old.
+    # The published value is up to one period of 20 ms old.
     assert gone == pytest.approx((half, half), abs=0.2 * 0.02)
     assert (last.frame_id, last.last_squal, last.header.frame_id) == (0, 90, "mouse")
 
@@ -167,7 +167,7 @@ def test_a_wheel_is_dropped_from_the_upper_bound_until_below_the_lower(make):
     box = world.mailbox("/told", size=1000)
 
     def told_at(part):
-        """What is told once the wheel hangs out by so much of the threshold."""
+        """What is published once the wheel hangs out by so much of the threshold."""
         world.publish("/push", force_z=mass * 9.8 - part * threshold * stiffness)
         world.run(2.0)
         box.drain()
@@ -245,7 +245,7 @@ def test_it_is_docked_where_it_is_near_and_in_line(make, x, y, visible, docked):
     assert (last.dock_visible, last.is_docked) == (visible, docked)
 
 
-def test_without_a_dock_nothing_is_told(make):
+def test_without_a_dock_nothing_is_reported(make):
     world = watcher(make, 0.3, 0.0, math.pi)
     world.model("dock").delete()
     boxes = [world.mailbox(topic, size=1000) for topic in ("/ir_opcode", "/dock_status")]

@@ -85,7 +85,7 @@ def test_without_a_command_it_stands(make, read):
     assert read(world, "/odom", 0.2)[-1].twist.twist.linear.x == pytest.approx(0.0, abs=1e-3)
 
 
-def test_gains_that_differ_are_told_and_none_is_refused(make):
+def test_gains_that_differ_are_reported_and_none_is_refused(make):
     world = spawn(make, "<y_velocity_p_gain>5</y_velocity_p_gain>")
     assert coded(world, devices.PLUGIN_PARAMETER_IGNORED, parameter="y_velocity_p_gain")
     with pytest.raises(PluginError) as caught:

@@ -14,7 +14,7 @@ def drone(make, tags=""):
       </plugin></model>""")
 
 
-def test_it_tells_its_height_and_the_pressure_at_its_altitude(make, read):
+def test_it_publishes_its_height_and_the_pressure_at_its_altitude(make, read):
     world = make.world(drone(make, "<elevation>400</elevation><qnh>1000</qnh>"))
     heights = world.mailbox("/pressure_height")
     told = read(world, "/altimeter", 1.0)

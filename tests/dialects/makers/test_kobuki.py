@@ -1,4 +1,4 @@
-"""The TurtleBot 2's base: what it drives, and what its own sensors tell."""
+"""The TurtleBot 2's base: its drive, and what its own sensors publish."""
 
 import math
 
@@ -121,7 +121,7 @@ def test_motors_that_are_off_do_not_drive(world):
     assert world.model("kobuki").pose.x == pytest.approx(0.2, rel=0.1)
 
 
-def test_the_odometry_starts_anew_where_it_is_told_to(world, read):
+def test_the_odometry_starts_again_where_it_is_set(world, read):
     drive(world, 2.0, 0.2)
     world.publish(f"{BASE}/commands/reset_odometry")
     world.run(1.0)
@@ -138,7 +138,7 @@ def test_joint_states_have_names_velocities_and_a_frame(world, read):
     assert told.header.frame_id == "base_link"
 
 
-def test_the_gyroscope_is_told_with_its_covariances(world, read):
+def test_the_gyroscope_is_published_with_its_covariances(world, read):
     world.run(1.0)
     told = read(world, f"{BASE}/sensors/imu_data", 0.1)[-1]
     assert told.linear_acceleration.z == pytest.approx(9.8, abs=0.2)

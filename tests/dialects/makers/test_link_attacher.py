@@ -105,7 +105,7 @@ def test_the_reaction_of_a_joint_counts_what_is_attached(make, ask):
     assert abs(message.wrench.torque.y) == pytest.approx(0.3 * 3 * 9.8, rel=1e-3)
 
 
-def test_what_there_is_not_is_told_with_what_there_is(make, ask):
+def test_what_there_is_not_is_reported_with_what_there_is(make, ask):
     world = world_of(make, "libgazebo_ros_link_attacher.so", *pair(make))
     assert not ask(world, ATTACH, **names("post", "lod")).ok
     assert coded(
@@ -145,7 +145,7 @@ def test_ros_2_s_services_answer_with_the_likely_name(make, ask):
     assert 'Did you mean "load"' in ask(world, "/ATTACHLINK", **request).message
 
 
-def test_inside_a_model_it_is_told_where_it_belongs(make):
+def test_inside_a_model_it_is_reported_where_it_belongs(make):
     world = make.world(
         make.sdf("""<model name="m"><link name="l"/>
         <plugin name="p" filename="libgazebo_ros_link_attacher.so"/></model>""")

@@ -97,7 +97,7 @@ def test_the_rate_is_the_lesser_of_both(make, read):
     assert len(read(world, "/camera/color/camera_info", 1.0)) == 30
 
 
-def test_a_sensor_that_is_missing_and_a_tag_unknown_are_told_once(make):
+def test_a_sensor_that_is_missing_and_a_tag_unknown_are_reported_once(make):
     world = make.world(device(make, tags="<foo>1</foo>", without="ired2"))
     assert len(coded(world, running.UNKNOWN_SENSOR, name="rs_ired2")) == 1
     assert len(coded(world, devices.PLUGIN_PARAMETER_UNKNOWN, parameter="foo")) == 1

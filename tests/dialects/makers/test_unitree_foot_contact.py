@@ -28,7 +28,7 @@ def foot(make):
       <joint name="knee" type="fixed"><parent>trunk</parent><child>calf</child></joint></model>""")
 
 
-def test_a_foot_tells_the_weight_on_it_in_its_own_axes(make, read):
+def test_a_foot_publishes_the_weight_on_it_in_its_own_axes(make, read):
     world = make.world(foot(make), ground=0.0)
     told = read(world, "/visual/FR_foot_contact/the_force", 0.01)[-1]
     assert told.wrench.force.z == 0

@@ -159,7 +159,7 @@ def test_it_is_stopped_cleaned_up_and_unloaded(arm):
     assert named(arm, "load_controller", "group")
 
 
-def test_faults_are_told(arm, tmp_path):
+def test_faults_are_reported(arm, tmp_path):
     give(arm, "odd.type", STRING, "odd_controllers/Odd")
     odd = named(arm, "load_controller", "odd")
     assert arm.refuses(odd, devices.CONTROLLER_TYPE_UNKNOWN, name="odd_controllers/Odd")

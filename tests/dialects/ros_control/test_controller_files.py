@@ -171,7 +171,7 @@ robot1:
     assert started(world) == ["group"]
 
 
-def test_a_manager_of_another_namespace_is_told(spawn):
+def test_a_manager_of_another_namespace_is_reported(spawn):
     world = spawn(f"/robot1/controller_manager: {{ros__parameters: {{group: {{type: {GROUP}}}}}}}")
     assert started(world) == []
     (told,) = warnings(world)
@@ -226,7 +226,7 @@ group:
     assert warnings(world) == []
 
 
-def test_an_argument_that_the_robot_does_not_have_is_told(spawn):
+def test_an_argument_that_the_robot_does_not_have_is_reported(spawn):
     with pytest.raises(PluginError) as caught:
         spawn('group: {ros__parameters: {rate: "$(var other)"}}')
     assert caught.value.code is devices.CONTROLLERS_FILE_ARGUMENT

@@ -56,7 +56,7 @@ def test_what_takes_no_positions_is_not_offered(bench, kind):
     assert made.world.graph.joint_inputs.all() == ()
 
 
-def test_it_is_offered_while_the_controller_runs_and_every_change_is_told(bench):
+def test_it_is_offered_while_the_controller_runs_and_every_change_is_published(bench):
     parameters = {"type": "position_controllers/JointPositionController", "joint": "beam_joint"}
     made = bench(one("Position"), {"c": parameters})
     graph = made.world.graph

@@ -34,7 +34,7 @@ def test_one_that_the_xacro_lacks_is_the_prefix_that_makes_joints_of_its_words()
     assert launch_arguments(pair("var"), robot("left", "right")) == {"p": ""}
 
 
-def test_words_that_agree_on_no_prefix_tell_nothing():
+def test_words_that_agree_on_no_prefix_imply_nothing():
     assert launch_arguments(pair(), robot("a_left", "b_right")) == {}
     assert launch_arguments(pair(), robot("up", "down")) == {}
 

@@ -93,7 +93,7 @@ def test_strict_is_all_or_nothing_and_best_effort_what_it_can(arm):
     assert states(arm) == {"one": "running"}
 
 
-def test_what_cannot_be_loaded_is_told(arm):
+def test_what_cannot_be_loaded_is_reported(arm):
     assert not load(arm, "nowhere")
     assert coded(arm.warnings, running.CONTROLLER_TYPE_MISSING, parameter="/nowhere/type")
     arm.world.graph.parameters.set("/odd", {"type": "odd_controllers/Odd"})
@@ -132,7 +132,7 @@ def test_reloading_the_libraries_unloads_everything(arm):
     assert states(arm) == {}
 
 
-def test_a_plugin_that_a_maker_derived_runs_controllers_and_is_told(bench):
+def test_a_plugin_that_a_maker_derived_runs_controllers_and_is_reported(bench):
     derived = ROS1.replace("libgazebo", "libmaker_gazebo")
     made = bench(robot(beam("beam", "world") + transmission("beam_joint", "Position"), derived))
     made.world.graph.parameters.set("/one", ONE)

@@ -1,4 +1,4 @@
-"""Parameters of controllers: nested, dotted, of the right kind, and told where they are not."""
+"""Parameters of controllers: nested, dotted, and reported if their type is wrong."""
 
 import pytest
 

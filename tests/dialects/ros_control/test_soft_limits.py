@@ -89,7 +89,7 @@ def test_parameters_go_before_the_description(bench):
     assert made.position("beam_joint") == pytest.approx(0.5, abs=0.005)
 
 
-def test_a_limit_that_is_no_number_is_told(bench):
+def test_a_limit_that_is_no_number_is_reported(bench):
     with pytest.raises(PluginError) as caught:
         spawn(
             bench, "position_controllers/JointPositionController", "Position",

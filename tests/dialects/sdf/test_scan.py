@@ -75,7 +75,7 @@ def test_a_range_without_end_is_measured(make):
     assert message.ranges == pytest.approx([150.0, math.inf])
 
 
-def test_angles_the_wrong_way_round_are_swept_clockwise_and_told(make):
+def test_angles_the_wrong_way_round_are_swept_clockwise_and_reported(make):
     """As Gazebo casts them; a reader that adds up the steps sees everything where it is."""
     pillar = make.box("pillar", (0.2, 0.2, 4), static=True, pose=Pose((1.5, 0.8, 0)))
     world = make.world(pillar, make.sdf(model(sensor(samples=101, low=0.7, high=-0.3))))

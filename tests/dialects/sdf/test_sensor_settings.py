@@ -1,4 +1,4 @@
-"""What any sensor may state: errors that wander and round, axes to be told in, and no more."""
+"""Settings of all sensors: errors with drift and rounding, and the axes of messages."""
 
 import math
 
@@ -96,7 +96,7 @@ def test_what_is_quantised_is_a_multiple_of_the_precision(make):
 
 
 @pytest.mark.parametrize("error", [noise(stddev=1, precision=0.5), noise(dynamic_bias_stddev=1)])
-def test_an_error_without_effect_is_told_with_its_line(make, error):
+def test_an_error_without_effect_is_reported_with_its_line(make, error):
     world = standing(make, magnetometer(error))
     found = coded(world, devices.SENSOR_SETTING_IGNORED)
     assert len(found) == 3
@@ -157,7 +157,7 @@ def test_a_camera_with_invalid_noise_is_left_out(make, inside):
     assert error.origin is not None
 
 
-def test_an_unknown_format_is_colours_and_told(make):
+def test_an_unknown_format_is_colours_and_reported(make):
     world = make.world(make.sdf(sensor(width=8, height=6, form="CMYK")))
     message = take(world, "/cam/image_raw")
     assert (message.encoding, message.step) == ("rgb8", 24)
@@ -207,7 +207,7 @@ NORTH_EAST_DOWN = np.array([[0, 1, 0], [1, 0, 0], [0, 0, -1]])
 
 
 def oriented(make, inside):
-    """What a unit tells, and its world."""
+    """The messages of a unit, and its world."""
     model = f"""<model name="post"><static>1</static><pose>0 0 1 {" ".join(map(str, TURN))}</pose>
       <link name="link"><sensor name="s" type="imu"><topic>imu</topic><update_rate>10</update_rate>
       <imu>{inside}</imu></sensor></link></model>"""
@@ -227,7 +227,7 @@ def oriented(make, inside):
         ("<localization>NED</localization>", NORTH_EAST_DOWN @ EASTWARD),
     ],
 )
-def test_an_orientation_is_told_in_the_axes_that_are_asked_for(make, frame, expected):
+def test_an_orientation_is_published_in_the_axes_that_are_set(make, frame, expected):
     message, world = oriented(
         make, f"<orientation_reference_frame>{frame}</orientation_reference_frame>"
     )
@@ -245,7 +245,7 @@ def test_an_orientation_is_told_in_the_axes_that_are_asked_for(make, frame, expe
         '<custom_rpy parent_frame="base">0 0 1</custom_rpy>',
     ],
 )
-def test_axes_that_are_not_there_are_told(make, frame):
+def test_axes_that_are_not_there_are_reported(make, frame):
     message, world = oriented(
         make, f"<orientation_reference_frame>{frame}</orientation_reference_frame>"
     )
@@ -351,5 +351,5 @@ def test_of_what_a_sensor_may_have_nothing_is_said(text):
         ),
     ],
 )
-def test_what_nobody_reads_in_a_sensor_is_told(text, code):
+def test_what_nobody_reads_in_a_sensor_is_reported(text, code):
     assert said_of(text) == [code]

@@ -158,7 +158,7 @@ def test_lists_of_numbers_are_taken_as_arrays() -> None:
         ("tf2_msgs/TFMessage", "transforms", [5]),
     ],
 )
-def test_what_does_not_fit_is_told(name: str, field: str, value: Any) -> None:
+def test_what_does_not_fit_is_reported(name: str, field: str, value: Any) -> None:
     message = zero(name)
     setattr(message, field, value)
     with raises(MESSAGE_NOT_ENCODABLE):

@@ -198,7 +198,7 @@ def test_lists_and_other_number_types_are_taken_as_arrays() -> None:
         ("sensor_msgs/CameraInfo", "k", np.zeros(8)),
     ],
 )
-def test_values_that_do_not_fit_are_told(name: str, field: str, value: Any) -> None:
+def test_values_that_do_not_fit_are_reported(name: str, field: str, value: Any) -> None:
     message = zero(name)
     setattr(message, field, value)
     with raises(MESSAGE_NOT_ENCODABLE, type=message.__msgtype__):

@@ -40,7 +40,7 @@ def box(make, mu=0.1):
     return make.box("box", (0.4, 0.4, 0.2), mass=5.0, mu=mu)
 
 
-def test_a_servo_holds_the_velocity_it_is_told(make):
+def test_a_servo_holds_the_velocity_it_is_commanded(make):
     """Against the friction mu m g it lags by that part of the 0.05 m/s at which it gives all."""
     world, (drive, link) = spawn(
         make, box(make), lambda part: (part.body_drive(), part.link("link")), Pose((0, 0, 0.1))

@@ -352,7 +352,7 @@ def test_far_from_the_origin_rays_are_as_exact(make):
     assert read == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_missing_embree_is_told_once(make, monkeypatch):
+def test_a_missing_embree_is_reported_once(make, monkeypatch):
     monkeypatch.setattr("cartwheel.simulation.sensing.embree_rays.AVAILABLE", False)
     laser = """<model name="{name}"><static>true</static><link name="l"><sensor name="s" type="ray">
       <ray><scan><horizontal><samples>3</samples><min_angle>0</min_angle><max_angle>1</max_angle>

@@ -49,7 +49,7 @@ def test_car_circles_about_one_point(make, cart, read):
     assert coded(world, devices.PLUGIN_PARAMETER_IGNORED)
 
 
-def test_car_in_reverse_turns_the_way_it_is_told(make, cart, read):
+def test_car_in_reverse_turns_the_way_it_is_commanded(make, cart, read):
     world = spawn(make, cart(CAR, ackermann(), forks=FRONT))
     world.publish("/cmd_vel", linear_x=-0.5, angular_z=0.4)
     world.run(1.0)

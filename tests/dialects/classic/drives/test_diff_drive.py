@@ -253,7 +253,7 @@ def test_command_holds_until_the_next_and_stop_brakes(make, rosbots):
     )
 
 
-def test_a_command_that_is_no_number_is_told_and_ignored(make, rosbots):
+def test_a_command_that_is_no_number_is_reported_and_ignored(make, rosbots):
     world = place(make, rosbots)
     world.publish(COMMAND, linear_x=float("nan"))
     world.run(1.0)

@@ -15,7 +15,7 @@ from tests.devices.drives.carts import (
 from cartwheel.errors import UnknownNameError
 
 
-def test_skid_steer_goes_straight_as_told(make, cart, read):
+def test_skid_steer_goes_straight_as_commanded(make, cart, read):
     world = spawn(make, cart(FOUR, skid()))
     world.publish("/cmd_vel", linear_x=0.5)
     world.run(1.0)

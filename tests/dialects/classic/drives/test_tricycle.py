@@ -114,7 +114,7 @@ def test_every_tag_of_ros2s_tricycle_says_what_ros1s_does(make, cart):
     assert told[0] == told[1]
 
 
-def test_ros2s_tricycle_tells_nothing_unless_it_is_asked(make, cart):
+def test_ros2s_tricycle_publishes_nothing_unless_that_is_set(make, cart):
     world = spawn(make, cart(THREE, ros2_tricycle(), forks=("front",)))
     topics = {topic.name for topic in world.graph.topics()}
     assert "/cmd_vel" in topics

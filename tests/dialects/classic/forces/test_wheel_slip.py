@@ -107,7 +107,7 @@ def test_without_compliance_nothing_slips(make, cart):
     assert abs(moved[1]) < 5e-3
 
 
-def test_a_skid_steered_cart_turns_nearer_to_what_it_is_told(make, cart):
+def test_a_skid_steered_cart_turns_nearer_to_what_it_is_commanded(make, cart):
     """Tyres that give way sideways hold a turn back less than those that must be dragged."""
 
     def turned(plugin):
@@ -121,7 +121,7 @@ def test_a_skid_steered_cart_turns_nearer_to_what_it_is_told(make, cart):
     assert 1.2 * turned("") < turned(slip(1.0, 0.0)) < 1.0
 
 
-def test_ros_2_s_spelling_tells_the_slip_of_each_wheel(make, cart, read):
+def test_ros_2_s_spelling_publishes_the_slip_of_each_wheel(make, cart, read):
     plugin = slip(0.5, 1.0, filename="libgazebo_ros_wheel_slip.so", inside="<ros/>")
     world = spawn(make, cart, plugin)
     world.publish("/cmd_vel", linear_x=0.5)

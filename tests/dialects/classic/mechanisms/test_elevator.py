@@ -77,7 +77,7 @@ def test_while_it_is_busy_it_takes_no_other_order(world):
 
 
 @pytest.mark.parametrize("text", ["3", "-1", "roof"])
-def test_what_is_no_floor_is_told_and_left(world, text):
+def test_what_is_no_floor_is_reported_and_left(world, text):
     before = len(world.session.diagnostics)
     order(world, text)
     world.run(3.0)

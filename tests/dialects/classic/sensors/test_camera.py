@@ -166,7 +166,7 @@ def test_names(make, plugin, topics):
     assert images == topics
 
 
-def test_two_of_one_name_are_told_once_each(make):
+def test_two_of_one_name_are_reported_once_each(make):
     world = make.world()
     for name in ("one", "two"):
         world.session.spawn(make.sdf(sensor(name=name, plugin=ROS1)))
@@ -178,7 +178,7 @@ def test_two_of_one_name_are_told_once_each(make):
 
 
 @pytest.mark.parametrize("kind", ["wideanglecamera", "camera"])
-def test_a_view_that_no_pinhole_has_is_told(make, kind):
+def test_a_view_that_no_pinhole_has_is_reported(make, kind):
     world = make.world(make.sdf(sensor(kind=kind, fov=3.1)))
     assert coded(world, devices.CAMERA_VIEW_NARROWED, stated=3.1, used=2.8)
     count = 2 if kind == "wideanglecamera" else 1
@@ -187,7 +187,7 @@ def test_a_view_that_no_pinhole_has_is_told(make, kind):
 
 
 @pytest.mark.parametrize("written", ["lens", "save", "visibility_mask"])
-def test_what_is_not_done_is_told(make, written):
+def test_what_is_not_done_is_reported(make, written):
     world = make.world(make.sdf(sensor(inside=f"<{written}>1</{written}>")))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]
     assert told.code is devices.SENSOR_SETTING_IGNORED

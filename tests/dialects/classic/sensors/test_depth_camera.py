@@ -243,7 +243,7 @@ def test_compressed_depths_are_read_back(make):
     assert (np.abs(found - depths[told]) <= 1.01 * depths[told] ** 2 / a + 1e-6).all()
 
 
-def test_what_gazebo_11_does_not_publish_is_told(make):
+def test_what_gazebo_11_does_not_publish_is_reported(make):
     tags = "<cameraName>k</cameraName><normalsTopicName>n</normalsTopicName>"
     world = make.world(make.sdf(kinect(tags, DEPTH)))
     (told,) = [d for d in world.diagnostics if d.severity == "warning"]

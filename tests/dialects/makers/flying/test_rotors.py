@@ -23,7 +23,7 @@ def test_commands_go_through_the_interface_to_the_motors(make):
     assert climb(world, 0.2) == pytest.approx(0, abs=0.02)
 
 
-def test_the_base_tells_speeds_and_angles_in_the_order_of_their_numbers(make):
+def test_the_base_publishes_speeds_and_angles_in_the_order_of_their_numbers(make):
     world = make.world()
     plugins = "".join(motor(n) for n in range(4))
     base = plugin("multirotor_base_plugin", "<linkName>body</linkName>")
@@ -79,7 +79,7 @@ def test_the_imus_noise_has_the_density_that_is_stated(make):
     assert rates.std() == pytest.approx(density / math.sqrt(step), rel=0.12)
 
 
-def test_odometry_tells_the_truth_in_five_forms(make, read):
+def test_odometry_publishes_the_truth_in_five_forms(make, read):
     world = make.world()
     tags = "<linkName>body</linkName><childFrameId>bee/eye</childFrameId>"
     model = bee(make, plugin("odometry_plugin", tags))
@@ -90,7 +90,7 @@ def test_odometry_tells_the_truth_in_five_forms(make, read):
     told = {topic: box.drain()[-1] for topic, box in boxes.items()}
     odometry = told["odometry"]
     place = odometry.pose.pose.position
-    # It falls for half a second, and is told up to one step before the end.
+    # It falls for half a second, and is published until one step before the end.
     step = world.session.simulation.step_ns * 1e-9
     assert (place.x, place.y) == pytest.approx((1, 2))
     assert place.z == pytest.approx(30 - G * 0.5**2 / 2, abs=G * 0.5 * 2 * step)

@@ -106,7 +106,7 @@ def test_it_holds_where_it_began(arm):
     assert made.position("beam_joint") == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_reference_is_fed_forward_until_it_is_told_not_to_be(arm):
+def test_a_reference_is_fed_forward_until_that_is_switched_off(arm):
     """Without any gain the feed forward is all: an effort of 3 for a velocity of 1.5."""
     made = arm(loop=pid(states=["velocity"], feedforward_gain=2.0))
     made.publish("/loop/reference", COMMAND, values=[1.5])
@@ -129,7 +129,7 @@ def test_a_velocity_is_followed_by_effort(arm):
 
 
 def test_what_is_measured_may_come_from_outside(arm):
-    """It is told that it has come halfway: half of p times the reference is the effort."""
+    """Its measured position is halfway: the effort is half of p times the reference."""
     made = arm(loop=pid(p=4.0) | {"use_external_measured_states": True})
     made.publish("/loop/measured_state", COMMAND, values=[0.5])
     made.publish("/loop/reference", COMMAND, values=[1.0])
@@ -137,7 +137,7 @@ def test_what_is_measured_may_come_from_outside(arm):
     assert made.position("beam_joint") == pytest.approx(0.5 * 2.0 / TURNED * 0.5**2, rel=0.05)
 
 
-def test_a_reference_of_other_joints_is_told(arm):
+def test_a_reference_of_other_joints_is_reported(arm):
     made = arm(loop=pid(p=4.0))
     made.publish("/loop/reference", COMMAND, dof_names=["elbow"], values=[1.0])
     made.world.run(0.5)
@@ -262,7 +262,7 @@ def test_what_was_loaded_anew_is_commanded_by_nobody_who_knew_it_before(arm):
     assert switch(made, start=["loop", "top"]).ok
 
 
-def test_a_controller_that_commands_one_that_is_not_there_is_told(arm):
+def test_a_controller_that_commands_one_that_is_not_there_is_reported(arm):
     made = arm(top=group("lop/beam_joint"), loop=pid(p=4.0))
     assert coded(made.warnings, running.CONTROLLER_NOT_STARTED, name="lop/beam_joint")
 

@@ -75,7 +75,7 @@ def drive(make, tmp_path):
     return made
 
 
-def test_it_drives_at_the_speed_that_it_is_told(drive):
+def test_it_drives_at_the_speed_that_it_is_commanded(drive):
     made = drive()
     made.world.run(0.5)
     start = made.model.pose.x
@@ -175,7 +175,7 @@ def test_separation_and_radius_come_from_the_description(drive):
     assert turned == pytest.approx(2.0 * 1.0 * TRACK / 2 / RADIUS, rel=0.02)
 
 
-def test_the_odometry_is_told_at_its_rate_and_moves_the_frame(drive):
+def test_the_odometry_is_published_at_its_rate_and_moves_the_frame(drive):
     made = drive(publish_rate=20.0)
     odometry = made.world.mailbox("/base/odom", size=1000)
     frames = made.world.graph.mailbox("/tf", size=1000)

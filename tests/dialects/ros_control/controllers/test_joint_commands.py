@@ -217,7 +217,7 @@ def test_a_group_of_one_interface_may_name_it(bench):
     assert made.warnings == []
 
 
-def test_a_wrong_interface_is_told_and_the_rest_runs(bench):
+def test_a_wrong_interface_is_reported_and_the_rest_runs(bench):
     made = bench(
         one("Effort"),
         {

@@ -1,4 +1,4 @@
-"""Joint states as ROS 2's broadcaster tells them."""
+"""Joint states as ROS 2's broadcaster publishes them."""
 
 import math
 
@@ -23,7 +23,7 @@ UPRIGHT = "0 0 1"
 
 @pytest.fixture
 def told(bench, tmp_path):
-    """What a broadcaster of two joints tells in the end, the first of them at 0.4 rad."""
+    """The last message of a broadcaster of two joints, the first of them at 0.4 rad."""
 
     def make(topic, **settings):
         file = tmp_path / "own.yaml"
@@ -44,7 +44,7 @@ def told(bench, tmp_path):
     return make
 
 
-def test_all_interfaces_are_told_by_name(told):
+def test_all_interfaces_are_reported_by_name(told):
     message, made = told("/dynamic_joint_states", extra_joints=["wheel"])
     assert message.joint_names == ["a_joint", "b_joint", "wheel"]
     first, second, extra = message.interface_values
@@ -101,6 +101,6 @@ def test_a_field_may_be_another_interface(told):
     assert coded(made.warnings, devices.INTERFACE_UNKNOWN, interface="current")
 
 
-def test_the_interfaces_need_not_be_told(told):
+def test_the_interfaces_need_not_be_stated(told):
     _, made = told("/joint_states", publish_dynamic_joint_states=False)
     assert "/dynamic_joint_states" not in {each.name for each in made.world.graph.topics()}

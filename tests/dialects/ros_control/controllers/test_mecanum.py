@@ -1,4 +1,4 @@
-"""Mecanum wheels: what each does for a motion, and the motion that they tell of."""
+"""Mecanum wheels: their speeds for a motion, and the motion that their speeds give."""
 
 import math
 
@@ -48,7 +48,7 @@ def test_each_wheel_turns_as_the_kinematics_say(drive, motion):
     assert found == pytest.approx(wheels(*motion), abs=0.05)
 
 
-def test_wheels_and_the_motion_that_is_wanted_are_told(drive):
+def test_wheels_and_the_wanted_motion_are_published(drive):
     made = drive()
     box = made.world.mailbox("/base/controller_state", size=1000)
     made.go(0.5, 0.2, -0.1, 0.4)

@@ -51,7 +51,7 @@ def test_both_front_wheels_point_about_one_centre_and_rear_ones_differ(ackermann
     assert made.speeds("rear_left_joint", "rear_right_joint") == pytest.approx(rims, rel=0.01)
 
 
-def test_wheels_and_commands_are_told_in_the_order_of_the_lists(ackermann):
+def test_wheels_and_commands_are_published_in_the_order_of_the_lists(ackermann):
     made = ackermann()
     box = made.world.mailbox("/base/controller_state", size=1000)
     made.go(1.0, x=SPEED, turn=TURN)
@@ -65,7 +65,7 @@ def test_wheels_and_commands_are_told_in_the_order_of_the_lists(ackermann):
     assert len(state.traction_wheels_position) == 0
 
 
-def test_positions_of_wheels_are_told_where_the_odometry_is_of_them(ackermann):
+def test_positions_of_wheels_are_published_where_the_odometry_is_of_them(ackermann):
     made = ackermann(position_feedback=True)
     box = made.world.mailbox("/base/controller_state", size=1000)
     made.go(0.5, x=SPEED)
@@ -76,7 +76,7 @@ def test_positions_of_wheels_are_told_where_the_odometry_is_of_them(ackermann):
     assert state.traction_wheels_position[0] == pytest.approx(right, abs=SPEED / RADIUS * 0.011)
 
 
-def test_it_drives_that_circle_and_tells_so(ackermann):
+def test_it_drives_that_circle_and_publishes_it(ackermann):
     made = ackermann()
     # Into the curve; the circle counts from there.
     made.go(0.5, x=SPEED, turn=TURN)

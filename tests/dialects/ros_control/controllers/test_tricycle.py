@@ -43,7 +43,7 @@ def test_a_tricycle_of_one_driven_wheel(make, tmp_path):
     assert told.twist.twist.angular.z == pytest.approx(TURN, rel=0.03)
 
 
-def test_a_tricycle_takes_plain_twists_where_it_is_told(make, tmp_path):
+def test_a_tricycle_takes_plain_twists_where_that_is_set(make, tmp_path):
     made = Car(
         make, tmp_path, {**FRONT, **REAR}, "cmd_vel",
         type="tricycle_controller/TricycleController",
@@ -55,8 +55,8 @@ def test_a_tricycle_takes_plain_twists_where_it_is_told(make, tmp_path):
     assert made.speeds("front_joint")[0] == pytest.approx(SPEED / RADIUS, rel=0.01)
 
 
-def test_an_axis_that_points_the_wrong_way_is_told(make, tmp_path, monkeypatch):
-    """Published robots have such, and steer right where they are told left."""
+def test_an_axis_that_points_the_wrong_way_is_reported(make, tmp_path, monkeypatch):
+    """Published robots have such joints, and steer right if left is commanded."""
     plain = cars.car
     upside_down = ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>')
     monkeypatch.setattr(cars, "car", lambda *parts: plain(*parts).replace(*upside_down))

@@ -62,7 +62,7 @@ def test_a_torque_is_limited_to_the_joint_s(motor):
     assert made.position("beam_joint") == pytest.approx(0.5 * 2.0 / TURNED * 0.5**2, rel=0.03)
 
 
-def test_it_brakes_before_its_first_command_and_when_it_is_told(motor):
+def test_it_brakes_before_its_first_command_and_when_it_is_commanded(motor):
     """The weight sinks at the speed at which 20 N m s/rad bear it, once it has gathered it."""
     made = motor()
     made.world.run(0.2)
