@@ -80,3 +80,18 @@ def test_a_process_sleeps_in_a_long_wait(ends, monkeypatch):
     monkeypatch.setattr(os, "sched_yield", lambda: pytest.fail("it looked after a long wait"))
     one.send("third")
     assert other.receive() == "third"
+
+
+@pytest.mark.parametrize(
+    "array",
+    [np.arange(12.0).reshape(4, 3), np.zeros((2, 0)), np.array([1.5]),
+     np.arange(48, dtype=np.uint8).reshape(2, 2, 4, 3)],
+)  # fmt: skip
+def test_arrays_arrive_as_they_were_sent(ends, array):
+    one, other = ends
+    one.send(module.packed({"values": array, "more": np.ones(2)}))
+    found = module.unpacked(other.receive())
+    assert list(found) == ["values", "more"] and found["more"].tolist() == [1.0, 1.0]
+    values = found["values"]
+    assert values.dtype == array.dtype and values.flags.writeable
+    assert np.array_equal(values, array) and values.shape == array.shape

@@ -6,8 +6,16 @@ import os
 import pickle
 import select
 import time
+from collections.abc import Mapping
 from multiprocessing.connection import Connection
 from typing import Any
+
+import numpy as np
+
+from cartwheel.geometry import Array
+
+Packed = list[tuple[str, str, tuple[int, ...], Any]]
+"""Names, types, shapes and contents of arrays."""
 
 _SPIN = 200e-6
 """Wall time for which a process looks for data before it sleeps, s. It takes 20 to 100 µs to wake
@@ -55,3 +63,20 @@ class Link:
     def close(self) -> None:
         """Closes this end."""
         self._connection.close()
+
+
+def packed(arrays: Mapping[str, Array]) -> Packed:
+    """Arrays in a form that is pickled in a third of the time, if they are small.
+
+    Args:
+        arrays: Contiguous arrays of numbers.
+    """
+    return [
+        (name, each.dtype.str, each.shape, pickle.PickleBuffer(each.data))
+        for name, each in arrays.items()
+    ]
+
+
+def unpacked(values: Packed) -> dict[str, Array]:
+    """The arrays of `packed` in the other process."""
+    return {name: np.ndarray(shape, kind, buffer) for name, kind, shape, buffer in values}

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from cartwheel.batch.abreast import run_abreast
 from cartwheel.batch.lane import Lane, Values, stacked
-from cartwheel.batch.link import Link
+from cartwheel.batch.link import Link, Packed, packed, unpacked
 from cartwheel.batch.warp import WarpPhysics, unsupported
 from cartwheel.codes.world import BATCH_PROCESS_ENDED
 from cartwheel.errors import CartwheelError, fault
-from cartwheel.geometry import Array
 
 if TYPE_CHECKING:
     from cartwheel.api import Built
@@ -58,10 +57,10 @@ class Lanes:
             lane.begin(seed)
         return self._run(lanes)
 
-    def step(self, which: Sequence[int], actions: Array) -> Values:
+    def step(self, which: Sequence[int], actions: Sequence[Sequence[float]]) -> Values:
         """Runs some of the worlds for a period, and returns their observations."""
         lanes = [self.lanes[index] for index in which]
-        for lane, action in zip(lanes, actions.tolist(), strict=True):
+        for lane, action in zip(lanes, actions, strict=True):
             lane.act(action)
         return self._run(lanes)
 
@@ -114,7 +113,7 @@ class Process:
         with contextlib.suppress(OSError):  # it has ended, which `answer` reports
             self._link.send((self._calls, name, arguments))
 
-    def answer(self) -> Any:
+    def answer(self) -> Values:
         """The result of the call.
 
         Raises:
@@ -134,7 +133,7 @@ class Process:
             ) from None
         if error is not None:
             raise error
-        return result
+        return unpacked(result)
 
     def close(self) -> None:
         """Ends the process."""
@@ -164,11 +163,11 @@ def _work(
         with contextlib.closing(lanes):
             while (call := link.receive()) is not None:
                 number, name, arguments = call
-                answer: tuple[int, CartwheelError | None, Any]
+                answer: tuple[int, CartwheelError | None, Packed]
                 try:
-                    answer = (number, None, getattr(lanes, name)(*arguments))
+                    answer = (number, None, packed(getattr(lanes, name)(*arguments)))
                 except Exception as error:  # noqa: BLE001 - the parent process raises it
-                    answer = (number, _picklable(error), None)
+                    answer = (number, _picklable(error), [])
                 link.send(answer)
 
 
