@@ -82,7 +82,7 @@ class CallingWorld(ActionServingWorld):
         kind = service_classes(offered.type)[0].__msgtype__
         made = made_message(service, kind, request, fields)
         with self._used(change=True) as simulation, finding_with(self.session.types):
-            inside = self._runner == threading.get_ident()
+            inside = self.lock.runner == threading.get_ident()
             if not inside:
                 simulation.drain_queued()
             if not offered.threaded:
@@ -222,7 +222,7 @@ class CallingWorld(ActionServingWorld):
         offered = self.graph.action(text(action, "action"))
         made = made_message(action, f"{offered.type}_Goal", goal, fields)
         with self._used(change=True) as simulation, finding_with(self.session.types):
-            if self._runner != threading.get_ident():
+            if self.lock.runner != threading.get_ident():
                 simulation.drain_queued()
             return Goal(self, offered, made)
 

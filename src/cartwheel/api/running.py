@@ -59,8 +59,6 @@ class RunningWorld:
         self._host, self._allow_origin = host, tuple(allow_origin)
         self._driver = Driver(session.simulation, self.lock)
         self._connections: Connections | None = None
-        self._runner: int | None = None
-        """The thread of the current run; None if there is none."""
         self._closing = self._ends_at_exit = False
         session.simulation.drain()  # this thread is the owner
         if connections is not None and plan is not None:
@@ -112,7 +110,7 @@ class RunningWorld:
                 finally:
                     if change:
                         simulation.engine.note_change()
-                    if self._connections is not None and self._runner is None:
+                    if self._connections is not None and self.lock.runner is None:
                         self._connections.update()
                         self._driver.pacer.show()
 
@@ -162,7 +160,7 @@ class RunningWorld:
 
     def stop(self) -> None:
         """Ends the current `run` or `spin` after the current step. Callable on any thread."""
-        if self._runner is not None:
+        if self.lock.runner is not None:
             self.session.simulation.stop()
 
     @property
@@ -177,7 +175,7 @@ class RunningWorld:
     def _begin(self) -> int | None:
         """Begins a run, and returns the thread of another one that is in progress."""
         self._check_open()
-        outer = self._runner
+        outer = self.lock.runner
         thread = threading.get_ident()
         if outer == thread:
             raise SimulationError(
@@ -191,7 +189,7 @@ class RunningWorld:
                 self._connections.update()
         elif outer is None:
             self.session.update_robots()
-        self._runner = thread
+        self.lock.runner = thread
         if outer is None:
             if thread != threading.main_thread().ident and threading.current_thread().daemon:
                 # Otherwise it would run while libraries end what it uses, such as OpenGL.
@@ -207,7 +205,7 @@ class RunningWorld:
             if not failed and self._connections is not None:
                 self._connections.raise_failure()
         finally:
-            self._runner = outer
+            self.lock.runner = outer
             if outer is None:
                 if self._ends_at_exit:
                     self._ends_at_exit = False
@@ -338,7 +336,7 @@ class RunningWorld:
         connections.attach(self.session, self._driver, self.lock, ros1=ros1)
         self._connections = connections
         connections.close_with(self)
-        if self._runner is None:
+        if self.lock.runner is None:
             self._driver.end()
 
     # -- end
@@ -357,12 +355,12 @@ class RunningWorld:
         if connections is not None and connections.forked:
             return
         with self.lock:
-            if self._runner is None:
+            if self.lock.runner is None:
                 self._end()
                 return
             self._closing = True
             self.session.simulation.stop()
-            if self._runner == threading.get_ident():
+            if self.lock.runner == threading.get_ident():
                 return
         # Another thread spins, and closes the world when it ends.
         with self.lock:

@@ -29,7 +29,7 @@ class SavingWorld(SteppedWorld):
             SimulationError: The world is closed, or a callback of the same world called the method.
         """
         with self._used():
-            if self._runner == threading.get_ident():
+            if self.lock.runner == threading.get_ident():
                 raise _nested("saves")
             return save(self.session, tuple(self._left_out()))
 
@@ -49,7 +49,7 @@ class SavingWorld(SteppedWorld):
         """
         instance(state, State, "state", "state = world.save()")
         with self._used(change=True):
-            if self._runner is not None:
+            if self.lock.runner is not None:
                 raise _nested("restores")
             restore(self.session, state)
 

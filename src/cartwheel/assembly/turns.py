@@ -23,6 +23,8 @@ class Turns:
         self._lock = threading.RLock()
         self._post: Post | None = None
         self._abandoned = False
+        self.runner: int | None = None
+        """The thread of the current run; None if there is none."""
 
     def abandon(self) -> None:
         """Refuses all later turns. A thread that does not exist after a fork may hold the lock."""

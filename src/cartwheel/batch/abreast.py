@@ -54,7 +54,8 @@ def run_abreast(
         lanes: list[Run] = []
         try:
             if not interruption.pressed:
-                lanes += (Run(each, duration, errors) for each in worlds if not each._is_paced)
+                together = [each for each in worlds if not each._is_paced] if alone else worlds
+                lanes += [Run(each, duration, errors) for each in together]
             if lanes:
                 with finding_with(lanes[0].types):
                     _run(lanes, _Mujoco() if physics is None else physics)
@@ -85,8 +86,6 @@ def _run(lanes: Sequence[Run], physics: Physics) -> None:
         going = [lane for lane in going if lane.prepare()]
         if going:
             physics.advance(going)
-    for lane in lanes:
-        lane.complete()
 
 
 class Run:
@@ -128,13 +127,14 @@ class Run:
         return engine.time_ns + self.piece[0] * engine.step_ns >= self._target
 
     def prepare(self) -> bool:
-        """Does what is due before the next steps. Returns whether there are any."""
+        """Does what is due before the next steps, or at the end. Returns whether there are any."""
         if self._failed:
             return False
         try:
             find_with(self.types)
             self.piece = next(self._advancing)
         except StopIteration:
+            self._complete()
             return False
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)
@@ -148,12 +148,11 @@ class Run:
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)
 
-    def complete(self) -> None:
-        """Does what is due at the end."""
-        if self._failed or self.simulation.time_ns < self._target:
+    def _complete(self) -> None:
+        """Does what is due at the end, unless the run was stopped before."""
+        if self.simulation.time_ns < self._target:
             return
         try:
-            find_with(self.types)
             self.simulation.complete()
         except Exception as error:  # noqa: BLE001 - raised by `run_abreast`
             self.fail(error)

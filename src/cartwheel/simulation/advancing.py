@@ -90,8 +90,11 @@ class Advancing(Models):
                 first, last, gap = every
                 due = engine.step + gap
             if served:
-                first, last = self._unserved(first, last)
                 served = False
+                if engine.served_tasks == engine.tasks_created:
+                    first = last = ()
+                else:
+                    first, last = self._unserved(first, last)
             if not first and not last:
                 forwarded = bool(engine.refreshed) and engine.is_refreshed()
             else:

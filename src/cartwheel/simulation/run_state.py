@@ -143,12 +143,11 @@ class Run:
     def drain(self) -> None:
         """Runs posted functions for at most `command_time`."""
         self.owner = threading.get_ident()
-        if self.commands.empty():
-            return
-        end = time.perf_counter() + self.command_time
-        while not self.commands.empty():
-            self._obey(self.commands.get())
-            if time.perf_counter() >= end:
+        commands, is_limited = self.commands, self.command_time < math.inf
+        end = time.perf_counter() + self.command_time if is_limited else math.inf
+        while not commands.empty():
+            self._obey(commands.get())
+            if is_limited and time.perf_counter() >= end:
                 return
 
     def drain_queued(self) -> None:
