@@ -215,7 +215,18 @@ class Publisher(Generic[M]):
         The message is not created if all subscribers only need its bytes, such as recorders and
         bridges. Call it on the owner's thread, with a new tuple for each message.
         """
-        takers = self._topic.takers
+        topic = self._topic
+        takers = topic.takers
+        if not takers and self.qos != "latched":
+            # This is `publish` inlined, for the same reason.
+            message = form.message(*values)
+            self.sent += 1
+            for callback in topic.callbacks:
+                try:
+                    callback(message)
+                except (Exception, SystemExit) as error:  # noqa: BLE001 - as in `publish`
+                    topic.failed(topic, callback, error)
+            return
         if not takers:
             self.publish(form.message(*values))
             return
@@ -224,7 +235,7 @@ class Publisher(Generic[M]):
             try:
                 take(form, values)
             except (Exception, SystemExit) as error:  # noqa: BLE001 - as in `publish`
-                self._topic.failed(self._topic, callback, error)
+                topic.failed(topic, callback, error)
 
     def close(self) -> None:
         """Removes the publisher from the graph."""

@@ -26,8 +26,8 @@ all other messages.
 
 The tuple is always replaced as a whole, because simulations in several threads may share it.
 """
-_headers: dict[str, tuple[int, Any]] = {}
-"""The last header of each frame, with its time in ns."""
+newest_headers: dict[str, tuple[int, Any]] = {}
+"""The last header of each frame, with its time in ns. Only `header` changes it."""
 _MOST_FRAMES = 1000
 
 
@@ -46,11 +46,11 @@ def stamp(time_ns: int) -> Any:
 
 def header(time_ns: int, frame: str) -> Any:
     """``std_msgs/Header``, shared by messages with the same time and frame. It must not change."""
-    known = _headers.get(frame)
+    known = newest_headers.get(frame)
     if known is not None and known[0] == time_ns:
         return known[1]
-    if len(_headers) > _MOST_FRAMES:
-        _headers.clear()
+    if len(newest_headers) > _MOST_FRAMES:
+        newest_headers.clear()
     made = _header_class()(stamp(time_ns), frame)
-    _headers[frame] = (time_ns, made)
+    newest_headers[frame] = (time_ns, made)
     return made

@@ -13,7 +13,7 @@ from cartwheel.codes.graph import MESSAGE_NOT_ENCODABLE
 from cartwheel.errors import GraphError
 from cartwheel.messages.cdr.places import cdr_places
 from cartwheel.messages.cdr.writing import encode_cdr
-from cartwheel.messages.common import header, stamp
+from cartwheel.messages.common import header, newest_headers, stamp
 from cartwheel.messages.fields import fields
 from cartwheel.messages.places import Place
 from cartwheel.messages.ros1.places import SEQ, ros1_places
@@ -68,11 +68,19 @@ class Form:
     @functools.cached_property
     def message(self) -> Callable[..., Any]:
         """Creates the message with the given values."""
-        names: dict[str, Any] = {"header": header, "stamp": stamp}
+        names: dict[str, Any] = {
+            "header": header, "newest": newest_headers.get, "none": (None, None), "stamp": stamp
+        }  # fmt: skip
         assert self._leaves
-        headers: dict[str, str] = {}
+        headers: dict[tuple[str, str], str] = {}
         made = self._expression(self.template, "", names, headers)
-        lines = [f"{local} = {each}" for each, local in headers.items()]
+        lines: list[str] = []
+        for (time, frame), local in headers.items():
+            # Mostly, another message had the same header. A call of `header` takes longer.
+            lines += (
+                f"{local} = newest({frame}, none)",
+                f"{local} = {local}[1] if {local}[0] == {time} else header({time}, {frame})",
+            )
         created: Callable[..., Any] = _function(
             "message", self._arguments(), (*lines, f"return {made}"), names
         )
@@ -129,7 +137,7 @@ class Form:
         return [f"a{index}" for index in range(len(self._paths))]
 
     def _expression(
-        self, value: Any, path: str, names: dict[str, Any], headers: dict[str, str]
+        self, value: Any, path: str, names: dict[str, Any], headers: dict[tuple[str, str], str]
     ) -> str:
         """The expression for a part of the message.
 
@@ -137,8 +145,7 @@ class Form:
             value: This part of the template.
             path: Its path in the message.
             names: Receives the global names that the expression uses.
-            headers: Receives the local names of headers by their expressions. Parts with the same
-                time and frame share a header.
+            headers: Receives the local names of headers by the expressions of their time and frame.
         """
         index = self._argument.get(path)
         kind = getattr(value, "__msgtype__", None)
@@ -157,8 +164,8 @@ class Form:
             return f"[{', '.join(parts)}]"
         if kind == _HEADER and f"{within}stamp" in self._argument:
             frame = self._expression(value.frame_id, f"{within}frame_id", names, headers)
-            made = f"header(a{self._argument[f'{within}stamp']}, {frame})"
-            return headers.setdefault(made, f"h{len(headers)}")
+            time = f"a{self._argument[f'{within}stamp']}"
+            return headers.setdefault((time, frame), f"h{len(headers)}")
         parts = [
             self._expression(getattr(value, field.name), f"{within}{field.name}", names, headers)
             for field in fields(kind)

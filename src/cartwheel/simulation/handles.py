@@ -104,6 +104,14 @@ class LinkHandle:
             wz,
         )
 
+    def planar_motion_at(self, point: Sequence[float]) -> Vec3:
+        """The parts in x, y and about z of `motion_at`: m/s, m/s and rad/s."""
+        wx, wy, wz, vx, vy, _ = self._spatial.tolist()
+        x, y, z = point
+        cx, cy, cz = self._centre.tolist()
+        z -= cz
+        return vx - ((y - cy) * wz - z * wy), vy - (z * wx - (x - cx) * wz), wz
+
     def velocity(self, *, local: bool) -> tuple[Array, Array]:
         """Linear velocity of the link's origin in m/s and angular velocity in rad/s, each shape
         (3,).
@@ -251,6 +259,7 @@ class JointHandle:
         self._off_centre = any(self._anchor)
         self._axis_turn = quat_multiply(self._rest_turn, (*self._axis, 0.0))
         """The product of the orientation at rest and the axis."""
+        self._terms = (*self._rest_turn, *self._axis_turn)
         self._slides = bool(model.jnt_type[self.id] == _JOINT.mjJNT_SLIDE)
         self._zero = float(model.qpos0[self.qposadr])
         self.lightness = float(model.dof_invweight0[self.dofadr])
@@ -308,8 +317,7 @@ class JointHandle:
         # odometry.
         half = moved / 2
         sin, cos = math.sin(half), math.cos(half)
-        ax, ay, az, aw = self._rest_turn
-        x, y, z, w = self._axis_turn
+        ax, ay, az, aw, x, y, z, w = self._terms
         turn = (ax * cos + x * sin, ay * cos + y * sin, az * cos + z * sin, aw * cos + w * sin)
         if not self._off_centre:
             return self._rest, turn

@@ -162,7 +162,7 @@ class Odometry(Component):
 def planar_motion(base: LinkHandle) -> Motion:
     """Returns ground-truth pose in the world, planar velocity along the heading (m/s), yaw rate."""
     place, turned = base.place()
-    (vx, vy, _), (_, _, turn_rate) = base.motion_at(place)
+    vx, vy, turn_rate = base.planar_motion_at(place)
     yaw = yaw_of(turned)
     cos, sin = math.cos(yaw), math.sin(yaw)
     return place, turned, (cos * vx + sin * vy, cos * vy - sin * vx, 0.0), (0.0, 0.0, turn_rate)
