@@ -72,7 +72,8 @@ class World(SurroundingWorld, PicturedWorld, SavingWorld, CallingWorld):
         package_path: Folders to search for the packages of message types first.
         without: Physics that Cartwheel adds to descriptions and that is to be omitted:
             ``chain-drag``, ``round-tyres``, ``soft-sliding``, ``limited-friction``,
-            ``minimum-inertia``, ``raised-efforts``, ``slow-separation`` or ``all``.
+            ``minimum-inertia``, ``raised-efforts``, ``slow-separation``, ``apart-hulls`` or
+            ``all``.
         step_size: Time step of the physics, s; None for that of the world's file, or 0.005 s.
 
     Raises:

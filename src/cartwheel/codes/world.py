@@ -147,3 +147,6 @@ WARP_UNSUPPORTED = Code(
 STEP_SHORTENED = Code(
     "CW647", "step-shortened", "info", "a controller needs a shorter time step than the default"
 )
+HULLS_APART = Code(
+    "CW648", "hulls-apart", "info", "links with overlapping convex hulls do not collide"
+)

@@ -147,6 +147,11 @@ def _in_the_way(origin: Floats, directions: Floats, corners: Floats, within: flo
     return corners
 
 
+def boxes_meet(a: Floats, b: Floats) -> bool:
+    """Whether the bounding boxes of two point clouds touch or overlap."""
+    return bool((a.min(axis=0) <= b.max(axis=0)).all() and (b.min(axis=0) <= a.max(axis=0)).all())
+
+
 def overlap(a: Floats, b: Floats, shrink: float) -> bool:
     """Whether the convex hulls of two point clouds overlap by more than `shrink`.
 

@@ -23,6 +23,7 @@ Addition = Literal[
     "minimum-inertia",
     "raised-efforts",
     "slow-separation",
+    "apart-hulls",
 ]
 """An addition that can be omitted.
 
@@ -35,6 +36,7 @@ Addition = Literal[
 - ``raised-efforts``: a joint with position commands may exceed an effort limit with which it could
   not hold its own weight.
 - ``slow-separation``: overlapping models separate at no more than 0.5 m/s.
+- ``apart-hulls``: links of a model whose meshes have overlapping convex hulls do not collide.
 """
 ADDITIONS: tuple[Addition, ...] = get_args(Addition)
 ALL = "all"
@@ -99,6 +101,13 @@ _REPORTS: dict[Addition, _Report] = {
         text="the smallest moment of inertia is raised, because the physics engine requires a "
         "positive value",
         size="moments",  # kg m²
+    ),
+    "apart-hulls": _Report(
+        code=world_codes.HULLS_APART,
+        elements="links",
+        text="the convex hulls of their meshes overlap while all joints are at 0, so these links "
+        "do not collide with each other",
+        size="partners",  # number of links whose hulls overlap with that of the link
     ),
 }
 """The additions that are reported by the load of a model, in this order.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from itertools import combinations
 from typing import Any, Literal
 
 import mujoco
@@ -17,7 +16,6 @@ from cartwheel.description.model import (
     Joint,
     Link,
     Plane,
-    RobotDescription,
     Shape,
 )
 from cartwheel.errors import Origin, WorldError
@@ -28,6 +26,7 @@ from cartwheel.world.additions import Added, Addition
 from cartwheel.world.entry import SHIFT, TURN, TYRE, ModelEntry, part_name, scoped
 from cartwheel.world.inertials import set_inertial
 from cartwheel.world.lights import add_light
+from cartwheel.world.self_collisions import exclude_links
 from cartwheel.world.shapes import Assets, pose_arguments, solids
 from cartwheel.world.tyres import Axle, Steering, axle_of, is_upright, lowest, tread_of, tyre
 from cartwheel.world.visuals import add_visual
@@ -150,7 +149,8 @@ class BodyBuilder:
             )
         for joint in loops:
             joints.close_loop(self._spec, entry, joint)
-        self._exclude(entry, description)
+        apart = "apart-hulls" not in self._without
+        self.added += exclude_links(self._spec, entry, description, apart=apart)
         add_requested(self._spec, entry, bodies)
 
     def _grow(
@@ -305,47 +305,6 @@ class BodyBuilder:
         self.added.append(
             Added(addition=addition, model=entry.name, element=element, value=value, origin=origin)
         )
-
-    def _exclude(self, entry: ModelEntry, description: RobotDescription) -> None:
-        """Links of one model collide only if both enable self-collision, as in Gazebo.
-
-        Links connected by a joint never collide. The engine excludes these pairs itself, except for
-        the first joint of a body fixed to the world.
-        """
-        if description.static:
-            return
-        inbound: dict[str, Joint] = {}
-        for joint in description.joints:
-            inbound.setdefault(joint.child, joint)
-
-        def rigid(name: str) -> str:
-            """The first link in the group of fixed links that contains this link."""
-            joint = inbound.get(name)
-            while joint is not None and joint.type == "fixed" and joint.parent != "world":
-                name = joint.parent
-                joint = inbound.get(name)
-            return name
-
-        ends = {(rigid(joint.parent), rigid(joint.child)) for joint in description.joints}
-        connected = ends | {(child, parent) for parent, child in ends}
-
-        def collides(link: Link) -> bool:
-            return description.self_collide if link.self_collide is None else link.self_collide
-
-        def body(link: Link) -> str:
-            name = scoped(entry.name, link.name)
-            return scoped(name, TYRE) if link.name in entry.slips else name
-
-        # A model of 1,000 links has 500,000 pairs.
-        solid = [
-            (body(link), rigid(link.name), collides(link))
-            for link in description.links
-            if link.collisions
-        ]
-        exclude = self._spec.add_exclude
-        for (name1, group1, free1), (name2, group2, free2) in combinations(solid, 2):
-            if not (free1 and free2) or (group1, group2) in connected:
-                exclude(bodyname1=name1, bodyname2=name2)
 
 
 def _is_upright(link: Link, axle: Axle) -> bool:

@@ -9,12 +9,8 @@ from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
 from cartwheel.checks.subject import Subject
 from cartwheel.codes import robot as robot_codes
-from cartwheel.description.model import Mesh
-from cartwheel.description.solids import Floats, hull, overlap
+from cartwheel.description.self_collision import MOST_LINKS, collides, has_mesh, overlapping
 from cartwheel.errors import Diagnostic
-
-PENETRATION = 0.002
-"""Minimum penetration of two collisions that is reported, m."""
 
 
 @rule(robot_codes.OVERLAPPING_COLLISIONS)
@@ -23,35 +19,27 @@ def collisions_overlap(subject: Subject) -> Iterator[Diagnostic]:
         able = [
             link
             for link in robot.description.links
-            if (robot.description.self_collide if link.self_collide is None else link.self_collide)
-            and link.collisions
-            and link.name not in robot.cut
+            if collides(robot.description, link) and link.collisions and link.name not in robot.cut
         ]
-        if len(able) > 60 or robot.description.static or not robot.is_placed:
+        if len(able) > MOST_LINKS or robot.description.static or not robot.is_placed:
             continue
-        clouds = {
-            link.name: [hull(solid).placed(link.pose) for solid in robot.collisions[link.name]]
-            for link in able
-        }
-        for a, b in combinations(able, 2):
-            if _joined(robot, a.name, b.name):
-                continue
-            if any(
-                _boxes_meet(one, other) and overlap(one, other, PENETRATION)
-                for one in clouds[a.name]
-                for other in clouds[b.name]
-            ):
-                meshes = any(isinstance(c.shape, Mesh) for c in (*a.collisions, *b.collisions))
-                yield robot_codes.OVERLAPPING_COLLISIONS.diagnostic(
-                    # Gazebo collides with the mesh itself, not with its convex hull.
-                    severity="info" if meshes else None,
-                    message=f'the collisions of "{a.name}" and "{b.name}" overlap when all '
-                    "joints are at 0, so the links push each other apart",
-                    values={"link": a.name, "other": b.name},
-                    origin=b.collisions[0].origin,
-                    hint="Make one of the collisions smaller, or disable <selfCollide> for one of "
-                    "the links.",
-                )
+        pairs = [
+            each for each in combinations(able, 2) if not _joined(robot, each[0].name, each[1].name)
+        ]
+        for a, b in overlapping(pairs, robot.collisions):
+            meshes = has_mesh(a) or has_mesh(b)
+            subjects = "the convex hulls of" if meshes else "the collisions of"
+            result = "do not collide with each other" if meshes else "push each other apart"
+            yield robot_codes.OVERLAPPING_COLLISIONS.diagnostic(
+                # Gazebo collides with the mesh itself, not with its convex hull.
+                severity="info" if meshes else None,
+                message=f'{subjects} "{a.name}" and "{b.name}" overlap when all joints are at 0, '
+                f"so the links {result}",
+                values={"link": a.name, "other": b.name},
+                origin=b.collisions[0].origin,
+                hint="Make one of the collisions smaller, or disable <selfCollide> for one of the "
+                "links.",
+            )
 
 
 def _joined(robot: Robot, a: str, b: str) -> bool:
@@ -66,7 +54,3 @@ def _joined(robot: Robot, a: str, b: str) -> bool:
         if robot.rigid_root(holder.parent) == parent:
             return True
     return False
-
-
-def _boxes_meet(a: Floats, b: Floats) -> bool:
-    return bool((a.min(axis=0) <= b.max(axis=0)).all() and (b.min(axis=0) <= a.max(axis=0)).all())
