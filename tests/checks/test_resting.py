@@ -327,3 +327,13 @@ def test_balance_depends_on_collisions_only(tmp_path, kind):
     lost = f'<{kind}><geometry><mesh filename="lost.stl"/></geometry></{kind}>'
     text = drive().replace("</link>", f"{lost}</link>", 1)
     assert len(balanced(tmp_path, text)) == (kind == "visual")
+
+
+@pytest.mark.parametrize("kind", ["visual", "collision"])
+def test_wheels_off_the_ground_depend_on_collisions_only(bench, kind):
+    """A missing collision mesh may be below the wheels, and a missing visual mesh is not."""
+    lost = f'<{kind}><geometry><mesh filename="lost.stl"/></geometry></{kind}>'
+    scraping = drive().replace('0.2 0.1 0.02"', f'0.2 0.1 {2 * RADIUS}"')
+    for text, rule in ((cart(0.0023), RULE), (scraping, "body-on-ground")):
+        found = bench.find(text.replace("</link>", f"{lost}</link>", 1), rule)
+        assert len(found) == (kind == "visual" or rule == RULE), rule

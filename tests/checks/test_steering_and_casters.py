@@ -197,3 +197,51 @@ def test_wheels_that_point_to_one_side_are_reported(tmp_path, left, right, toe):
     assert [each.values["toe"] for each in findings] == (
         [] if toe is None else [pytest.approx(toe)]
     )
+
+
+def sdf_cart(mu="", effort="", name="glider"):
+    """Half of the weight of 6 kg is on the ball, because its mass is between ball and axle."""
+    inertia = "<inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia>"
+    ode = f"<surface><friction><ode>{mu}</ode></friction></surface>"
+    limit = f"<limit><effort>{effort}</effort></limit>" if effort else ""
+    wheels = "".join(
+        f"""<link name="{side}"><pose>-0.2 {y} 0.1 -1.5707963 0 0</pose>
+        <inertial><mass>0.001</mass>{inertia}</inertial><collision name="c"><geometry><cylinder>
+        <radius>0.1</radius><length>0.02</length></cylinder></geometry></collision></link>
+        <joint name="{side}_joint" type="revolute"><parent>base</parent><child>{side}</child>
+        <axis><xyz>0 0 1</xyz>{limit}</axis></joint>"""
+        for side, y in (("left", 0.15), ("right", -0.15))
+    )
+    return f"""<sdf version="1.9"><model name="cart"><link name="base"><pose>0 0 0.2 0 0 0</pose>
+      <inertial><mass>6</mass>{inertia}</inertial></link>{wheels}
+      <link name="{name}"><pose>0.2 0 0.05 0 0 0</pose>
+        <inertial><mass>0.001</mass>{inertia}</inertial><collision name="c"><geometry><sphere>
+        <radius>0.05</radius></sphere></geometry>{ode}</collision></link>
+      <joint name="foot" type="fixed"><parent>base</parent><child>{name}</child></joint>
+      <plugin name="drive" filename="gz-sim-diff-drive-system"><left_joint>left_joint</left_joint>
+      <right_joint>right_joint</right_joint><wheel_separation>0.3</wheel_separation>
+      <wheel_radius>0.1</wheel_radius></plugin></model></sdf>"""
+
+
+@pytest.mark.parametrize("name", ["glider", "caster"])
+@pytest.mark.parametrize(
+    ("mu", "effort", "severity"),
+    [
+        ("", "", "info"),
+        ("<mu>0.1</mu><mu2>0.1</mu2>", "", None),
+        # The ball's friction is 3 kg × 9.8 m/s² = 29.4 N, as that of two motors of 1.47 N m.
+        ("", 1.5, "info"),
+        ("", 1.4, "warning"),
+        ("<mu>0.9</mu><mu2>0.9</mu2>", 1.4, "info"),
+    ],
+)
+def test_casters_in_sdf_are_reported(tmp_path, name, mu, effort, severity):
+    path = tmp_path / "cart.sdf"
+    path.write_text(sdf_cart(mu, effort, name))
+    findings = [each for each in cartwheel.check(path).findings if each.code is CASTER_FRICTION]
+    assert [each.severity for each in findings] == [severity] * (severity is not None)
+    for each in findings:
+        assert each.values["link"] == name
+        assert each.values["holds"] == (severity == "warning")
+        assert each.origin.line > 1
+        assert not each.instead

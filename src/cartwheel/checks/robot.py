@@ -146,9 +146,15 @@ class Robot:
         """Whether the poses of all links are known."""
         return len(self.placed) == len(self.links)
 
-    def whole(self, link: str) -> bool:
-        """Whether no mesh is missing in a link and the links fixed to it."""
-        return self.incomplete.isdisjoint(self.rigid_groups[self.rigid_root(link)])
+    def whole(self, link: str, *, looks: bool = True) -> bool:
+        """Whether no mesh is missing in a link and the links fixed to it.
+
+        Args:
+            link: Name of the link.
+            looks: Whether visuals count as well as collisions.
+        """
+        missing = self.incomplete if looks else self.uncovered
+        return missing.isdisjoint(self.rigid_groups[self.rigid_root(link)])
 
     def solids(self, link: str) -> list[Solid]:
         """Collisions and visuals of a link."""

@@ -9,7 +9,14 @@ import numpy as np
 
 from cartwheel.checks.resting import Surfaces, starting_poses
 from cartwheel.checks.robot import Robot
-from cartwheel.checks.wheels import lowest, wheel_axis, wheel_links, wheel_place, wheel_tread
+from cartwheel.checks.wheels import (
+    lowest,
+    wheel_axis,
+    wheel_links,
+    wheel_place,
+    wheel_radius,
+    wheel_tread,
+)
 from cartwheel.description.kinematics import center_of_mass
 from cartwheel.description.model import Joint
 from cartwheel.description.solids import Floats
@@ -26,6 +33,8 @@ _AHEAD = 0.02
 _NEAR = 0.006
 """Maximum difference in height between parts that touch the ground, m."""
 _UP = np.array([0.0, 0.0, 1.0])
+_GRAVITY = 9.8
+"""m/s²."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -138,6 +147,35 @@ def turn_ratio(
         return None
     motion = base_motion([*contacts, *others], (_ahead(axle, center), float(axle @ center)))
     return abs(float(motion[2]))
+
+
+def is_held(robot: Robot, driven: Sequence[Joint]) -> bool:
+    """Whether the friction of parts that slide exceeds the force of all motors together.
+
+    This is unknown, and false, unless all driven joints have an effort limit.
+    """
+    limits = [joint.axis.effort for joint in driven]
+    radii = [wheel_radius(robot, joint) for joint in driven]
+    wheels = {name for joint in driven for name in wheel_links(robot, joint)}
+    bottoms = [lowest(robot, *wheel_links(robot, joint)) for joint in driven]
+    center = center_of_mass(robot.description, starting_poses(robot))
+    if center is None or not robot.placed.issuperset(wheels) or not driven:
+        return False
+    force = 0.0
+    for limit, radius, bottom in zip(limits, radii, bottoms, strict=True):
+        if not limit or not radius or bottom is None:
+            return False
+        force += limit / radius
+    axle = wheel_axis(robot, driven[0])
+    treads = [wheel_tread(robot, joint) for joint in driven]
+    contacts = [Contact(x=_ahead(axle, tread), y=float(axle @ tread)) for tread in treads]
+    ground = min(bottom for bottom in bottoms if bottom is not None)
+    others = list(_others(robot, driven, wheels, axle, ground))
+    x, y = np.array([(each.x, each.y) for each in (*contacts, *others)]).T
+    loads = _loads(x, y, (_ahead(axle, center), float(axle @ center)))[len(contacts) :]
+    # On the coefficient of the ground, which is 1.
+    drag = sum(load * each.friction[0] for load, each in zip(loads, others, strict=True))
+    return bool(drag * robot.description.mass * _GRAVITY > force)
 
 
 def _others(

@@ -117,6 +117,9 @@ def _cause(
         if turning and skids is None:
             # Wheels that slide by an unknown amount.
             codes |= {robot.SKID_STEERING}
+    held = [each for each in found if each.values.get("holds") is True]
+    if held and abs(ratio) < 1.0:
+        return most_severe(each for each in found if each.code in codes) or held[0]
     if 1.0 - _BRAKED < ratio < 1.0:
         # A caster may also brake a base that drives straight ahead.
         codes |= {robot.CASTER_FRICTION}

@@ -20,7 +20,7 @@ _LUMP = "_fixed_joint_lump__"
 def contact_collision_unknown(subject: Subject) -> Iterator[Diagnostic]:
     for robot, sensor, asked in _watched(subject):
         name = asked.text.strip()
-        if robot.incomplete or sensor.link in robot.cut or not robot.is_placed:
+        if robot.uncovered or sensor.link in robot.cut or not robot.is_placed:
             continue  # the name may belong to a missing mesh or an unreadable element
         if name.rpartition("::")[2] in _spellings(robot):
             continue

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from cartwheel.checks import nodes
 from cartwheel.checks.robot import Robot
 from cartwheel.checks.rule import rule
-from cartwheel.checks.sliding import rolls_only_forward
+from cartwheel.checks.sliding import is_held, rolls_only_forward
 from cartwheel.checks.subject import Subject
 from cartwheel.checks.wheels import ROUND, lowest, wheel_joints, wheel_links, wheel_widths
 from cartwheel.codes import robot as robot_codes
@@ -25,6 +25,8 @@ _LEVEL = 0.006
 """m; maximum difference of the heights of parts that touch the same ground."""
 _PLANAR = (PlanarMove, PlanarForceMove, ForceBasedMove)
 """Plugins that move a robot over the ground without wheels."""
+_IN_SDF = "Set <mu> and <mu2> in <surface><friction><ode> of this collision to 0."
+_STUCK = ", which is more than the motors can overcome"
 _LOW = 0.3
 """Friction coefficient of a caster that hardly brakes a robot."""
 
@@ -54,8 +56,9 @@ def wheel_frictionless(subject: Subject) -> Iterator[Diagnostic]:
 def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
     for robot in subject.robots:
         wheels = {name for joint in wheel_joints(robot) for name in wheel_links(robot, joint)}
-        if not wheels or not subject.is_urdf:
+        if not wheels or _names_nothing(subject):
             continue
+        weak = is_held(robot, wheel_joints(robot))
         for link in robot.description.links:
             holder = robot.inbound.get(link.name)
             if "caster" not in link.name.lower() or holder is None:
@@ -67,29 +70,40 @@ def caster_friction(subject: Subject) -> Iterator[Diagnostic]:
                 continue
             collision = link.collisions[0]
             mu = collision.surface.mu1
-            if not _brakes(mu) or _names_nothing(subject):
+            if not _brakes(mu):
                 continue
             text = f'<gazebo reference="{link.name}"><mu1>0.0</mu1><mu2>0.0</mu2></gazebo>'
+            in_sdf = subject.in_sdf(collision.origin)
             yield robot_codes.CASTER_FRICTION.diagnostic(
                 message=f'the caster "{link.name}" cannot '
                 f"{'swivel, so it slides when the robot turns' if rolls else 'roll'}, and its "
-                f"friction coefficient is {_shown(mu)}",
-                values={"link": link.name, "friction": mu},
+                f"friction coefficient is {_shown(mu)}{_STUCK if weak and not rolls else ''}",
+                severity="warning" if weak and not rolls else None,
+                values={"link": link.name, "friction": mu, "holds": weak and not rolls},
                 origin=collision.origin,
-                instead=text,
-                hint="Add these tags to the robot, or change the existing values.",
+                instead="" if in_sdf else text,
+                hint=_IN_SDF
+                if in_sdf
+                else "Add these tags to the robot, or change the existing values.",
             )
         for link, collision in _fixed_balls(robot, wheels):
             mu = collision.surface.mu1
-            if not _brakes(mu) or _names_nothing(subject):
+            if not _brakes(mu):
                 continue
+            alone = link.name != robot.rigid_root(link.name) and len(link.collisions) == 1
+            own = (
+                "Set"
+                if alone
+                else "Move the sphere to a link of its own, on a fixed joint, and set"
+            )
+            hint = f"{own} <mu1> and <mu2> of this link to 0."
             yield robot_codes.CASTER_FRICTION.diagnostic(
                 message=f'the sphere of link "{link.name}" is a caster that cannot roll, and its '
-                f"friction coefficient is {_shown(mu)}",
-                values={"link": link.name, "friction": mu},
+                f"friction coefficient is {_shown(mu)}{_STUCK if weak else ''}",
+                severity="warning" if weak else None,
+                values={"link": link.name, "friction": mu, "holds": weak},
                 origin=collision.origin,
-                hint="Move the sphere to a link of its own, on a fixed joint, and set <mu1> and "
-                "<mu2> of this link to 0.",
+                hint=_IN_SDF if subject.in_sdf(collision.origin) else hint,
             )
 
 

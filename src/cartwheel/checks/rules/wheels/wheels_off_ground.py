@@ -56,7 +56,11 @@ def body_on_ground(subject: Subject) -> Iterator[Diagnostic]:
         if bottom is None or len(bases) != 1:
             continue
         for name in robot.rigid_groups.get(bases.pop(), []):
-            if name in wheels or not robot.whole(name) or _rolls(robot, robot.links[name]):
+            if (
+                name in wheels
+                or not robot.whole(name, looks=False)
+                or _rolls(robot, robot.links[name])
+            ):
                 continue
             for solid in robot.collisions[name]:
                 points = solid.placed(robot.links[name].pose)
@@ -81,7 +85,9 @@ def _low_links(robot: Robot) -> Iterator[Diagnostic]:
     joints = wheel_joints(robot)
     parts = {name for joint in joints for name in wheel_links(robot, joint)}
     heights = [
-        lowest(robot, *wheel_links(robot, joint)) for joint in joints if robot.whole(joint.child)
+        lowest(robot, *wheel_links(robot, joint))
+        for joint in joints
+        if robot.whole(joint.child, looks=False)
     ]
     wheels = [height for height in heights if height is not None]
     if not wheels:
@@ -117,7 +123,7 @@ def _raised_sides(robot: Robot) -> Iterator[Diagnostic]:
     held = any(joint.parent == "world" for joint in robot.description.joints)
     joints = wheel_joints(robot)
     names = {joint.name for joint in joints}
-    if held or not joints or not all(robot.whole(joint.child) for joint in joints):
+    if held or not joints or not all(robot.whole(joint.child, looks=False) for joint in joints):
         return
     below: dict[str, list[Joint]] = {name: [] for name in robot.links}
     for joint in robot.inbound.values():
